@@ -1,0 +1,70 @@
+# One place for how our code is compiled: C++17, warnings are errors, one floating-point result on every machine.
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+
+set(HOUGHSTREAM_SUMMARY "" CACHE INTERNAL "")
+function(houghstream_summary line)
+  set(HOUGHSTREAM_SUMMARY "${HOUGHSTREAM_SUMMARY};${line}" CACHE INTERNAL "")
+endfunction()
+
+function(houghstream_print_summary)
+  message(STATUS "Houghstream ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}")
+  foreach(line IN LISTS HOUGHSTREAM_SUMMARY)
+    if(line)
+      message(STATUS "  ${line}")
+    endif()
+  endforeach()
+endfunction()
+
+# Our targets only: generated and third-party headers are system headers.
+function(houghstream_compile_options target)
+  target_include_directories(${target} PUBLIC "${CMAKE_SOURCE_DIR}")
+  # Contraction to fused multiply-add would make results depend on the machine.
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                           -Wno-float-conversion -Werror -ffp-contract=off)
+  if(HOUGHSTREAM_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                             -fno-omit-frame-pointer -g)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+# houghstream_library(NAME SOURCES a.cpp ... LINK x ...)
+function(houghstream_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC ${ARG_LINK})
+  houghstream_compile_options(${name})
+endfunction()
+
+# houghstream_executable(NAME SOURCES a.cpp ... LINK x ...)
+function(houghstream_executable name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK})
+  target_compile_definitions(${name} PRIVATE HOUGHSTREAM_VERSION="${PROJECT_VERSION}")
+  houghstream_compile_options(${name})
+endfunction()
+
+# houghstream_test(FOO_TEST SOURCES foo_test.cpp ... LINK x ...): one GoogleTest binary, one CTest entry.
+function(houghstream_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest_main)
+  houghstream_compile_options(${name})
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+endfunction()

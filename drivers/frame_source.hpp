@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "pipeline/frame.hpp"
+
+namespace houghstream {
+
+/// Where frames come from: a dataset folder, a rendered scene, a camera. The project's only virtual interface,
+/// since several sensors stand behind it.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  /// The next frame, or nothing at the end. Throws InputError where a frame cannot be read.
+  virtual std::optional<RgbdFrame> next() = 0;
+
+  /// Frames per second at which the source was recorded, or runs.
+  virtual double rate_hz() const = 0;
+};
+
+/// Opens "bop:DIR" (a BOP scene folder), "uw:DIR" (a UW RGB-D scene folder) or "render:NAME" (a rendered test
+/// scene). Throws InputError naming what is known.
+std::unique_ptr<FrameSource> open_frame_source(const std::string& specification);
+
+}  // namespace houghstream

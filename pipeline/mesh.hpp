@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace houghstream {
+
+/// A triangle mesh in its object frame, metres. `normals`, `colours` and `uvs` are empty or per vertex.
+struct Mesh {
+  std::vector<Eigen::Vector3f> vertices;                ///< metres
+  std::vector<Eigen::Vector3f> normals;                 ///< unit length, outwards
+  std::vector<cv::Vec3b> colours;                       ///< BGR
+  std::vector<Eigen::Vector2f> uvs;                     ///< texture coordinates in [0,1], v down
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  cv::Mat texture;                                      ///< CV_8UC3 BGR, or empty
+};
+
+/// Largest distance between two vertices, metres (BOP's diameter); exact on the convex extremes.
+double mesh_diameter(const Mesh& mesh);
+
+/// Area-weighted vertex normals from the triangles.
+void compute_normals(Mesh& mesh);
+
+/// Evenly spread points on the surface with normals, deterministic for a seed.
+struct SurfacePoints {
+  std::vector<Eigen::Vector3f> points;   ///< object frame, metres
+  std::vector<Eigen::Vector3f> normals;  ///< unit length
+};
+SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed);
+
+/// Reads PLY or OBJ; `unit_m` is the length of the file's unit in metres (BOP files are in millimetres: 1e-3).
+/// Throws InputError when it is missing, unreadable, empty or holds non-finite coordinates.
+Mesh load_mesh(const std::filesystem::path& file, double unit_m = 1e-3);
+
+/// Writes an ASCII PLY in millimetres with normals and vertex colours, as BOP models are.
+void save_ply(const Mesh& mesh, const std::filesystem::path& file);
+
+}  // namespace houghstream

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <houghstream/detections_t.hpp>
+#include <houghstream/images_t.hpp>
+#include <houghstream/object_poses_t.hpp>
+#include <houghstream/rigid_transform_t.hpp>
+#include <optional>
+#include <string>
+
+#include "pipeline/detection.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/object_pose.hpp"
+
+// Plain structs to LCM messages and back. Everything that comes off the wire is checked here, once:
+// functions that read throw InputError and never return a made-up value.
+
+namespace houghstream {
+
+/// How images travel.
+struct WireFormat {
+  bool jpeg = true;       ///< colour as JPEG, else raw RGB
+  int jpeg_quality = 94;  ///< 1 to 100
+  bool zip_depth = true;  ///< depth as DEPTH_MM_ZIPPED, else DEPTH_MM
+  int zip_level = 1;      ///< zlib 1 to 9
+};
+
+/// `sequence` counts the source's frames from 0, so that receivers can tell lost ones.
+houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence);
+
+/// Finds colour and depth by type, decodes them and checks sizes. The camera comes from the metadata, else from
+/// `fallback_camera`, else the frame is refused.
+RgbdFrame frame_from_message(const houghstream::images_t& message, const std::optional<Camera>& fallback_camera);
+
+/// The source's frame counter, if the message carries one.
+std::optional<std::int64_t> sequence_of(const houghstream::images_t& message);
+
+houghstream::detections_t to_message(const Detections& detections);
+Detections detections_from_message(const houghstream::detections_t& message);
+
+houghstream::object_poses_t to_message(const ObjectPoses& poses);
+ObjectPoses poses_from_message(const houghstream::object_poses_t& message);
+
+houghstream::rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object);
+
+}  // namespace houghstream

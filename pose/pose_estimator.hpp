@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "pipeline/detection.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/mesh.hpp"
+#include "pipeline/object_pose.hpp"
+#include "pose/pose_settings.hpp"
+
+namespace houghstream {
+
+/// Refines detections to 6-DoF poses: initial poses from the votes, ICP, verification against rendered depth.
+class PoseEstimator {
+ public:
+  /// Models by class name, in metres, in the object frame of the training views.
+  PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings);
+  ~PoseEstimator();
+  PoseEstimator(PoseEstimator&&) noexcept;
+
+  /// One ObjectPose per detection, in their order; stage times "pose.*" are appended to those of the detections.
+  /// The detections must be of this frame (same utime); throws std::logic_error otherwise.
+  ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace houghstream
