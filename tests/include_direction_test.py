@@ -1,0 +1,60 @@
+"""Plants wrong includes in a small copy of the house and expects each to be found."""
+
+import pathlib
+import tempfile
+import unittest
+
+import include_direction
+
+GOOD = {
+    "pipeline/CMakeLists.txt": "houghstream_library(pipeline SOURCES frame.cpp LINK x)\n"
+    "houghstream_library(pipeline_lcm SOURCES messages.cpp LINK x)\n",
+    "pipeline/frame.hpp": "#pragma once\n#include <vector>\n",
+    "pipeline/frame.cpp": '#include "pipeline/frame.hpp"\n',
+    "pipeline/messages.hpp": '#include <houghstream/images_t.hpp>\n#include "pipeline/frame.hpp"\n',
+    "pipeline/messages.cpp": '#include "pipeline/messages.hpp"\n#include <lcm/lcm-cpp.hpp>\n',
+    "drivers/camera.cpp": '#include <OpenNI.h>\n#include "pipeline/frame.hpp"\n',
+    "detector/surface_normals.cpp": "#include <pcl/features/normal_3d.h>\n",
+    "pose/icp.cpp": "#include <pcl/registration/icp.h>\n",
+    "tools/view/main.cpp": '#include <lcm/lcm-cpp.hpp>\n#include "detector/surface.hpp"\n',
+    "tests/pose/icp_test.cpp": '#include "pose/icp.hpp"\n#include "tools/view/overlay.hpp"\n',
+}
+
+WRONG = {
+    "pipeline/frame.cpp": '#include "pose/icp.hpp"\n',
+    "drivers/camera.cpp": '#include "detector/detector.hpp"\n',
+    "detector/detector.cpp": '#include "tools/view/overlay.hpp"\n',
+    "pose/icp.cpp": '#  include "drivers/camera.hpp"\n',
+    "tools/view/main.cpp": '#include "tests/helpers.hpp"\n',
+    "pose/camera.cpp": "#include <OpenNI.h>\n",
+    "tools/capture/main.cpp": "#include <OpenNI.h>\n",
+    "detector/forest.cpp": "#include <pcl/point_types.h>\n",
+    "pipeline/mesh.hpp": "#include <pcl/point_types.h>\n",
+    "detector/stream.cpp": "#include <lcm/lcm-cpp.hpp>\n",
+    "drivers/log.cpp": '#include "pipeline/messages.hpp"\n',
+    "pipeline/frame.hpp": '#include "pipeline/messages.hpp"\n',
+}
+
+
+def faults_with(extra):
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in {**GOOD, **extra}.items():
+            file = pathlib.Path(folder, name)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+        return include_direction.find_faults(pathlib.Path(folder))
+
+
+class IncludeDirection(unittest.TestCase):
+    def test_a_tidy_house_has_no_fault(self):
+        self.assertEqual(faults_with({}), [])
+
+    def test_every_planted_fault_is_found_and_named(self):
+        for name, text in WRONG.items():
+            with self.subTest(file=name):
+                faults = faults_with({name: text})
+                self.assertTrue(any(name in fault for fault in faults), faults)
+
+
+if __name__ == "__main__":
+    unittest.main()
