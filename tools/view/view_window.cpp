@@ -26,7 +26,7 @@ ViewWindow::ViewWindow() {
   require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"),
           "no display for a window (DISPLAY is not set); without one use --snapshot FILE.png, --video FILE.mp4 or "
           "--pictures FOLDER");
-  cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE);
+  cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
 }
 
 void ViewWindow::show(const cv::Mat& picture, std::int64_t utime) {
