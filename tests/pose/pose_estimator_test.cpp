@@ -106,10 +106,11 @@ TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
   empty.box_px.y -= 105.0F;
   Detections both = only(wrong);
   both.detections.push_back(empty);
-  for (const ObjectPose& pose : estimator.estimate(scene.frame, both).poses) {
-    EXPECT_EQ(pose.status, PoseStatus::kRejectedByDepth) << pose.detection_index << " " << to_string(pose.status);
-    EXPECT_FALSE(pose.T_camera_object.has_value());
-  }
+  const ObjectPoses poses = estimator.estimate(scene.frame, both);
+  EXPECT_EQ(poses.poses.at(0).status, PoseStatus::kRejectedByDepth) << to_string(poses.poses[0].status);
+  EXPECT_EQ(poses.poses.at(1).status, PoseStatus::kNotConverged) << to_string(poses.poses[1].status);
+  EXPECT_FALSE(poses.poses[0].T_camera_object.has_value());
+  EXPECT_FALSE(poses.poses[1].T_camera_object.has_value());
 }
 
 TEST(PoseEstimator, MissingInputGivesAReasonAndNoPose) {
