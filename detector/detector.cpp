@@ -48,14 +48,14 @@ Detection to_detection(const Forest& forest, const ObjectClass& object, const Hy
 
 /// All detections of one class in full-size pixels.
 std::vector<Detection> detect_class(const Forest& forest, int class_index, const PatchGrid& patches,
-                                    const std::vector<std::int32_t>& leaves, const WorkingFrame& frame,
-                                    const Camera& camera, const DetectionSettings& settings) {
+                                    const PatchLeaves& leaves, const WorkingFrame& frame, const Camera& camera,
+                                    const DetectionSettings& settings) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
   const HoughSpace space = cast_votes(forest, class_index, patches, leaves, frame.camera, settings);
   std::vector<Detection> detections;
   const auto to_full = static_cast<float>(camera.fx / frame.camera.fx);
-  for (const Hypothesis& hypothesis : find_maxima(forest, space, patches, frame.camera, settings.stride, settings)) {
-    if (hypothesis.mass / object.expected_mass < settings.threshold) continue;
+  const float least_mass = settings.threshold * object.expected_mass;
+  for (const Hypothesis& hypothesis : find_maxima(forest, space, patches, frame.camera, least_mass, settings)) {
     if (detections.size() >= static_cast<std::size_t>(settings.max_per_class)) break;
     const cv::Rect2f box = backprojected_box(hypothesis, patches, settings.stride);
     const cv::Rect2f full(box.x * to_full, box.y * to_full, box.width * to_full, box.height * to_full);
@@ -76,8 +76,10 @@ Detections Detector::detect(const RgbdFrame& frame) const {
   clock.mark("detect.resize");
   const FeatureImage features = compute_features(working, forest.features);  // Section 3
   clock.mark("detect.features");
-  const PatchGrid patches = make_patch_grid(working, forest.patch, settings.stride);                    // Section 5.1.3
-  const std::vector<std::int32_t> leaves = assign_leaves(forest, features, patches, settings.threads);  // Section 5.1.2
+  const PatchGrid patches = make_patch_grid(working, forest.patch, settings.stride);  // Section 5.1.3
+  PatchLeaves leaves;
+  leaves.leaves = assign_leaves(forest, features, patches, settings.threads);
+  leaves.probabilities = class_probabilities(forest, leaves.leaves, settings.threads);  // Section 5.1.2
   clock.mark("detect.forest");
 
   const int class_count = static_cast<int>(forest.classes.size());

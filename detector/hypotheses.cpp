@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace houghstream {
 namespace {
@@ -14,13 +13,15 @@ struct Cell {
 };
 
 /// Local maxima of the Hough image, strongest first; of equal neighbours the first in reading order counts.
-std::vector<Cell> image_maxima(const HoughSpace& space, int limit) {
+std::vector<Cell> image_maxima(const HoughSpace& space, const DetectionSettings& settings) {
+  const float largest = *std::max_element(space.image.begin(), space.image.end());
+  const float least = std::max(1e-4F, settings.min_relative_peak * largest);
   std::vector<Cell> maxima;
   for (int y = 0; y < space.height; ++y) {
     for (int x = 0; x < space.width; ++x) {
       const int here = y * space.width + x;
       const float value = space.image[static_cast<std::size_t>(here)];
-      bool is_maximum = value > 1e-4F;
+      bool is_maximum = value > least;
       for (int dy = -1; dy <= 1 && is_maximum; ++dy) {
         for (int dx = -1; dx <= 1 && is_maximum; ++dx) {
           const bool inside = x + dx >= 0 && x + dx < space.width && y + dy >= 0 && y + dy < space.height;
@@ -34,7 +35,8 @@ std::vector<Cell> image_maxima(const HoughSpace& space, int limit) {
     }
   }
   std::stable_sort(maxima.begin(), maxima.end(), [](const Cell& a, const Cell& b) { return a.value > b.value; });
-  if (maxima.size() > static_cast<std::size_t>(limit)) maxima.resize(static_cast<std::size_t>(limit));
+  const auto limit = static_cast<std::size_t>(settings.candidates_per_class);
+  if (maxima.size() > limit) maxima.resize(limit);
   return maxima;
 }
 
@@ -115,17 +117,36 @@ class MaximumSearch {
   float reach_;
 };
 
-/// Sums up everything that supports a maximum.
-Hypothesis gather_support(const Forest& forest, const MaximumSearch& search, const Eigen::Vector3f& centre,
-                          const PatchGrid& patches, float patch_side_per_metre) {
-  Hypothesis hypothesis;
-  hypothesis.centre_camera = centre;
-  std::map<std::uint32_t, float> by_patch;
-  std::map<std::uint32_t, float> by_view;
+/// Pairs of index and sum of those sums that are not 0, in order of the index.
+std::vector<std::pair<std::uint32_t, float>> nonzero(const std::vector<float>& sums) {
+  std::vector<std::pair<std::uint32_t, float>> out;
+  for (std::uint32_t i = 0; i < sums.size(); ++i) {
+    if (sums[i] > 0.0F) out.emplace_back(i, sums[i]);
+  }
+  return out;
+}
+
+/// What is seen of the object: weight of the supporting votes times the area of their patches.
+float support_mass(const MaximumSearch& search, const Eigen::Vector3f& centre, const PatchGrid& patches,
+                   float patch_side_per_metre) {
+  float mass = 0.0F;
   search.for_votes_around(centre, [&](const Vote& vote, float k) {
     const float side = patches.point_camera[vote.patch].z() * patch_side_per_metre;
+    mass += k * vote.weight * side * side;
+  });
+  return mass;
+}
+
+/// Everything that supports a maximum.
+Hypothesis gather_support(const Forest& forest, const MaximumSearch& search, const Eigen::Vector3f& centre, float mass,
+                          std::size_t patch_count) {
+  Hypothesis hypothesis;
+  hypothesis.centre_camera = centre;
+  hypothesis.mass = mass;
+  std::vector<float> by_patch(patch_count, 0.0F);
+  std::vector<float> by_view(forest.views.size(), 0.0F);
+  search.for_votes_around(centre, [&](const Vote& vote, float k) {
     const float weight = k * vote.weight;
-    hypothesis.mass += weight * side * side;
     hypothesis.weight += weight;
     ++hypothesis.vote_count;
     by_patch[vote.patch] += weight;
@@ -134,8 +155,8 @@ Hypothesis gather_support(const Forest& forest, const MaximumSearch& search, con
       by_view[forest.leaf_views[v].view] += weight * forest.leaf_views[v].weight;
     }
   });
-  hypothesis.patches.assign(by_patch.begin(), by_patch.end());
-  hypothesis.views.assign(by_view.begin(), by_view.end());
+  hypothesis.patches = nonzero(by_patch);
+  hypothesis.views = nonzero(by_view);
   std::stable_sort(hypothesis.views.begin(), hypothesis.views.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   return hypothesis;
@@ -144,10 +165,10 @@ Hypothesis gather_support(const Forest& forest, const MaximumSearch& search, con
 }  // namespace
 
 std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
-                                    const Camera& working_camera, int stride, const DetectionSettings& settings) {
+                                    const Camera& working_camera, float least_mass, const DetectionSettings& settings) {
   const MaximumSearch search(space, working_camera, settings);
   std::vector<Eigen::Vector3f> centres;
-  for (const Cell& cell : image_maxima(space, settings.candidates_per_class)) {
+  for (const Cell& cell : image_maxima(space, settings)) {
     const float z = start_depth(space, cell);
     if (z <= 0.0F) continue;
     const double u = (cell.x + 0.5) * space.cell_px - 0.5;
@@ -158,10 +179,12 @@ std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& spac
     };
     if (std::none_of(centres.begin(), centres.end(), meets)) centres.push_back(centre);
   }
-  const auto patch_side_per_metre = static_cast<float>(stride * working_camera.metres_per_px(1.0));
+  const auto patch_side_per_metre = static_cast<float>(settings.stride * working_camera.metres_per_px(1.0));
   std::vector<Hypothesis> hypotheses;
   for (const Eigen::Vector3f& centre : centres) {
-    hypotheses.push_back(gather_support(forest, search, centre, patches, patch_side_per_metre));
+    const float mass = support_mass(search, centre, patches, patch_side_per_metre);
+    if (mass < least_mass) continue;
+    hypotheses.push_back(gather_support(forest, search, centre, mass, patches.size()));
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.mass > b.mass; });

@@ -18,9 +18,9 @@ struct Hypothesis {
 };
 
 /// Maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D by mean shift (Comaniciu & Meer
-/// 2002), those that meet merged. Strongest first.
+/// 2002), those that meet merged. Those of at least `least_mass`, strongest first.
 std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
-                                    const Camera& working_camera, int stride, const DetectionSettings& settings);
+                                    const Camera& working_camera, float least_mass, const DetectionSettings& settings);
 
 /// Box by back-projection of all supporting patches (paper, Section 2), working pixels.
 cv::Rect2f backprojected_box(const Hypothesis& hypothesis, const PatchGrid& patches, int stride);

@@ -28,9 +28,17 @@ struct HoughSpace {
                                           ///< a patch's footprint and the spread of its votes shrink with it
 };
 
-/// Votes of all patches for one class, from classes that hold at least `min_class_share` of a patch's leaves.
-HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches,
-                      const std::vector<std::int32_t>& leaves, const Camera& working_camera,
-                      const DetectionSettings& settings);
+/// Where the patches of a frame ended up.
+struct PatchLeaves {
+  std::vector<std::int32_t> leaves;  ///< see assign_leaves
+  std::vector<float> probabilities;  ///< see class_probabilities
+};
+
+/// p(class | patch), the mean over the trees: element [patch * classes + class].
+std::vector<float> class_probabilities(const Forest& forest, const std::vector<std::int32_t>& leaves, int threads);
+
+/// Votes of all patches for one class, from those that believe in it by at least `min_class_share`.
+HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchLeaves& leaves,
+                      const Camera& working_camera, const DetectionSettings& settings);
 
 }  // namespace houghstream
