@@ -32,11 +32,12 @@ struct SurfacePoints {
 };
 SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed);
 
-/// Reads PLY or OBJ; `unit_m` is the length of the file's unit in metres (BOP files are in millimetres: 1e-3).
+/// Reads PLY or OBJ with its texture, if it names one; normals are made where the file has none. `unit_m` is the length of the file's unit in metres (BOP files are in millimetres: 1e-3).
 /// Throws InputError when it is missing, unreadable, empty or holds non-finite coordinates.
 Mesh load_mesh(const std::filesystem::path& file, double unit_m = 1e-3);
 
-/// Writes an ASCII PLY in millimetres with normals and vertex colours, as BOP models are.
+/// Writes an ASCII PLY in millimetres with normals and vertex colours, as BOP models are. A texture goes beside it
+/// as NAME.png, named in a "comment TextureFile" line. Throws InputError where it cannot write.
 void save_ply(const Mesh& mesh, const std::filesystem::path& file);
 
 }  // namespace houghstream
