@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,10 @@ struct BopImage {
 };
 
 /// A scene folder in BOP format (scene_camera.json, scene_gt.json, scene_gt_info.json, rgb/, depth/, mask_visib/),
-/// see bop_toolkit docs/bop_datasets_format.md. Reading the index does not read images.
+/// see bop_toolkit docs/bop_datasets_format.md. Reading the index does not read images, except one where
+/// scene_camera.json lacks our additional keys "width" and "height". Without scene_gt.json it has no objects.
+/// An object known by its box only has neither cam_R_m2c nor cam_t_m2c in scene_gt.json; its name may then come
+/// from SCENE/names.json, since there is no models/.
 class BopScene {
  public:
   /// Throws InputError when files are missing or their numbers absurd.
@@ -38,7 +42,7 @@ class BopScene {
 
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<BopImage>& images() const { return images_; }  ///< by image id
-  /// Frames are stamped from `first_utime` on at 30 Hz, by their position in images().
+  /// Frames are stamped with dataset_utime(), by their position in images().
   RgbdFrame read_frame(std::size_t index) const;
   cv::Mat read_mask(std::size_t index, std::size_t object_index) const;  ///< visible mask, CV_8UC1 0/255
 
@@ -47,7 +51,10 @@ class BopScene {
   std::vector<BopImage> images_;
 };
 
-/// utime of image `index` of a scene played at 30 Hz; datasets have no clock, so ours starts here.
+/// Datasets state no rate; ours are played at a camera's.
+constexpr int kDatasetRateHz = 30;
+
+/// utime of image `index` of a dataset; datasets have no clock, so ours starts in July 2017.
 std::int64_t dataset_utime(std::size_t index);
 
 /// models/models_info.json and the optional models/names.json ({"1": "bowl", ...}); without it names are "object_N".
@@ -58,10 +65,21 @@ struct BopModels {
   std::map<int, bool> symmetric;                         ///< has any symmetry in models_info.json
   std::filesystem::path mesh_file(int object_id) const;  ///< obj_000001.ply
 };
+/// Throws InputError when files are missing or their numbers absurd.
 BopModels read_bop_models(const std::filesystem::path& models_folder);
 
-/// All training views of a BOP training folder: every scene under it, one object per image; its models/ lies beside
-/// or above. Background folders (no scene_gt.json, or no objects in it) give class_id 0.
+/// {"1": "bowl", ...}
+std::map<int, std::string> read_bop_names(const std::filesystem::path& names_file);
+
+/// The folder models/ in the scene's folder or up to three levels above it.
+std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path& folder);
+
+/// Names of a scene's objects by id: its own names.json, else those of find_bop_models(); empty without either.
+std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
+
+/// All training views of a BOP training folder: every scene in or under it, one object per image, cropped around its
+/// mask; its models/ lies beside or above. Images without objects are background (class_id 0, not cropped). Views
+/// without depth on the object are left out with a warning; throws InputError when nothing is left.
 std::vector<TrainingView> read_bop_training_views(const std::filesystem::path& folder);
 
 }  // namespace houghstream

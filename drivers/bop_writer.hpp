@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
@@ -11,7 +12,10 @@
 
 namespace houghstream {
 
-/// Writes one scene folder in BOP format, image by image; the JSON files are written by finish().
+/// Writes one scene folder in BOP format, image by image from id 0 on; the JSON files are written by finish(). An
+/// object with has_pose == false is written without cam_R_m2c and cam_t_m2c. scene_camera.json has two keys beyond
+/// BOP's, "width" and "height"; of scene_gt_info.json only bbox_visib and visib_fract are written. Throws InputError
+/// where it cannot write.
 class BopWriter {
  public:
   explicit BopWriter(std::filesystem::path folder);
@@ -32,5 +36,8 @@ struct NamedModel {
   bool symmetric_about_z = false;  ///< continuous symmetry about the object's z axis
 };
 void write_bop_models(const std::vector<NamedModel>& models, const std::filesystem::path& models_folder);
+
+/// Writes {"1": "bowl", ...}, for models/names.json or SCENE/names.json.
+void write_bop_names(const std::map<int, std::string>& names, const std::filesystem::path& names_file);
 
 }  // namespace houghstream

@@ -21,8 +21,9 @@ class FrameSource {
   virtual double rate_hz() const = 0;
 };
 
-/// Opens "bop:DIR" (a BOP scene folder), "uw:DIR" (a UW RGB-D scene folder) or "render:NAME" (a rendered test
-/// scene). Throws InputError naming what is known.
+/// Opens "bop:DIR" (a BOP scene folder), "uw:DIR" (a UW RGB-D scene folder: NAME_color.png or NAME.png with
+/// NAME_depth.png, at the dataset's 640x480 with the nominal camera 525,525,319.5,239.5, or as
+/// "uw:DIR,WIDTHxHEIGHT,fx,fy,cx,cy") or "render:NAME" (a rendered test scene). Throws InputError naming what is known.
 std::unique_ptr<FrameSource> open_frame_source(const std::string& specification);
 
 }  // namespace houghstream

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/random.hpp"
 
 namespace houghstream {
 namespace {
@@ -19,11 +19,6 @@ Eigen::Vector3f centre_of_bounds(const std::vector<Eigen::Vector3f>& vertices) {
     high = high.cwiseMax(v);
   }
   return 0.5F * (low + high);
-}
-
-/// Uniform in [0,1) with 53 bits; std::uniform_real_distribution differs between libraries.
-double uniform(std::mt19937_64& random) {
-  return static_cast<double>(random() >> 11U) * 0x1.0p-53;
 }
 
 Eigen::Vector3f corner_cross(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
@@ -44,15 +39,15 @@ SurfacePoints random_points(const Mesh& mesh, std::size_t count, std::uint64_t s
   const std::vector<double> sums = cumulative_areas(mesh);
   require(!sums.empty() && sums.back() > 0.0, "mesh of {} triangles with surface area 0, expected a surface",
           mesh.triangles.size());
-  std::mt19937_64 random(seed);
+  Random random(seed);
   SurfacePoints out;
   for (std::size_t i = 0; i < count; ++i) {
-    const double target = uniform(random) * sums.back();
+    const double target = random.uniform() * sums.back();
     const auto found = std::upper_bound(sums.begin(), sums.end(), target);
     const auto& t = mesh.triangles[std::min<std::size_t>(found - sums.begin(), sums.size() - 1)];
     // Square root for uniform density over a triangle: Turk 1990, "Generating random points in triangles".
-    const auto root = static_cast<float>(std::sqrt(uniform(random)));
-    const auto along = static_cast<float>(uniform(random));
+    const auto root = static_cast<float>(std::sqrt(random.uniform()));
+    const auto along = static_cast<float>(random.uniform());
     out.points.emplace_back((1.0F - root) * mesh.vertices[t[0]] + root * (1.0F - along) * mesh.vertices[t[1]] +
                             root * along * mesh.vertices[t[2]]);
     out.normals.emplace_back(corner_cross(mesh, t).normalized());

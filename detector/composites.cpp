@@ -1,0 +1,105 @@
+#include "detector/composites.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace houghstream {
+namespace {
+
+/// Standard deviation of a structured-light camera's depth, metres (Nguyen, Izadi & Lovell 2012, axial noise).
+double axial_noise(double z) {
+  return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+}
+
+std::uint8_t to_byte(double value) {
+  return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
+}
+
+struct Patchwork {
+  cv::Mat colour;
+  cv::Mat depth;
+  cv::Mat mask;
+  cv::Rect box_px;  // of the object in the view
+};
+
+Patchwork resized_object(const TrainingView& view, double scale) {
+  Patchwork part;
+  part.box_px = cv::boundingRect(view.mask);
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(part.box_px.width * scale))),
+                      std::max(1, static_cast<int>(std::lround(part.box_px.height * scale))));
+  cv::resize(view.frame.colour(part.box_px), part.colour, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::resize(view.frame.depth(part.box_px), part.depth, size, 0, 0, cv::INTER_NEAREST);
+  cv::resize(view.mask(part.box_px), part.mask, size, 0, 0, cv::INTER_NEAREST);
+  return part;
+}
+
+void paste(const Patchwork& part, cv::Point at, float depth_shift, double extra_sigma, Composite& out, Random& random) {
+  for (int y = 0; y < part.mask.rows; ++y) {
+    for (int x = 0; x < part.mask.cols; ++x) {
+      if (part.mask.at<std::uint8_t>(y, x) == 0) continue;
+      const cv::Point to(at.x + x, at.y + y);
+      out.frame.colour.at<cv::Vec3b>(to) = part.colour.at<cv::Vec3b>(y, x);
+      const auto noise = static_cast<float>(extra_sigma > 0 ? extra_sigma * random.normal() : 0.0);
+      out.frame.depth.at<float>(to) = part.depth.at<float>(y, x) + depth_shift + noise;
+      out.mask.at<std::uint8_t>(to) = 255;
+    }
+  }
+}
+
+}  // namespace
+
+void vary_light(cv::Mat& colour, double strength, Random& random) {
+  const double gain = std::exp2(strength * random.uniform(-0.7, 0.7));
+  const double gamma = std::exp2(strength * random.uniform(-0.3, 0.3));
+  const double haze = strength * std::max(0.0, random.uniform(-30.0, 30.0));
+  const double noise = strength * random.uniform(0.0, 4.0);
+  std::array<std::array<double, 256>, 3> table{};
+  for (auto& channel : table) {
+    const double cast = std::exp2(strength * random.uniform(-0.12, 0.12));
+    for (std::size_t v = 0; v < channel.size(); ++v) {
+      const double toned = 255.0 * std::pow(static_cast<double>(v) / 255.0, gamma) * gain * cast;
+      channel[v] = haze + toned * (255.0 - haze) / 255.0;
+    }
+  }
+  for (int y = 0; y < colour.rows; ++y) {
+    for (int x = 0; x < colour.cols; ++x) {
+      cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
+      for (int c = 0; c < 3; ++c) {
+        const double value = table[static_cast<std::size_t>(c)][pixel[c]];
+        pixel[c] = to_byte(value + noise * (random.uniform(-1.7, 1.7)));
+      }
+    }
+  }
+}
+
+std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
+                                        const TrainingSettings& settings, Random& random) {
+  constexpr int kMargin = 56;  // frame pixels around the object: patches at its edge see the room
+  const double view_distance = view.T_camera_object.translation().z();
+  Composite out;
+  out.scale = view_distance / distance;
+  out.depth_shift = static_cast<float>(distance - view_distance);
+  const Patchwork part = resized_object(view, out.scale);
+  const cv::Size window(part.mask.cols + 2 * kMargin, part.mask.rows + 2 * kMargin);
+  if (window.width > background.colour.cols || window.height > background.colour.rows) return std::nullopt;
+
+  const cv::Rect place(random.between(0, background.colour.cols - window.width),
+                       random.between(0, background.colour.rows - window.height), window.width, window.height);
+  out.frame.colour = background.colour(place).clone();
+  out.frame.depth = background.depth(place).clone();
+  out.frame.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
+  out.mask = cv::Mat::zeros(window, CV_8UC1);
+  out.origin_px = cv::Point2d(kMargin - part.box_px.x * out.scale, kMargin - part.box_px.y * out.scale);
+
+  Patchwork lit = part;
+  vary_light(lit.colour, 0.6 * settings.light_variation, random);
+  const double sigma_sq =
+      axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
+  paste(lit, cv::Point(kMargin, kMargin), out.depth_shift, sigma_sq > 0 ? std::sqrt(sigma_sq) : 0.0, out, random);
+  vary_light(out.frame.colour, 0.6 * settings.light_variation, random);
+  return out;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "detector/detector_settings.hpp"
+#include "pipeline/random.hpp"
+#include "pipeline/training_view.hpp"
+
+namespace houghstream {
+
+/// A training view put into a room at another distance, in another light: what the camera could have seen there.
+/// Made from training data only.
+struct Composite {
+  RgbdFrame frame;           ///< part of the background frame around the object; its camera is the part's
+  cv::Mat mask;              ///< CV_8UC1, 255 on the object
+  double scale = 1.0;        ///< size in the composite over size in the view
+  cv::Point2d origin_px;     ///< pixel p of the composite shows pixel (p - origin_px) / scale of the view
+  float depth_shift = 0.0F;  ///< metres added to the view's depth
+};
+
+/// Nothing where the object would not fit the frame. `background` is a whole frame of the same camera.
+std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
+                                        const TrainingSettings& settings, Random& random);
+
+/// Changes exposure, contrast, colour cast and haze of the whole picture and adds noise, in place.
+void vary_light(cv::Mat& colour, double strength, Random& random);
+
+}  // namespace houghstream

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+
+namespace houghstream {
+
+/// How a frame becomes feature planes. Stored in the forest file: training and detection must agree.
+struct FeatureSettings {
+  double image_scale = 0.5;        ///< working size over frame size (paper, Section 5.1.1)
+  int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
+  int min_max_px = 5;              ///< neighbourhood of minimum and maximum, working pixels (paper, Section 3)
+  float fill_distance_px = 24.0F;  ///< how far from measured depth a pixel may borrow it, working pixels
+};
+
+/// How patches are tested. Stored in the forest file.
+struct PatchSettings {
+  float unit = 0.002F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
+  int radius = 10;      ///< test offsets reach from -radius to +radius steps
+};
+
+/// How a forest is trained.
+struct TrainingSettings {
+  int trees = 15;
+  int max_depth = 25;            ///< levels
+  int min_samples = 20;          ///< a node with fewer becomes a leaf
+  int tests_per_node = 400;      ///< random pixel tests tried
+  int thresholds_per_test = 15;  ///< thresholds tried for each
+  int node_samples = 2000;       ///< at most so many samples choose a node's test; all are then split by it
+  int patches_per_view = 250;    ///< per training view, and per background frame
+  int composites_per_view = 3;   ///< pictures made of one view: other background, distance and light
+  double in_bag = 0.75;          ///< share of the pictures that a tree sees
+  float min_distance = 0.35F;    ///< nearest distance taught, metres
+  float max_distance = 2.6F;     ///< farthest distance taught, metres
+  double light_variation = 1.0;  ///< strength of the changes of exposure, colour cast and haze, 0 = none
+  int max_leaf_votes = 12;       ///< offsets kept per leaf and class after merging
+  int max_leaf_views = 12;       ///< remembered training views per leaf and class
+  float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+/// How a frame is searched.
+struct DetectionSettings {
+  int threads = 2;
+  int stride = 2;                 ///< patch offset, working pixels (paper, Section 5.1.3)
+  float threshold = 0.3F;         ///< smallest score that is reported
+  int max_per_class = 250;        ///< at most so many detections of one class (paper, Section 4)
+  float min_class_share = 0.15F;  ///< a patch votes for a class from this share of its leaves on
+  int candidates_per_class = 24;  ///< maxima of the Hough image that are looked at in 3-D
+  float hough_sigma_px = 3.0F;    ///< smoothing of the Hough image, working pixels
+  float vote_sigma = 0.02F;       ///< bandwidth of the 3-D maximum, metres
+  float max_overlap = 0.5F;       ///< a weaker box of another object may overlap a stronger one by this IoU
+  int max_rotations = 48;         ///< rotations handed to the pose process
+};
+
+}  // namespace houghstream

@@ -1,0 +1,68 @@
+#include "detector/forest_trainer.hpp"
+
+#include <fmt/format.h>
+
+#include <mutex>
+
+#include "detector/tree_trainer.hpp"
+#include "pipeline/parallel.hpp"
+
+namespace houghstream {
+namespace {
+
+std::int32_t moved(std::int32_t child, std::int32_t first_node, std::int32_t first_leaf) {
+  return child >= 0 ? child + first_node : child - first_leaf;
+}
+
+/// Appends a tree grown on its own, moving its indices behind those already there.
+void append_tree(const Forest& tree, Forest& forest) {
+  const auto first_node = static_cast<std::int32_t>(forest.nodes.size());
+  const auto first_leaf = static_cast<std::int32_t>(forest.leaves.size()) - 1;
+  const auto first_class = static_cast<std::uint32_t>(forest.leaf_classes.size());
+  const auto first_vote = static_cast<std::uint32_t>(forest.votes.size());
+  const auto first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
+  forest.roots.push_back(moved(tree.roots.at(0), first_node, first_leaf));
+  for (TreeNode node : tree.nodes) {
+    node.left = moved(node.left, first_node, first_leaf);
+    node.right = moved(node.right, first_node, first_leaf);
+    forest.nodes.push_back(node);
+  }
+  for (std::size_t l = 1; l < tree.leaves.size(); ++l) forest.leaves.push_back(tree.leaves[l] + first_class);
+  for (LeafClass entry : tree.leaf_classes) {
+    entry.first_vote += first_vote;
+    entry.first_view += first_view;
+    forest.leaf_classes.push_back(entry);
+  }
+  forest.votes.insert(forest.votes.end(), tree.votes.begin(), tree.votes.end());
+  forest.leaf_views.insert(forest.leaf_views.end(), tree.leaf_views.begin(), tree.leaf_views.end());
+}
+
+}  // namespace
+
+Forest train_forest(const std::vector<TrainingView>& views, const FeatureSettings& features, const PatchSettings& patch,
+                    const TrainingSettings& settings, const std::function<void(const std::string&)>& progress) {
+  const TrainingSet set = make_training_set(views, features, patch, settings);
+  progress(fmt::format("{} patches of {} pictures, {} classes", set.samples.size(), set.pictures.size(),
+                       set.classes.size()));
+  std::vector<Forest> trees(static_cast<std::size_t>(settings.trees));
+  std::mutex progress_mutex;
+  int done = 0;
+  parallel_for(settings.threads, settings.trees, [&](int t) {
+    Forest& tree = trees[static_cast<std::size_t>(t)];
+    tree = grow_tree(set, patch, settings, t);
+    const std::lock_guard lock(progress_mutex);
+    progress(fmt::format("tree {} of {}: {} leaves", ++done, settings.trees, tree.leaves.size() - 1));
+  });
+
+  Forest forest;
+  forest.features = features;
+  forest.patch = patch;
+  forest.seed = settings.seed;
+  forest.classes = set.classes;
+  forest.views = set.views;
+  forest.leaves.push_back(0);
+  for (const Forest& tree : trees) append_tree(tree, forest);
+  return forest;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,207 @@
+#include "detector/hypotheses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace houghstream {
+namespace {
+
+struct Cell {
+  int x = 0;
+  int y = 0;
+  float value = 0.0F;
+};
+
+/// Local maxima of the Hough image, strongest first; of equal neighbours the first in reading order counts.
+std::vector<Cell> image_maxima(const HoughSpace& space, int limit) {
+  std::vector<Cell> maxima;
+  for (int y = 0; y < space.height; ++y) {
+    for (int x = 0; x < space.width; ++x) {
+      const int here = y * space.width + x;
+      const float value = space.image[static_cast<std::size_t>(here)];
+      bool is_maximum = value > 1e-4F;
+      for (int dy = -1; dy <= 1 && is_maximum; ++dy) {
+        for (int dx = -1; dx <= 1 && is_maximum; ++dx) {
+          const bool inside = x + dx >= 0 && x + dx < space.width && y + dy >= 0 && y + dy < space.height;
+          if (!inside || (dx == 0 && dy == 0)) continue;
+          const int there = here + dy * space.width + dx;
+          const float other = space.image[static_cast<std::size_t>(there)];
+          is_maximum = there < here ? value > other : value >= other;
+        }
+      }
+      if (is_maximum) maxima.push_back({x, y, value});
+    }
+  }
+  std::stable_sort(maxima.begin(), maxima.end(), [](const Cell& a, const Cell& b) { return a.value > b.value; });
+  if (maxima.size() > static_cast<std::size_t>(limit)) maxima.resize(static_cast<std::size_t>(limit));
+  return maxima;
+}
+
+/// Calls visit(vote) for the votes seen within `radius_cells` of a cell.
+template <typename Visit>
+void for_votes_near(const HoughSpace& space, int cell_x, int cell_y, int radius_cells, const Visit& visit) {
+  const int x0 = std::max(0, cell_x - radius_cells);
+  const int x1 = std::min(space.width - 1, cell_x + radius_cells);
+  for (int y = std::max(0, cell_y - radius_cells); y <= std::min(space.height - 1, cell_y + radius_cells); ++y) {
+    const std::uint32_t begin = space.first_vote[static_cast<std::size_t>(y * space.width + x0)];
+    const std::uint32_t end = space.first_vote[static_cast<std::size_t>(y * space.width + x1) + 1];
+    for (std::uint32_t v = begin; v < end; ++v) visit(space.votes[v]);
+  }
+}
+
+/// Weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
+float start_depth(const HoughSpace& space, const Cell& cell) {
+  std::vector<std::pair<float, float>> depths;
+  float total = 0.0F;
+  for_votes_near(space, cell.x, cell.y, 1, [&](const Vote& vote) {
+    depths.emplace_back(vote.centre_camera.z(), vote.weight);
+    total += vote.weight;
+  });
+  std::sort(depths.begin(), depths.end());
+  float sum = 0.0F;
+  for (const auto& [z, weight] : depths) {
+    sum += weight;
+    if (sum >= 0.5F * total) return z;
+  }
+  return 0.0F;
+}
+
+class MaximumSearch {
+ public:
+  MaximumSearch(const HoughSpace& space, const Camera& camera, const DetectionSettings& settings)
+      : space_(space), camera_(camera), reach_(2.5F * settings.vote_sigma) {}
+
+  /// Weight of a vote at this distance: (1 - d^2/reach^2)^2, which needs no exponential and ends at the reach.
+  float kernel(const Eigen::Vector3f& difference) const {
+    const float q = 1.0F - difference.squaredNorm() / (reach_ * reach_);
+    return q > 0.0F ? q * q : 0.0F;
+  }
+
+  template <typename Visit>
+  void for_votes_around(const Eigen::Vector3f& centre, const Visit& visit) const {
+    const Eigen::Vector2d px = camera_.project(centre.cast<double>());
+    const int x = static_cast<int>(std::floor((px.x() + 0.5) / space_.cell_px));
+    const int y = static_cast<int>(std::floor((px.y() + 0.5) / space_.cell_px));
+    const double reach_px = reach_ / camera_.metres_per_px(centre.z());
+    const int radius = static_cast<int>(reach_px / space_.cell_px) + 1;
+    for_votes_near(space_, x, y, radius, [&](const Vote& vote) {
+      const float k = kernel(vote.centre_camera - centre);
+      if (k > 0.0F) visit(vote, k);
+    });
+  }
+
+  Eigen::Vector3f climb(Eigen::Vector3f centre) const {
+    constexpr int kSteps = 8;
+    for (int step = 0; step < kSteps; ++step) {
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      float total = 0.0F;
+      for_votes_around(centre, [&](const Vote& vote, float k) {
+        sum += k * vote.weight * vote.centre_camera;
+        total += k * vote.weight;
+      });
+      if (total <= 0.0F) break;
+      const Eigen::Vector3f next = sum / total;
+      const bool arrived = (next - centre).norm() < 0.0005F;
+      centre = next;
+      if (arrived) break;
+    }
+    return centre;
+  }
+
+ private:
+  const HoughSpace& space_;
+  const Camera& camera_;
+  float reach_;
+};
+
+/// Sums up everything that supports a maximum.
+Hypothesis gather_support(const Forest& forest, const MaximumSearch& search, const Eigen::Vector3f& centre,
+                          const PatchGrid& patches, float patch_side_per_metre) {
+  Hypothesis hypothesis;
+  hypothesis.centre_camera = centre;
+  std::map<std::uint32_t, float> by_patch;
+  std::map<std::uint32_t, float> by_view;
+  search.for_votes_around(centre, [&](const Vote& vote, float k) {
+    const float side = patches.point_camera[vote.patch].z() * patch_side_per_metre;
+    const float weight = k * vote.weight;
+    hypothesis.mass += weight * side * side;
+    hypothesis.weight += weight;
+    ++hypothesis.vote_count;
+    by_patch[vote.patch] += weight;
+    const LeafClass& entry = forest.leaf_classes[vote.leaf_class];
+    for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
+      by_view[forest.leaf_views[v].view] += weight * forest.leaf_views[v].weight;
+    }
+  });
+  hypothesis.patches.assign(by_patch.begin(), by_patch.end());
+  hypothesis.views.assign(by_view.begin(), by_view.end());
+  std::stable_sort(hypothesis.views.begin(), hypothesis.views.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  return hypothesis;
+}
+
+}  // namespace
+
+std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
+                                    const Camera& working_camera, int stride, const DetectionSettings& settings) {
+  const MaximumSearch search(space, working_camera, settings);
+  std::vector<Eigen::Vector3f> centres;
+  for (const Cell& cell : image_maxima(space, settings.candidates_per_class)) {
+    const float z = start_depth(space, cell);
+    if (z <= 0.0F) continue;
+    const double u = (cell.x + 0.5) * space.cell_px - 0.5;
+    const double v = (cell.y + 0.5) * space.cell_px - 0.5;
+    const Eigen::Vector3f centre = search.climb(working_camera.backproject(u, v, z).cast<float>());
+    const auto meets = [&](const Eigen::Vector3f& other) {
+      return (other - centre).norm() < 2.0F * settings.vote_sigma;
+    };
+    if (std::none_of(centres.begin(), centres.end(), meets)) centres.push_back(centre);
+  }
+  const auto patch_side_per_metre = static_cast<float>(stride * working_camera.metres_per_px(1.0));
+  std::vector<Hypothesis> hypotheses;
+  for (const Eigen::Vector3f& centre : centres) {
+    hypotheses.push_back(gather_support(forest, search, centre, patches, patch_side_per_metre));
+  }
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.mass > b.mass; });
+  return hypotheses;
+}
+
+cv::Rect2f backprojected_box(const Hypothesis& hypothesis, const PatchGrid& patches, int stride) {
+  // Patches that hardly believe in the object lie beside it. The median supporter says what believing is here.
+  std::vector<float> weights;
+  for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
+  if (weights.empty()) return {};
+  std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
+  const float least = 0.3F * weights[weights.size() / 2];
+  std::vector<std::int16_t> xs;
+  std::vector<std::int16_t> ys;
+  for (const auto& [patch, weight] : hypothesis.patches) {
+    if (weight < least) continue;
+    xs.push_back(patches.x[patch]);
+    ys.push_back(patches.y[patch]);
+  }
+  std::sort(xs.begin(), xs.end());
+  std::sort(ys.begin(), ys.end());
+  const std::size_t outliers = xs.size() / 50;
+  const float half = 0.5F * static_cast<float>(stride);
+  const float x0 = xs[outliers] - half + 0.5F;
+  const float y0 = ys[outliers] - half + 0.5F;
+  const float x1 = xs[xs.size() - 1 - outliers] + half + 0.5F;
+  const float y1 = ys[ys.size() - 1 - outliers] + half + 0.5F;
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
+std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, float max_overlap) {
+  std::stable_sort(detections.begin(), detections.end(),
+                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  std::vector<Detection> kept;
+  for (Detection& detection : detections) {
+    const auto overlaps = [&](const Detection& other) { return box_iou(other.box_px, detection.box_px) > max_overlap; };
+    if (std::none_of(kept.begin(), kept.end(), overlaps)) kept.push_back(std::move(detection));
+  }
+  return kept;
+}
+
+}  // namespace houghstream

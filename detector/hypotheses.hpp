@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "detector/voting.hpp"
+#include "pipeline/detection.hpp"
+
+namespace houghstream {
+
+/// A maximum of the 3-D vote density of one class, with everything that supports it.
+struct Hypothesis {
+  Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< metres
+  float mass = 0.0F;    ///< votes' weight times the area of their patches, square metres: what is seen of the object
+  float weight = 0.0F;  ///< votes' weight
+  int vote_count = 0;
+  std::vector<std::pair<std::uint32_t, float>> patches;  ///< supporting patch and its weight, by patch
+  std::vector<std::pair<std::uint32_t, float>> views;    ///< remembered training view and its weight, heaviest first
+};
+
+/// Maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D by mean shift (Comaniciu & Meer
+/// 2002), those that meet merged. Strongest first.
+std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
+                                    const Camera& working_camera, int stride, const DetectionSettings& settings);
+
+/// Box by back-projection of all supporting patches (paper, Section 2), working pixels.
+cv::Rect2f backprojected_box(const Hypothesis& hypothesis, const PatchGrid& patches, int stride);
+
+/// Strongest first; a weaker one whose box overlaps a stronger one's by more than `max_overlap` (IoU) is dropped.
+std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, float max_overlap);
+
+}  // namespace houghstream

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "detector/forest.hpp"
+#include "detector/traversal.hpp"
+
+namespace houghstream {
+
+/// One vote for an object's centre in the camera frame.
+struct Vote {
+  Eigen::Vector3f centre_camera;  ///< metres
+  float weight = 0.0F;            ///< share of the patch's belief, 0 to 1
+  std::uint32_t patch = 0;        ///< into the PatchGrid
+  std::uint32_t leaf_class = 0;   ///< into Forest::leaf_classes: who cast it
+};
+
+/// The Hough space of one class: its votes in 3-D, sorted by the image cell in which their centre is seen.
+struct HoughSpace {
+  int width = 0;  ///< cells
+  int height = 0;
+  int cell_px = 0;                        ///< working pixels per cell
+  std::vector<Vote> votes;                ///< by cell, row by row; within a cell in order of patch and tree
+  std::vector<std::uint32_t> first_vote;  ///< per cell, and one more
+  std::vector<float> image;               ///< sum of weights per cell, smoothed; independent of distance, since both
+                                          ///< a patch's footprint and the spread of its votes shrink with it
+};
+
+/// Votes of all patches for one class, from classes that hold at least `min_class_share` of a patch's leaves.
+HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches,
+                      const std::vector<std::int32_t>& leaves, const Camera& working_camera,
+                      const DetectionSettings& settings);
+
+}  // namespace houghstream

@@ -1,0 +1,69 @@
+#include "drivers/bop_dataset.hpp"
+#include "drivers/json_file.hpp"
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_symmetry(const nlohmann::json& entry) {
+  for (const char* key : {"symmetries_discrete", "symmetries_continuous"}) {
+    if (entry.contains(key) && !entry.at(key).empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+fs::path BopModels::mesh_file(int object_id) const {
+  return folder / fmt::format("obj_{:06d}.ply", object_id);
+}
+
+std::map<int, std::string> read_bop_names(const fs::path& names_file) {
+  std::map<int, std::string> names;
+  for (const auto& [object_id, value] : read_json_by_id(names_file)) {
+    require(value.is_string() && !value.get<std::string>().empty(), "{}: name of object {} is {}, expected a text",
+            names_file.string(), object_id, value.dump());
+    names[object_id] = value.get<std::string>();
+  }
+  return names;
+}
+
+BopModels read_bop_models(const fs::path& models_folder) {
+  const fs::path info_file = models_folder / "models_info.json";
+  const fs::path names_file = models_folder / "names.json";
+  BopModels models;
+  models.folder = models_folder;
+  if (fs::exists(names_file)) models.names = read_bop_names(names_file);
+  for (const auto& [object_id, entry] : read_json_by_id(info_file)) {
+    const std::string where = fmt::format("{} object {}", info_file.string(), object_id);
+    const double diameter_mm = json_number(entry, "diameter", where);
+    constexpr double kLargest_mm = 1e5;
+    require(diameter_mm > 0.0 && diameter_mm < kLargest_mm, "{}: 'diameter' is {} mm, expected 0 to {}", where,
+            diameter_mm, kLargest_mm);
+    models.diameters[object_id] = diameter_mm * 1e-3;
+    models.symmetric[object_id] = has_symmetry(entry);
+    models.names.try_emplace(object_id, fmt::format("object_{}", object_id));
+  }
+  return models;
+}
+
+std::optional<fs::path> find_bop_models(const fs::path& folder) {
+  // A scene lies at most DATASET/SPLIT/SCENE deep.
+  constexpr int kLevels = 3;
+  fs::path above = fs::absolute(folder).lexically_normal();
+  if (!above.has_filename()) above = above.parent_path();
+  for (int level = 0; level <= kLevels; ++level, above = above.parent_path()) {
+    if (fs::exists(above / "models" / "models_info.json")) return above / "models";
+  }
+  return std::nullopt;
+}
+
+std::map<int, std::string> find_bop_names(const fs::path& scene_folder) {
+  if (fs::exists(scene_folder / "names.json")) return read_bop_names(scene_folder / "names.json");
+  if (const auto models = find_bop_models(scene_folder)) return read_bop_models(*models).names;
+  return {};
+}
+
+}  // namespace houghstream

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/frame.hpp"
+
+namespace houghstream {
+
+/// An image pair of a flat folder, such as the scenes of the UW RGB-D datasets.
+struct FramePair {
+  std::string name;
+  std::filesystem::path colour;  ///< NAME_color.png, NAME-color.png or NAME.png
+  std::filesystem::path depth;   ///< NAME_depth.png or NAME-depth.png, uint16 millimetres
+};
+
+/// All pairs of a folder in natural order. Throws InputError when the folder is missing or without pairs, or a
+/// picture lacks its partner.
+std::vector<FramePair> list_frame_pairs(const std::filesystem::path& folder);
+
+/// Throws InputError when the images are unreadable or their sizes disagree with each other or with the camera.
+RgbdFrame read_frame_pair(const FramePair& pair, const Camera& camera, std::int64_t utime);
+
+}  // namespace houghstream

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace houghstream {
+
+/// Keys keep the order in which they are written, so that image 10 follows image 9.
+using OrderedJson = nlohmann::ordered_json;
+
+/// Throws InputError when the file is missing or no JSON object.
+nlohmann::json read_json_object(const std::filesystem::path& file);
+
+/// The entries of an object whose keys are numbers, by number: as text, "10" comes before "9". Throws InputError as
+/// above, and where a key is no non-negative integer.
+std::map<int, nlohmann::json> read_json_by_id(const std::filesystem::path& file);
+
+/// Throws InputError when the file cannot be written.
+void write_json(const OrderedJson& json, const std::filesystem::path& file);
+
+// The functions below throw InputError naming `where` (file and entry) when the key is missing or of another type.
+
+double json_number(const nlohmann::json& object, const std::string& key, const std::string& where);
+int json_integer(const nlohmann::json& object, const std::string& key, const std::string& where);
+
+/// `count` finite numbers.
+std::vector<double> json_numbers(const nlohmann::json& object, const std::string& key, std::size_t count,
+                                 const std::string& where);
+
+}  // namespace houghstream

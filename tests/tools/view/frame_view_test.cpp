@@ -1,0 +1,58 @@
+#include "tools/view/frame_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace houghstream {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+ViewedFrame small_frame() {
+  ViewedFrame viewed;
+  viewed.frame.utime = 5;
+  viewed.frame.colour = cv::Mat(121, 161, CV_8UC3, cv::Scalar(1, 2, 3));
+  viewed.frame.depth = cv::Mat(121, 161, CV_32FC1, cv::Scalar(1.0));
+  viewed.frame.camera = Camera{161, 121, 150, 150, 80, 60};
+  viewed.detections.utime = 5;
+  return viewed;
+}
+
+TEST(FrameView, DepthIsWarmNearColdFarAndBlackWhereMissing) {
+  const cv::Mat depth = (cv::Mat_<float>(1, 3) << 0.6F, 3.2F, kNone);
+  const cv::Mat image = colour_depth(depth, 0.4F, 3.5F);
+  const auto near = image.at<cv::Vec3b>(0, 0);
+  const auto far = image.at<cv::Vec3b>(0, 1);
+  EXPECT_GT(near[2], near[0]);  // more red than blue
+  EXPECT_GT(far[0], far[2]);
+  EXPECT_EQ(image.at<cv::Vec3b>(0, 2), cv::Vec3b(0, 0, 0));
+}
+
+TEST(FrameView, PictureHoldsOverlayDepthAndPanelAndIsEven) {
+  const cv::Mat with_depth = draw_frame_view(small_frame(), {}, {});
+  EXPECT_EQ(with_depth.cols, 322);
+  EXPECT_EQ(with_depth.rows % 2, 0);
+  EXPECT_GT(with_depth.rows, 121);
+  EXPECT_EQ(with_depth.at<cv::Vec3b>(60, 60), cv::Vec3b(1, 2, 3));
+  FrameViewSettings without;
+  without.show_depth = false;
+  EXPECT_EQ(draw_frame_view(small_frame(), {}, without).cols, 162);
+}
+
+TEST(FrameView, StageTimesAndLatencyAreDrawn) {
+  ViewedFrame viewed = small_frame();
+  viewed.frame.colour = cv::Mat(121, 640, CV_8UC3, cv::Scalar(1, 2, 3));
+  viewed.frame.depth = cv::Mat(121, 640, CV_32FC1, cv::Scalar(1.0));
+  viewed.frame.camera = Camera{640, 121, 150, 150, 80, 60};
+  const cv::Mat plain = draw_frame_view(viewed, {}, {});
+  viewed.detections.stages = {{"detect.forest", 5000}, {"detect.voting", 2000}};
+  const cv::Mat with_stages = draw_frame_view(viewed, {}, {});
+  viewed.detect_latency_ms = 12.5;
+  const cv::Mat with_latency = draw_frame_view(viewed, {}, {});
+  EXPECT_GT(cv::norm(plain, with_stages, cv::NORM_L1), 0.0);
+  EXPECT_GT(cv::norm(with_stages, with_latency, cv::NORM_L1), 0.0);
+}
+
+}  // namespace
+}  // namespace houghstream

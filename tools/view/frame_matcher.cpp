@@ -1,0 +1,66 @@
+#include "tools/view/frame_matcher.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+
+FrameMatcher::FrameMatcher(MatchSettings settings) : settings_(settings) {
+  require(settings.rate_hz > 0.0 && settings.rate_hz <= 1000.0, "drawing rate of {} Hz, expected above 0 to 1000",
+          settings.rate_hz);
+}
+
+void FrameMatcher::add_frame(std::vector<std::uint8_t> bytes, std::int64_t utime, std::int64_t now_us) {
+  if (!first_arrival_us_) first_arrival_us_ = now_us;
+  MatchedFrame& frame = waiting_[utime];
+  frame = MatchedFrame();
+  frame.frame_bytes = std::move(bytes);
+  frame.utime = utime;
+  frame.arrival_us = now_us;
+  const double seconds = static_cast<double>(now_us - *first_arrival_us_) * 1e-6;
+  frame.slot = static_cast<std::int64_t>(std::floor(seconds * settings_.rate_hz));
+}
+
+void FrameMatcher::add_detections(Detections detections, std::int64_t now_us) {
+  last_detections_us_ = now_us;
+  const auto found = waiting_.find(detections.utime);
+  if (found == waiting_.end()) return;
+  found->second.detect_latency_ms = static_cast<double>(now_us - found->second.arrival_us) * 1e-3;
+  found->second.detections = std::move(detections);
+}
+
+void FrameMatcher::add_poses(ObjectPoses poses, std::int64_t now_us) {
+  last_poses_us_ = now_us;
+  const auto found = waiting_.find(poses.utime);
+  if (found == waiting_.end()) return;
+  found->second.pose_latency_ms = static_cast<double>(now_us - found->second.arrival_us) * 1e-3;
+  found->second.poses = std::move(poses);
+}
+
+bool FrameMatcher::ready(const MatchedFrame& frame, std::int64_t now_us) const {
+  if (frame.detections && frame.poses) return true;
+  if (now_us - frame.arrival_us < settings_.wait_us) return false;
+  const auto silent = [&](std::int64_t last_us) { return last_us < 0 || now_us - last_us > settings_.wait_us; };
+  return frame.detections ? silent(last_poses_us_) : silent(last_detections_us_);
+}
+
+std::optional<MatchedFrame> FrameMatcher::next(std::int64_t now_us) {
+  for (auto it = waiting_.begin(); it != waiting_.end();) {
+    const bool late = it->second.slot <= last_slot_ || now_us - it->second.arrival_us > settings_.kept_us;
+    it = late ? waiting_.erase(it) : std::next(it);
+  }
+  const MatchedFrame* earliest = nullptr;
+  for (const auto& [utime, frame] : waiting_) {
+    if (ready(frame, now_us) && (earliest == nullptr || frame.arrival_us < earliest->arrival_us)) earliest = &frame;
+  }
+  if (earliest == nullptr) return std::nullopt;
+  last_slot_ = earliest->slot;
+  const auto found = waiting_.find(earliest->utime);
+  std::optional<MatchedFrame> result = std::move(found->second);
+  waiting_.erase(found);
+  return result;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "pipeline/detection.hpp"
+#include "pipeline/object_pose.hpp"
+
+namespace houghstream {
+
+/// How frames wait for their results.
+struct MatchSettings {
+  double rate_hz = 10.0;             ///< at most so many frames a second are handed out
+  std::int64_t wait_us = 500'000;    ///< a frame whose results are not complete after this is not waited for
+  std::int64_t kept_us = 3'000'000;  ///< a frame is forgotten after this
+};
+
+/// A frame as it came off the bus, with what was published about it.
+struct MatchedFrame {
+  std::vector<std::uint8_t> frame_bytes;  ///< the encoded images_t; decoded only when drawn
+  std::int64_t utime = 0;                 ///< of the frame
+  std::int64_t arrival_us = 0;            ///< when the frame arrived, local clock
+  std::int64_t slot = 0;                  ///< arrival in units of 1/rate_hz since the first frame
+  std::optional<Detections> detections;
+  std::optional<ObjectPoses> poses;
+  double detect_latency_ms = 0.0;  ///< from arrival of the frame; meaningless without detections
+  double pose_latency_ms = 0.0;    ///< from arrival of the frame; meaningless without poses
+};
+
+/// Joins frames with their detections and poses by utime. Times are handed in, in microseconds of one clock.
+class FrameMatcher {
+ public:
+  explicit FrameMatcher(MatchSettings settings);
+
+  void add_frame(std::vector<std::uint8_t> bytes, std::int64_t utime, std::int64_t now_us);
+  void add_detections(Detections detections, std::int64_t now_us);
+  void add_poses(ObjectPoses poses, std::int64_t now_us);
+
+  /// The next frame worth drawing, in order of arrival, at most `rate_hz` a second: one with poses as soon as these
+  /// are there; one with detections only, or with nothing, when no poses or no results at all have come for as
+  /// long as `wait_us`.
+  std::optional<MatchedFrame> next(std::int64_t now_us);
+
+ private:
+  bool ready(const MatchedFrame& frame, std::int64_t now_us) const;
+
+  MatchSettings settings_;
+  std::map<std::int64_t, MatchedFrame> waiting_;  ///< by utime
+  std::optional<std::int64_t> first_arrival_us_;
+  std::int64_t last_slot_ = -1;
+  std::int64_t last_detections_us_ = -1;  ///< when detections last came; -1 = never
+  std::int64_t last_poses_us_ = -1;       ///< when poses last came; -1 = never
+};
+
+}  // namespace houghstream

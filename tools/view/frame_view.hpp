@@ -1,0 +1,33 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "tools/view/overlay.hpp"
+
+namespace houghstream {
+
+/// One frame with everything that the bus said about it.
+struct ViewedFrame {
+  RgbdFrame frame;
+  Detections detections;
+  std::optional<ObjectPoses> poses;         ///< nothing where no pose process answered
+  std::optional<double> detect_latency_ms;  ///< from the arrival of the frame to that of its detections
+  std::optional<double> pose_latency_ms;    ///< from the arrival of the frame to that of its poses
+};
+
+/// What the picture shows beside the overlay.
+struct FrameViewSettings {
+  bool show_depth = true;   ///< depth, colour-mapped, to the right
+  float depth_near = 0.4F;  ///< metres, red end of the colour map
+  float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue
+};
+
+/// Depth (CV_32FC1, metres) as BGR: near is warm, far is cold, no measurement is black.
+cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
+
+/// The whole picture, CV_8UC3: overlay, depth beside it, and below them latency and stage times. Its size is even in
+/// both directions, as video encoders want. Throws InputError as draw_overlay does.
+cv::Mat draw_frame_view(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings);
+
+}  // namespace houghstream

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
+
+namespace houghstream {
+
+/// Writes an MP4 with H.264, which every browser plays, at a constant rate. A picture belongs to a slot of
+/// 1/rate seconds; a slot without a picture repeats the one before, so that the video lasts as long as the stream did.
+class VideoFile {
+ public:
+  VideoFile(std::filesystem::path file, double rate_hz);
+
+  /// Slots must grow. All pictures have the size of the first, even in both directions; throws InputError when the
+  /// file cannot be written.
+  void add(const cv::Mat& picture, std::int64_t slot);
+
+  std::int64_t frames_written() const { return frames_written_; }
+
+ private:
+  void open(const cv::Mat& picture);
+
+  std::filesystem::path file_;
+  double rate_hz_;
+  cv::VideoWriter writer_;
+  cv::Mat last_;
+  std::int64_t first_slot_ = 0;
+  std::int64_t frames_written_ = 0;
+};
+
+}  // namespace houghstream
