@@ -27,13 +27,14 @@ struct WireFormat {
 /// `sequence` counts the source's frames from 0, so that receivers can tell lost ones.
 houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence);
 
-/// Finds colour and depth by type, decodes them and checks sizes. The camera comes from the metadata, else from
-/// `fallback_camera`, else the frame is refused.
+/// Finds colour (LEFT: RGB, BGR, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them and
+/// checks sizes. The camera comes from the metadata, else from `fallback_camera`, else the frame is refused.
 RgbdFrame frame_from_message(const houghstream::images_t& message, const std::optional<Camera>& fallback_camera);
 
 /// The source's frame counter, if the message carries one.
 std::optional<std::int64_t> sequence_of(const houghstream::images_t& message);
 
+/// Keeps the first detection_t::MAX_VOTES rotations of each detection.
 houghstream::detections_t to_message(const Detections& detections);
 Detections detections_from_message(const houghstream::detections_t& message);
 

@@ -1,0 +1,37 @@
+#include "pipeline/receive_buffer.hpp"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace houghstream {
+
+std::string with_receive_buffer(const std::string& url) {
+  const bool is_udpm = url.rfind("udpm://", 0) == 0;
+  if (!is_udpm || url.find("recv_buf_size=") != std::string::npos) return url;
+  const char separator = url.find('?') == std::string::npos ? '?' : '&';
+  return fmt::format("{}{}recv_buf_size={}", url, separator, kAskedReceiveBuffer);
+}
+
+std::int64_t granted_receive_buffer(std::int64_t asked) {
+  // LCM keeps its socket to itself, so another one is asked for the same.
+  const int socket_fd = socket(AF_INET, SOCK_DGRAM, 0);
+  if (socket_fd < 0) return 0;
+  const int wanted = static_cast<int>(asked);
+  int granted = 0;
+  socklen_t size = sizeof(granted);
+  setsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof(wanted));
+  const bool known = getsockopt(socket_fd, SOL_SOCKET, SO_RCVBUF, &granted, &size) == 0;
+  close(socket_fd);
+  return known ? granted / 2 : 0;  // Linux doubles what was asked for, to pay for its bookkeeping: socket(7)
+}
+
+std::string receive_buffer_advice(std::int64_t granted) {
+  if (granted >= kNeededReceiveBuffer) return "";
+  return fmt::format(
+      "receive buffer of {} kB granted, {} kB needed, or frames are lost silently; mend it with: "
+      "sudo sysctl -w net.core.rmem_max={} net.core.rmem_default={}",
+      granted / 1024, kNeededReceiveBuffer / 1024, kAskedReceiveBuffer, kNeededReceiveBuffer);
+}
+
+}  // namespace houghstream

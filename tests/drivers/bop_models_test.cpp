@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include "drivers/bop_dataset.hpp"
+#include "drivers/bop_writer.hpp"
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A tetrahedron with corners at the origin and 0.1 m along each axis.
+Mesh tetrahedron() {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}, {0, 0, 0.1F}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return mesh;
+}
+
+fs::path write_models(const std::string& name) {
+  const fs::path folder = fresh_folder(name);
+  write_bop_models({{1, "bowl", tetrahedron(), true}, {12, "mug", tetrahedron(), false}}, folder / "models");
+  return folder;
+}
+
+TEST(BopModels, WhatIsWrittenIsReadBack) {
+  const BopModels models = read_bop_models(write_models("models") / "models");
+  EXPECT_EQ(models.names, (std::map<int, std::string>{{1, "bowl"}, {12, "mug"}}));
+  EXPECT_NEAR(models.diameters.at(12), 0.1 * std::sqrt(2.0), 1e-6);
+  EXPECT_TRUE(models.symmetric.at(1));
+  EXPECT_FALSE(models.symmetric.at(12));
+  EXPECT_EQ(load_mesh(models.mesh_file(12)).triangles.size(), 4U);
+}
+
+TEST(BopModels, WithoutNamesObjectsAreNumbered) {
+  const fs::path folder = write_models("models_unnamed") / "models";
+  fs::remove(folder / "names.json");
+  EXPECT_EQ(read_bop_models(folder).names.at(12), "object_12");
+}
+
+TEST(BopModels, AreFoundAboveASceneAndItsOwnNamesComeFirst) {
+  const fs::path folder = write_models("models_above");
+  const fs::path scene = folder / "test" / "000001";
+  fs::create_directories(scene);
+  ASSERT_TRUE(find_bop_models(scene).has_value());
+  EXPECT_EQ(find_bop_names(scene).at(1), "bowl");
+  EXPECT_EQ(find_bop_names(fs::path(scene.string() + "/")).at(1), "bowl");
+  write_bop_names({{1, "cup"}}, scene / "names.json");
+  EXPECT_EQ(find_bop_names(scene).at(1), "cup");
+  EXPECT_TRUE(find_bop_names(fresh_folder("models_none")).empty());
+}
+
+TEST(BopModels, BadFilesAreRefused) {
+  EXPECT_THROW(read_bop_models(fresh_folder("models_missing")), InputError);
+  const fs::path folder = write_models("models_bad") / "models";
+  const std::string info = read_text(folder / "models_info.json");
+  replace_in_file(folder / "models_info.json", "\"diameter\": ", "\"diameter\": -");
+  EXPECT_THROW(read_bop_models(folder), InputError);
+  write_text(folder / "models_info.json", info.substr(0, info.size() / 2));
+  EXPECT_THROW(read_bop_models(folder), InputError) << "cut short";
+  write_text(folder / "models_info.json", info);
+  EXPECT_NO_THROW(read_bop_models(folder));
+  write_text(folder / "names.json", R"({"1": 5})");
+  EXPECT_THROW(read_bop_models(folder), InputError);
+  EXPECT_THROW(write_bop_models({{1, "empty", Mesh(), false}}, folder), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,90 @@
+#include "drivers/frame_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include "drivers/bop_dataset.hpp"
+#include "drivers/bop_writer.hpp"
+#include "drivers/image_file.hpp"
+#include "drivers/natural_order.hpp"
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kCameraText = ",64x48,60,61,31.5,23.5";
+
+/// Frames desk_1_9 and desk_1_28, whose colour is `9` and `28`.
+fs::path write_uw_folder(const std::string& name, const std::string& colour_end) {
+  const fs::path folder = fresh_folder(name);
+  for (const int number : {28, 9}) {
+    const std::string stem = "desk_1_" + std::to_string(number);
+    write_png(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(number)), folder / (stem + colour_end));
+    write_png(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1500)), folder / (stem + "_depth.png"));
+  }
+  return folder;
+}
+
+TEST(NaturalOrder, NumbersCompareAsNumbers) {
+  EXPECT_TRUE(natural_less("desk_1_9", "desk_1_28"));
+  EXPECT_FALSE(natural_less("desk_1_28", "desk_1_9"));
+  EXPECT_TRUE(natural_less("a", "b"));
+  EXPECT_TRUE(natural_less("a", "a1"));
+  EXPECT_TRUE(natural_less("00009", "00010"));
+  EXPECT_FALSE(natural_less("a1", "a1"));
+  EXPECT_NE(natural_less("a01", "a1"), natural_less("a1", "a01")) << "a strict order, equal only when equal";
+}
+
+TEST(FrameSource, BopGivesItsFramesAndEnds) {
+  const fs::path folder = fresh_folder("source_bop");
+  BopWriter writer(folder);
+  writer.add(plain_frame(), {}, {});
+  writer.add(plain_frame(), {}, {});
+  writer.finish();
+  const auto source = open_frame_source("bop:" + folder.string());
+  EXPECT_EQ(source->rate_hz(), 30.0);
+  EXPECT_EQ(source->next()->utime, dataset_utime(0));
+  EXPECT_EQ(source->next()->utime, dataset_utime(1));
+  EXPECT_FALSE(source->next().has_value());
+  EXPECT_FALSE(source->next().has_value());
+}
+
+TEST(FrameSource, UwFramesComeInNaturalOrder) {
+  for (const std::string end : {"_color.png", ".png"}) {
+    const auto source = open_frame_source("uw:" + write_uw_folder("source_uw", end).string() + kCameraText);
+    const auto first = source->next();
+    ASSERT_TRUE(first.has_value());
+    EXPECT_EQ(first->colour.at<cv::Vec3b>(0, 0)[0], 9);
+    EXPECT_FLOAT_EQ(first->depth.at<float>(0, 0), 1.5F);
+    EXPECT_EQ(first->camera.fx, 60.0);
+    EXPECT_EQ(source->next()->colour.at<cv::Vec3b>(0, 0)[0], 28);
+    EXPECT_FALSE(source->next().has_value());
+  }
+}
+
+TEST(FrameSource, BadSpecificationsAreRefused) {
+  for (const std::string text : {"", "bop", "bop:", "nothing:x", "bop:/no/such/folder", "uw:/no/such/folder"}) {
+    EXPECT_THROW(open_frame_source(text), InputError) << text;
+  }
+  const std::string folder = write_uw_folder("source_camera", ".png").string();
+  EXPECT_THROW(open_frame_source("uw:" + folder + ",64x48"), InputError);
+}
+
+TEST(FrameSource, BadUwFoldersAreRefused) {
+  EXPECT_THROW(open_frame_source("uw:" + fresh_folder("source_empty").string()), InputError);
+  const fs::path no_depth = write_uw_folder("source_no_depth", "_color.png");
+  fs::remove(no_depth / "desk_1_9_depth.png");
+  EXPECT_THROW(open_frame_source("uw:" + no_depth.string()), InputError);
+  const fs::path no_colour = write_uw_folder("source_no_colour", ".png");
+  fs::remove(no_colour / "desk_1_9.png");
+  EXPECT_THROW(open_frame_source("uw:" + no_colour.string()), InputError);
+  const fs::path other_size = write_uw_folder("source_size", ".png");
+  EXPECT_THROW(open_frame_source("uw:" + other_size.string())->next(), InputError) << "not 640x480";
+  write_text(other_size / "desk_1_9.png", "no image");
+  EXPECT_THROW(open_frame_source("uw:" + other_size.string() + kCameraText)->next(), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

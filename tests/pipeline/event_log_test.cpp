@@ -1,0 +1,102 @@
+#include "pipeline/event_log.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <lcm/lcm-cpp.hpp>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+class EventLogFile : public testing::Test {
+ protected:
+  EventLogFile() : file_(std::filesystem::temp_directory_path() / ("event_log_test." + std::to_string(getpid()))) {}
+  ~EventLogFile() override { std::filesystem::remove(file_); }
+
+  void write_three() const {
+    LogWriter writer(file_);
+    for (std::int64_t i = 0; i < 3; ++i) {
+      const std::vector<std::uint8_t> data(10, static_cast<std::uint8_t>(i));
+      writer.write(1000 + i, "CHANNEL", {data.data(), data.size()});
+    }
+    writer.close();
+  }
+
+  const std::filesystem::path file_;
+};
+
+std::string refusal_after(const std::filesystem::path& file, int good_events) {
+  try {
+    LogReader reader(file);
+    for (int i = 0; i < good_events; ++i) EXPECT_TRUE(reader.next().has_value());
+    reader.next();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "a damaged log was read to its end";
+  return "";
+}
+
+TEST_F(EventLogFile, IsReadByLcm) {
+  write_three();
+  lcm::LogFile log(file_.string(), "r");
+  ASSERT_TRUE(log.good());
+  for (int i = 0; i < 3; ++i) {
+    const lcm::LogEvent* event = log.readNextEvent();
+    ASSERT_NE(event, nullptr);
+    EXPECT_EQ(event->eventnum, i);
+    EXPECT_EQ(event->timestamp, 1000 + i);
+    EXPECT_EQ(event->channel, "CHANNEL");
+    ASSERT_EQ(event->datalen, 10);
+    EXPECT_EQ(static_cast<const std::uint8_t*>(event->data)[9], i);
+  }
+  EXPECT_EQ(log.readNextEvent(), nullptr);
+}
+
+TEST_F(EventLogFile, IsReadBack) {
+  write_three();
+  LogReader reader(file_);
+  for (int i = 0; i < 3; ++i) {
+    const std::optional<LogEvent> event = reader.next();
+    ASSERT_TRUE(event.has_value());
+    EXPECT_EQ(event->timestamp, 1000 + i);
+    EXPECT_EQ(event->channel, "CHANNEL");
+    EXPECT_EQ(event->data, std::vector<std::uint8_t>(10, static_cast<std::uint8_t>(i)));
+  }
+  EXPECT_FALSE(reader.next().has_value());
+}
+
+TEST_F(EventLogFile, ACutLogIsReportedNotEnded) {
+  write_three();
+  const auto size = std::filesystem::file_size(file_);
+  std::filesystem::resize_file(file_, size - 4);
+  EXPECT_NE(refusal_after(file_, 2).find("cut in event 2"), std::string::npos);
+  std::filesystem::resize_file(file_, size - 20);
+  EXPECT_NE(refusal_after(file_, 2).find("cut"), std::string::npos);
+}
+
+TEST_F(EventLogFile, ADamagedLogIsReported) {
+  write_three();
+  {
+    std::fstream log(file_, std::ios::in | std::ios::out | std::ios::binary);
+    log.seekp(45);  // the second event's sync word
+    log.put('x');
+  }
+  EXPECT_NE(refusal_after(file_, 1).find("no event header at byte 45"), std::string::npos);
+}
+
+TEST_F(EventLogFile, FilesThatAreNoLogsAreRefused) {
+  EXPECT_THROW(LogReader(file_ / "missing"), InputError);
+  EXPECT_THROW(LogWriter(file_ / "missing" / "too"), InputError);
+  std::ofstream(file_).close();
+  EXPECT_THROW(LogReader{file_}, InputError);
+  std::ofstream(file_) << "this is a text file, and certainly not a log";
+  EXPECT_NE(refusal_after(file_, 0).find("no event header"), std::string::npos);
+  EXPECT_THROW(LogReader{std::filesystem::temp_directory_path()}, InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,28 @@
+#include "pipeline/receive_buffer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+TEST(ReceiveBuffer, IsAskedForWhereTheUrlDoesNot) {
+  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667?ttl=0"),
+            "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=16777216");
+  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667"), "udpm://239.255.76.67:7667?recv_buf_size=16777216");
+  EXPECT_EQ(with_receive_buffer("udpm://?recv_buf_size=5"), "udpm://?recv_buf_size=5");
+  EXPECT_EQ(with_receive_buffer("memq://"), "memq://");
+}
+
+TEST(ReceiveBuffer, SmallRequestsAreGranted) {
+  EXPECT_EQ(granted_receive_buffer(65536), 65536);
+}
+
+TEST(ReceiveBuffer, TooLittleComesWithTheLineThatMendsIt) {
+  EXPECT_EQ(receive_buffer_advice(kNeededReceiveBuffer), "");
+  const std::string advice = receive_buffer_advice(212992);
+  EXPECT_NE(advice.find("208 kB"), std::string::npos) << advice;
+  EXPECT_NE(advice.find("sudo sysctl -w net.core.rmem_max=16777216"), std::string::npos) << advice;
+}
+
+}  // namespace
+}  // namespace houghstream

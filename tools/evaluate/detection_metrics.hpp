@@ -1,0 +1,72 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/evaluate/evaluated_frame.hpp"
+
+namespace houghstream {
+
+/// What counts as found (Haensch et al. 2017, Section 4, after Everingham et al. 2010).
+struct DetectionRules {
+  double min_iou = 0.5;      ///< overlap of the detected with the true visible box
+  double min_visible = 0.1;  ///< objects less visible than this are neither required nor false
+  int max_per_class = 250;   ///< strongest detections of a class in a frame that count
+};
+
+enum class Verdict { kTrue, kFalse, kIgnored };
+
+/// One detection of one class, judged.
+struct JudgedDetection {
+  std::size_t frame = 0;  ///< in the evaluated frames
+  std::size_t index = 0;  ///< in the frame's detections
+  float score = 0.0F;
+  Verdict verdict = Verdict::kFalse;
+  std::size_t object = 0;  ///< in the frame's objects; only meaningful where true
+};
+
+/// Judges all detections of a class, strongest first over all frames (ties by frame, then index). A detection is true
+/// when it overlaps a required object that no stronger detection has taken (the one of largest overlap); repeated
+/// detections are false; one that overlaps only an object less visible than required is ignored.
+std::vector<JudgedDetection> judge_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+                                              const DetectionRules& rules);
+
+/// Objects of the class that are visible enough to be required.
+int count_required(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+                   const DetectionRules& rules);
+
+struct CurvePoint {
+  float score = 0.0F;
+  double precision = 0.0;
+  double recall = 0.0;
+};
+
+/// One point per detection that counts.
+std::vector<CurvePoint> precision_recall_curve(const std::vector<JudgedDetection>& judged, int required);
+
+/// Area under the precision/recall curve, un-interpolated: the sum of the precision at each true positive over the
+/// number of required objects, so that missed recall counts 0 (average precision as in Buckley & Voorhees 2000).
+/// `required` > 0.
+double average_precision(const std::vector<JudgedDetection>& judged, int required);
+
+/// How one class was detected.
+struct ClassResult {
+  std::string class_name;
+  int required = 0;
+  double auc = 0.0;  ///< NaN where no object is required
+  std::vector<JudgedDetection> judged;
+  std::vector<CurvePoint> curve;
+};
+ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+                           const DetectionRules& rules);
+
+/// Mean AUC over the classes that appear, each counting once; NaN where none appears.
+double mean_auc(const std::vector<ClassResult>& classes);
+
+/// Mean AUC weighted by the number of required objects; NaN where none appears.
+double weighted_auc(const std::vector<ClassResult>& classes);
+
+/// Detections of verdict `verdict` with at least `min_score`.
+int count_verdicts(const ClassResult& result, Verdict verdict, float min_score);
+
+}  // namespace houghstream

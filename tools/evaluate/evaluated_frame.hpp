@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/bop_dataset.hpp"
+#include "pipeline/detection.hpp"
+#include "pipeline/object_pose.hpp"
+
+namespace houghstream {
+
+/// A true object with the name by which results are compared: ids differ between a scene and a forest.
+struct NamedObject {
+  std::string class_name;
+  TrueObject truth;
+};
+
+/// One frame of a scene: the truth beside what was published for it.
+struct EvaluatedFrame {
+  std::int64_t utime = 0;
+  std::vector<NamedObject> objects;
+  std::optional<Detections> detections;  ///< nothing where the frame was skipped or lost
+  std::optional<ObjectPoses> poses;      ///< likewise
+};
+
+/// The truth of a scene, frame by frame, with the utimes of its frames. Objects without a name are "object_N".
+std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int, std::string>& names);
+
+/// Puts results beside the truth of the same utime. Throws InputError naming `source` for a result of an unknown
+/// frame, a second result of one frame, and poses whose detection does not exist.
+void add_detections(std::vector<EvaluatedFrame>& frames, const std::vector<Detections>& results,
+                    const std::string& source);
+void add_poses(std::vector<EvaluatedFrame>& frames, const std::vector<ObjectPoses>& results, const std::string& source);
+
+/// Only the frames that have detections.
+std::vector<EvaluatedFrame> processed_frames(const std::vector<EvaluatedFrame>& frames);
+
+}  // namespace houghstream

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pipeline/camera.hpp"
+
+namespace houghstream {
+
+/// Turns SOURCE/boxes.json with SOURCE/FRAME_color.png and FRAME_depth.png into a BOP scene whose objects have boxes
+/// only: scene_gt.json without poses, scene_gt_info.json with visib_fract 1, names.json with ids in the order of the
+/// names. boxes.json: {"image_size": [w,h], "camera": {fx,fy,cx,cy}, "frames": [{"frame": NAME, "objects": [{"object":
+/// NAME, "bbox_xyxy": [x0,y0,x1,y1]}]}]}. Returns the number of frames. Throws InputError.
+int import_boxes(const std::filesystem::path& source, const std::filesystem::path& scene_folder);
+
+/// Turns a folder of NAME_color.png (or NAME.png) and NAME_depth.png into a BOP scene without objects, in natural
+/// order. Returns the number of frames. Throws InputError.
+int import_frames(const std::filesystem::path& source, const Camera& camera, const std::filesystem::path& scene_folder);
+
+}  // namespace houghstream
