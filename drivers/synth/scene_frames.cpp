@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "drivers/synth/depth_sensor.hpp"
-#include "drivers/synth/objects.hpp"
 #include "drivers/synth/photo.hpp"
 
 namespace houghstream {
@@ -32,7 +32,7 @@ void add_truth(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_worl
                SceneFrame& result) {
   for (std::size_t i = 0; i < lit_world.world.items.size(); ++i) {
     const Placed& placed = lit_world.world.items[i];
-    if (placed.object_id < 1 || placed.object_id > kClassCount) continue;
+    if (placed.object_id == 0) continue;
     const cv::Mat mask = ids == static_cast<double>(i + 1);
     const int visible = cv::countNonZero(mask);
     if (visible < kLeastVisiblePx) continue;

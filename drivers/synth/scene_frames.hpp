@@ -12,7 +12,7 @@ namespace houghstream {
 /// The camera of everything rendered: 640x480, as the usual structured-light cameras.
 Camera synthetic_camera();
 
-/// A rendered frame with the truth about the taught objects (ids 1-4) in it.
+/// A rendered frame with the truth about the taught objects in it.
 struct SceneFrame {
   RgbdFrame frame;
   std::vector<TrueObject> objects;     ///< by id; those of which enough is seen

@@ -1,5 +1,6 @@
 #include "drivers/synth/thing.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 

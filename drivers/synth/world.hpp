@@ -13,7 +13,7 @@ namespace houghstream {
 struct Placed {
   ThingPtr thing;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  int object_id = 0;         ///< TaughtObject::id, 0 for everything else
+  int object_id = 0;         ///< TaughtObject::id where the truth is to name it, else 0
   bool casts_shadow = true;  ///< false for walls: lamps may stand behind them
 };
 
