@@ -45,7 +45,7 @@ ThingPtr make_chair(Random& random) {
   const cv::Mat frame = wood_or_paint(random);
   const cv::Mat seat = fabric({256, 256}, paint(random), random);
   std::vector<Part> parts = {at(box({0.44, 0.42, 0.05}, seat), {0, 0, 0.45}),
-                             at(box({0.42, 0.03, 0.36}, seat), {0, 0.2, 0.8})};
+                             at(box({0.42, 0.04, 0.36}, seat), {0, 0.19, 0.8})};
   for (const double x : {-0.19, 0.19}) {
     parts.push_back(at(box({0.03, 0.03, 0.43}, frame), {x, -0.18, 0.215}));
     parts.push_back(at(box({0.03, 0.03, 0.95}, frame), {x, 0.2, 0.475}));
