@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "pipeline/detection.hpp"
+#include "pipeline/frame.hpp"
+#include "pose/object_model.hpp"
+#include "pose/pose_settings.hpp"
+#include "pose/rotation_clusters.hpp"
+
+namespace houghstream {
+
+/// A place to start registration from.
+struct PoseCandidate {
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+  float score = 0.0F;  ///< DepthScore::value
+};
+
+/// Tries each rotation at places about the detected centre, moved along the optical axis onto the measured surface;
+/// gives the best place of each rotation, best first, at most SearchSettings::keep.
+std::vector<PoseCandidate> place_candidates(const RgbdFrame& frame, const ObjectModel& model,
+                                            const Eigen::Vector3f& centre_camera,
+                                            const std::vector<RotationCandidate>& rotations,
+                                            const PoseSettings& settings);
+
+}  // namespace houghstream

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "pipeline/frame.hpp"
+#include "pose/object_model.hpp"
+#include "pose/pose_settings.hpp"
+
+namespace houghstream {
+
+/// How the measured depth speaks for a pose, judged at the visible points of the model.
+struct DepthScore {
+  float agreeing = 0.0F;   ///< fraction of the points where measured and model depth agree
+  float violating = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
+  float value = 0.0F;      ///< (agreeing - violating) times the view's silhouette: explained minus contradicted area
+};
+
+/// Judges the first `points` points of the view nearest to the pose. Points behind what was measured (occluded),
+/// without depth, or outside the image speak neither way.
+DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points, const DepthTolerance& tolerance);
+
+/// The shift along the optical axis, within `reach` metres, that makes most visible points agree; 0 if none does.
+double best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                        int points, double reach, const DepthTolerance& tolerance);
+
+}  // namespace houghstream

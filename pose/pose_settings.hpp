@@ -1,0 +1,89 @@
+#pragma once
+
+namespace houghstream {
+
+/// Which code registers a candidate to the measured depth.
+enum class Registration {
+  kProjective,  ///< ours: visible model points against the organised depth image
+  kPcl,         ///< pcl::IterativeClosestPoint with point-to-plane estimation, the reference
+};
+
+/// What is kept of a model: for view directions spread over the sphere, points that are visible from there.
+struct ModelSettings {
+  int views_per_edge = 4;        ///< each edge of an icosahedron in so many parts: 10 n^2 + 2 directions
+  int points_per_view = 600;     ///< at most
+  double view_distance_m = 1.2;  ///< from the model's centre
+  int pixels_per_diameter = 72;  ///< of the pictures from which visible points are drawn
+  double least_facing = 0.15;    ///< cosine between normal and line of sight below which a point is too grazing
+};
+
+/// Standard deviation of measured depth, base + per_m * z^2: a structured-light camera's disparity error
+/// (Khoshelham & Elberink 2012, 1.4 mm at 1 m) over what registration of depth to colour adds.
+struct DepthNoise {
+  double base_m = 0.001;
+  double per_m = 0.00143;  ///< 1/m
+  double sigma(double z) const { return base_m + per_m * z * z; }
+};
+
+/// Measured and model depth agree when they differ by no more than this.
+struct DepthTolerance {
+  double base_m = 0.0;
+  DepthNoise noise;
+  double at(double z) const { return base_m + 3.0 * noise.sigma(z); }
+};
+
+/// The detection's part of the depth image.
+struct RegionSettings {
+  double enlarge = 0.15;        ///< of the box's size, on each side
+  double gate_margin_m = 0.06;  ///< depth farther from the centre than the model's radius plus this is not the object
+  int min_points = 60;          ///< pixels with depth inside the gate
+};
+
+/// Candidates from the votes.
+struct InitialSettings {
+  double cluster_radius_deg = 25.0;
+  int clusters = 6;         ///< at most
+  int turned_clusters = 1;  ///< of the heaviest also turned by quarters about the object's z axis
+};
+
+/// Coarse choice by depth score: each rotation at several places, the best go to registration.
+struct SearchSettings {
+  double step_m = 0.012;      ///< between places across the line of sight
+  int steps = 1;              ///< to each side
+  int points = 80;            ///< of a view
+  int keep = 3;               ///< candidates that are registered
+  double tolerance_m = 0.02;  ///< measured and model depth agree; 3 sigma is added
+};
+
+/// Point-to-plane registration with Tukey's weights (Rusinkiewicz & Levoy 2001).
+struct RegistrationSettings {
+  Registration method = Registration::kProjective;
+  int coarse_iterations = 8;
+  int coarse_points = 120;
+  int fine_iterations = 10;
+  int fine_points = 400;
+  double start_distance_m = 0.035;  ///< pairs farther apart have no weight; shrinks with every iteration
+  double end_distance_m = 0.008;    ///< 3 sigma is added
+  double point_weight = 0.1;        ///< of the distance along the surface beside that across it
+  double converged_m = 0.0005;      ///< last step moved the model's surface by less
+};
+
+/// Comparison of the rendered model with the measured depth.
+struct VerificationSettings {
+  double tolerance_m = 0.008;         ///< measured and model depth agree; 3 sigma is added
+  double min_visible_fraction = 0.2;  ///< agreeing of all rendered pixels
+  double max_violation = 0.35;        ///< of the agreeing and violating pixels, those that violate free space
+};
+
+struct PoseSettings {
+  ModelSettings model;
+  DepthNoise noise;
+  RegionSettings region;
+  InitialSettings initial;
+  SearchSettings search;
+  RegistrationSettings registration;
+  VerificationSettings verification;
+  int threads = 1;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,179 @@
+#include "pose/pose_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "pipeline/checks.hpp"
+#include "tests/pose/test_scene.hpp"
+
+namespace houghstream {
+namespace {
+
+using namespace test_scene;
+
+/// The object standing on a table at z = `foot` of its own frame.
+struct StandingScene {
+  Mesh object;
+  Mesh ground = table();
+  Eigen::Isometry3d truth;
+  RgbdFrame frame;
+
+  StandingScene(Mesh mesh, double foot, const Eigen::Isometry3d& pose, std::uint64_t seed)
+      : object(std::move(mesh)), truth(pose) {
+    frame = noisy_frame({{&object, truth, 1}, {&ground, truth * Eigen::Translation3d(0, 0, foot), 2}}, seed);
+  }
+};
+
+PoseEstimator estimator_for(const std::string& name, const Mesh& mesh, PoseSettings settings = {}) {
+  return PoseEstimator({{name, mesh}}, settings);
+}
+
+Detections only(const Detection& detection) {
+  Detections detections;
+  detections.utime = 1000;
+  detections.detections = {detection};
+  return detections;
+}
+
+/// ADD-S less what the sampling of the surface adds.
+double error_of(const StandingScene& scene, const ObjectPose& pose) {
+  return add_s(scene.object, scene.truth, *pose.T_camera_object) - add_s(scene.object, scene.truth, scene.truth);
+}
+
+TEST(PoseEstimator, KnownPosesComeBackFromVotesWithOutliers) {
+  const PoseEstimator estimator({{"box", cereal_box()}, {"mug", mug()}}, PoseSettings());
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Isometry3d pose = standing(40.0 * i + 20.0, 25.0 + 3.0 * i, 0.7 + 0.15 * i);
+    for (const bool is_box : {true, false}) {
+      const StandingScene scene(is_box ? cereal_box() : mug(), is_box ? -0.13 : -0.05, pose, 10 + i);
+      const Detection detection = detection_of(is_box ? "box" : "mug", scene.object, scene.truth, 100 + i);
+      const ObjectPose found = estimator.estimate(scene.frame, only(detection)).poses.at(0);
+      ASSERT_EQ(found.status, PoseStatus::kValid) << to_string(found.status) << " " << i << is_box;
+      ASSERT_TRUE(found.T_camera_object.has_value());
+      EXPECT_LT(error_of(scene, found), 0.003) << i << is_box;
+      EXPECT_GT(found.visible_fraction, 0.8F);
+      EXPECT_LT(found.free_space_violation, 0.1F);
+      EXPECT_GT(found.inliers, 200);
+      EXPECT_GT(found.inlier_fraction, 0.8F);
+      EXPECT_LT(found.residual, 0.004F);
+      EXPECT_GT(found.residual, 0.0F);
+      EXPECT_EQ(found.class_name, detection.class_name);
+      EXPECT_EQ(found.detection_index, 0);
+    }
+  }
+}
+
+TEST(PoseEstimator, PclFindsThemToo) {
+  PoseSettings settings;
+  settings.registration.method = Registration::kPcl;
+  const PoseEstimator estimator({{"box", cereal_box()}}, settings);
+  for (int i = 0; i < 3; ++i) {
+    const StandingScene scene(cereal_box(), -0.13, standing(70.0 * i + 20.0, 30.0, 0.8 + 0.2 * i), 10 + i);
+    const Detection detection = detection_of("box", scene.object, scene.truth, 200 + i);
+    const ObjectPose found = estimator.estimate(scene.frame, only(detection)).poses.at(0);
+    ASSERT_EQ(found.status, PoseStatus::kValid) << to_string(found.status);
+    EXPECT_LT(error_of(scene, found), 0.008);
+  }
+}
+
+TEST(PoseEstimator, HalfHiddenObjectIsFoundAndItsVisibleFractionTold) {
+  StandingScene scene(cereal_box(), -0.13, standing(30.0, 30.0, 1.0), 3);
+  Mesh screen;  // hides the left half, 20 cm in front
+  add_box(screen, {-0.3F, -0.3F, 0.75F}, {0.02F, 0.3F, 0.76F});
+  scene.frame = noisy_frame({{&scene.object, scene.truth, 1},
+                             {&scene.ground, scene.truth * Eigen::Translation3d(0, 0, -0.13), 2},
+                             {&screen, Eigen::Isometry3d::Identity(), 3}},
+                            4);
+  const ObjectPose found = estimator_for("box", scene.object)
+                               .estimate(scene.frame, only(detection_of("box", scene.object, scene.truth, 5)))
+                               .poses.at(0);
+  ASSERT_EQ(found.status, PoseStatus::kValid) << to_string(found.status);
+  EXPECT_LT(error_of(scene, found), 0.006);
+  EXPECT_GT(found.visible_fraction, 0.3F);
+  EXPECT_LT(found.visible_fraction, 0.75F);
+  EXPECT_LT(found.free_space_violation, 0.1F);
+}
+
+TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
+  // A mug is seen, a box four times its size is claimed; and a box is claimed in the air above the table.
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  const PoseEstimator estimator = estimator_for("box", cereal_box());
+  Detection wrong = detection_of("box", cereal_box(), scene.truth, 5);
+  Detection empty = wrong;
+  empty.centre_camera.y() -= 0.2F;
+  empty.box_px.y -= 105.0F;
+  Detections both = only(wrong);
+  both.detections.push_back(empty);
+  const ObjectPoses poses = estimator.estimate(scene.frame, both);
+  EXPECT_EQ(poses.poses.at(0).status, PoseStatus::kRejectedByDepth) << to_string(poses.poses[0].status);
+  EXPECT_EQ(poses.poses.at(1).status, PoseStatus::kNotConverged) << to_string(poses.poses[1].status);
+  EXPECT_FALSE(poses.poses[0].T_camera_object.has_value());
+  EXPECT_FALSE(poses.poses[1].T_camera_object.has_value());
+}
+
+TEST(PoseEstimator, MissingInputGivesAReasonAndNoPose) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  const PoseEstimator estimator = estimator_for("mug", mug());
+  const Detection good = detection_of("mug", scene.object, scene.truth, 5);
+  std::vector<Detection> bad(6, good);
+  bad[0].class_name = "kettle";
+  bad[1].rotations.clear();
+  bad[2].rotations = {{Eigen::Quaternionf(std::nanf(""), 0, 0, 0), 1.0F}, {good.rotations[0].R_camera_object, 0.0F}};
+  bad[3].box_px = cv::Rect2f(-500.0F, -500.0F, 20.0F, 20.0F);
+  bad[4].centre_camera.z() = std::nanf("");
+  bad[5].centre_camera.z() = 3.5F;  // nothing there at that depth
+  const std::vector<PoseStatus> reasons{PoseStatus::kNoModel,       PoseStatus::kNoInitialPose,
+                                        PoseStatus::kNoInitialPose, PoseStatus::kTooFewPoints,
+                                        PoseStatus::kNoInitialPose, PoseStatus::kTooFewPoints};
+  Detections detections = only(good);
+  detections.detections = bad;
+  const ObjectPoses poses = estimator.estimate(scene.frame, detections);
+  ASSERT_EQ(poses.poses.size(), bad.size());
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    EXPECT_EQ(poses.poses[i].status, reasons[i]) << i << " " << to_string(poses.poses[i].status);
+    EXPECT_FALSE(poses.poses[i].T_camera_object.has_value());
+    EXPECT_TRUE(std::isnan(poses.poses[i].residual));
+  }
+  RgbdFrame blind = scene.frame;
+  blind.depth.setTo(std::nanf(""));
+  EXPECT_EQ(estimator.estimate(blind, only(good)).poses.at(0).status, PoseStatus::kTooFewPoints);
+  EXPECT_TRUE(estimator.estimate(scene.frame, Detections{1000, "", {}, {}}).poses.empty());
+}
+
+TEST(PoseEstimator, DetectionsOfAnotherFrameAndBrokenFramesAreRefused) {
+  StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  const PoseEstimator estimator = estimator_for("mug", mug());
+  Detections detections = only(detection_of("mug", scene.object, scene.truth, 5));
+  detections.utime = 1001;
+  EXPECT_THROW(estimator.estimate(scene.frame, detections), std::logic_error);
+  detections.utime = 1000;
+  scene.frame.depth = scene.frame.depth.colRange(0, 320);
+  EXPECT_THROW(estimator.estimate(scene.frame, detections), InputError);
+  EXPECT_THROW(PoseEstimator({{"nothing", Mesh()}}, PoseSettings()), InputError);
+}
+
+TEST(PoseEstimator, SameResultForAnyNumberOfThreads) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  Detections detections = only(detection_of("mug", scene.object, scene.truth, 5));
+  for (int i = 6; i < 11; ++i) detections.detections.push_back(detection_of("mug", scene.object, scene.truth, i));
+  detections.stages = {{"detect.forest", 7}};
+  PoseSettings settings;
+  const ObjectPoses serial = estimator_for("mug", mug(), settings).estimate(scene.frame, detections);
+  settings.threads = 3;
+  const ObjectPoses parallel = estimator_for("mug", mug(), settings).estimate(scene.frame, detections);
+  ASSERT_EQ(serial.poses.size(), 6U);
+  for (std::size_t i = 0; i < serial.poses.size(); ++i) {
+    ASSERT_TRUE(serial.poses[i].T_camera_object && parallel.poses[i].T_camera_object);
+    EXPECT_EQ(serial.poses[i].T_camera_object->matrix(), parallel.poses[i].T_camera_object->matrix());
+    EXPECT_EQ(serial.poses[i].inliers, parallel.poses[i].inliers);
+    EXPECT_EQ(parallel.poses[i].detection_index, static_cast<int>(i));
+  }
+  ASSERT_EQ(serial.stages.size(), 2U);
+  EXPECT_EQ(serial.stages[0].stage, "detect.forest");
+  EXPECT_EQ(serial.stages[1].stage, "pose.estimate");
+}
+
+}  // namespace
+}  // namespace houghstream
