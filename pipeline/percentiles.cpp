@@ -1,0 +1,23 @@
+#include "pipeline/percentiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace houghstream {
+namespace {
+
+double nearest_rank(const std::vector<double>& sorted, double percent) {
+  if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double rank = std::ceil(percent * 1e-2 * static_cast<double>(sorted.size()));
+  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+}  // namespace
+
+Percentiles percentiles(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return {nearest_rank(values, 50.0), nearest_rank(values, 95.0), nearest_rank(values, 99.0)};
+}
+
+}  // namespace houghstream

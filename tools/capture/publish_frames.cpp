@@ -1,0 +1,126 @@
+#include "tools/capture/publish_frames.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "pipeline/checks.hpp"
+#include "pipeline/event_log.hpp"
+#include "pipeline/lcm_bus.hpp"
+#include "pipeline/status_reporter.hpp"
+#include "pipeline/stop_signal.hpp"
+
+namespace houghstream {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The source's frames, again and again where wanted, with utimes that never repeat: a frame is known by its utime.
+class FrameFeed {
+ public:
+  FrameFeed(const OpenSource& open, const CaptureSettings& settings) : open_(open), settings_(settings) {
+    source_ = open_();
+    rate_hz_ = settings.rate_hz.value_or(source_->rate_hz());
+    require(std::isfinite(rate_hz_) && rate_hz_ > 0.0 && rate_hz_ <= 1000.0, "rate of {} Hz, expected above 0 to 1000",
+            rate_hz_);
+  }
+
+  std::optional<RgbdFrame> next() {
+    if (stop_requested() || (settings_.frames && count_ >= *settings_.frames)) return std::nullopt;
+    std::optional<RgbdFrame> frame = source_->next();
+    if (!frame && settings_.loop && count_ > 0) frame = start_again();
+    require(frame.has_value() || count_ > 0, "the source has no frames");
+    if (!frame) return std::nullopt;
+    frame->utime += offset_us_;
+    if (count_ == 0) first_utime_ = frame->utime;
+    last_utime_ = frame->utime;
+    ++count_;
+    return frame;
+  }
+
+  std::int64_t count() const { return count_; }
+  std::int64_t first_utime() const { return first_utime_; }
+  double period_us() const { return 1e6 / rate_hz_; }
+
+ private:
+  std::optional<RgbdFrame> start_again() {
+    source_ = open_();
+    offset_us_ = last_utime_ - first_utime_ + std::llround(1e6 / source_->rate_hz());
+    return source_->next();
+  }
+
+  const OpenSource& open_;
+  const CaptureSettings& settings_;
+  std::unique_ptr<FrameSource> source_;
+  double rate_hz_ = 0.0;
+  std::int64_t count_ = 0;
+  std::int64_t first_utime_ = 0;
+  std::int64_t last_utime_ = 0;
+  std::int64_t offset_us_ = 0;
+};
+
+/// Waits for each frame's turn. A source that is late is not made up for: a burst would be lost on the way.
+class Pace {
+ public:
+  explicit Pace(double period_us)
+      : period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::micro>(period_us))) {}
+
+  void wait() {
+    const Clock::time_point now = Clock::now();
+    due_ = now - due_ > period_ ? now : due_;
+    std::this_thread::sleep_until(due_);
+    due_ += period_;
+  }
+
+ private:
+  Clock::duration period_;
+  Clock::time_point due_ = Clock::now();
+};
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& settings, const std::string& url) {
+  LcmBus bus(url);
+  require(!bus.is_log(), "{}: frames go to a network; to write a log give --log", url);
+  StatusReporter status("hs-capture");
+  FrameFeed feed(open, settings);
+  Pace pace(feed.period_us());
+  CaptureResult result;
+  const Clock::time_point start = Clock::now();
+  while (const std::optional<RgbdFrame> frame = feed.next()) {
+    const Clock::time_point read = Clock::now();
+    status.count_received();
+    const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
+    pace.wait();
+    bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->utime);
+    status.count_processed(Clock::now() - read);
+    status.publish_if_due(bus);
+    ++result.frames;
+    result.bytes += static_cast<std::int64_t>(bytes.size());
+  }
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file) {
+  LogWriter log(file);
+  FrameFeed feed(open, settings);
+  CaptureResult result;
+  const Clock::time_point start = Clock::now();
+  while (const std::optional<RgbdFrame> frame = feed.next()) {
+    const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
+    const std::int64_t since_first = std::llround(static_cast<double>(result.frames) * feed.period_us());
+    log.write(feed.first_utime() + since_first, settings.channel, {bytes.data(), bytes.size()});
+    ++result.frames;
+    result.bytes += static_cast<std::int64_t>(bytes.size());
+  }
+  log.close();
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "drivers/frame_source.hpp"
+#include "pipeline/messages.hpp"
+
+namespace houghstream {
+
+struct CaptureSettings {
+  WireFormat format;
+  std::string channel = "OPENNI_FRAME";
+  std::optional<double> rate_hz;       ///< default: the source's own rate
+  std::optional<std::int64_t> frames;  ///< end after this many
+  bool loop = false;                   ///< start again at the source's end; utimes go on rising
+};
+
+/// What became of the frames.
+struct CaptureResult {
+  std::int64_t frames = 0;
+  std::int64_t bytes = 0;
+  double seconds = 0.0;
+};
+
+/// Opens the source; called again at its end where the settings say so.
+using OpenSource = std::function<std::unique_ptr<FrameSource>()>;
+
+/// Publishes the source's frames on the network at their rate, until its end or a stop signal.
+/// Throws InputError where a frame cannot be read or the source is empty.
+CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& settings, const std::string& url);
+
+/// Writes the same messages to an LCM log as fast as they come, stamped at the rate with which they are to be
+/// replayed.
+CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file);
+
+}  // namespace houghstream
