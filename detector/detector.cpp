@@ -41,7 +41,7 @@ Detection to_detection(const Forest& forest, const ObjectClass& object, const Hy
   const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis.centre_camera));
   for (const auto& [view, weight] : hypothesis.views) {
     if (detection.rotations.size() >= static_cast<std::size_t>(max_rotations)) break;
-    detection.rotations.push_back({R_camera_ray * forest.views[view].R_ray_object, weight});
+    detection.rotations.push_back({R_camera_ray * Eigen::Quaternionf(forest.views[view].R_ray_object), weight});
   }
   return detection;
 }

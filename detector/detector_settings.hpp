@@ -6,7 +6,7 @@ namespace houghstream {
 
 /// How a frame becomes feature planes. Stored in the forest file: training and detection must agree.
 struct FeatureSettings {
-  double image_scale = 0.5;        ///< working size over frame size (paper, Section 5.1.1)
+  float image_scale = 0.5F;         ///< working size over frame size (paper, Section 5.1.1)
   int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
   int min_max_px = 5;              ///< neighbourhood of minimum and maximum, working pixels (paper, Section 3)
   float fill_distance_px = 24.0F;  ///< how far from measured depth a pixel may borrow it, working pixels

@@ -31,12 +31,12 @@ struct LeafView {
 
 /// What a leaf knows of one class.
 struct LeafClass {
+  std::uint32_t first_vote = 0;   ///< into Forest::votes
+  std::uint32_t first_view = 0;   ///< into Forest::leaf_views
+  float probability = 0.0F;       ///< p(class | leaf)
   std::uint16_t class_index = 0;  ///< into Forest::classes
-  std::uint16_t vote_count = 0;
-  std::uint16_t view_count = 0;
-  std::uint32_t first_vote = 0;  ///< into Forest::votes
-  std::uint32_t first_view = 0;  ///< into Forest::leaf_views
-  float probability = 0.0F;      ///< p(class | leaf)
+  std::uint8_t vote_count = 0;
+  std::uint8_t view_count = 0;
 };
 
 /// Classes of leaf i are leaf_classes[leaves[i] .. leaves[i + 1]).
@@ -50,8 +50,8 @@ struct ObjectClass {
 /// A training view as the pose process needs it.
 struct ViewRotation {
   std::uint32_t class_index = 0;
-  Eigen::Quaternionf R_ray_object =
-      Eigen::Quaternionf::Identity();  ///< relative to the ray through the object's centre
+  /// Relative to the ray through the object's centre. Not aligned: its bytes go to the file without gaps.
+  Eigen::Quaternion<float, Eigen::DontAlign> R_ray_object = Eigen::Quaternion<float, Eigen::DontAlign>::Identity();
 };
 
 /// A trained forest: flat arrays, trees one after another. Read-only once built.

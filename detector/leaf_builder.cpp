@@ -67,8 +67,8 @@ std::int32_t add_leaf(const TrainingSet& set, const std::vector<std::uint32_t>& 
     const std::vector<LeafView> views = counted_views(set, by_label[l], settings);
     LeafClass entry;
     entry.class_index = static_cast<std::uint16_t>(l - 1);
-    entry.vote_count = static_cast<std::uint16_t>(votes.size());
-    entry.view_count = static_cast<std::uint16_t>(views.size());
+    entry.vote_count = static_cast<std::uint8_t>(votes.size());
+    entry.view_count = static_cast<std::uint8_t>(views.size());
     entry.first_vote = static_cast<std::uint32_t>(forest.votes.size());
     entry.first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
     entry.probability = label_weights[l] * static_cast<float>(by_label[l].size()) / total;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/frame.hpp"
+#include "pipeline/mesh.hpp"
 #include "pipeline/training_view.hpp"
 
 namespace houghstream {
@@ -67,6 +68,9 @@ struct BopModels {
 };
 /// Throws InputError when files are missing or their numbers absurd.
 BopModels read_bop_models(const std::filesystem::path& models_folder);
+
+/// The meshes of a models folder by class name, metres. Throws InputError where two models share a name.
+std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder);
 
 /// {"1": "bowl", ...}
 std::map<int, std::string> read_bop_names(const std::filesystem::path& names_file);

@@ -49,6 +49,17 @@ BopModels read_bop_models(const fs::path& models_folder) {
   return models;
 }
 
+std::map<std::string, Mesh> load_class_models(const fs::path& models_folder) {
+  const BopModels models = read_bop_models(models_folder);
+  std::map<std::string, Mesh> meshes;
+  for (const auto& [object_id, diameter] : models.diameters) {
+    const std::string& name = models.names.at(object_id);
+    const bool is_new = meshes.try_emplace(name, load_mesh(models.mesh_file(object_id))).second;
+    require(is_new, "{}: two models are called '{}', expected one of each name", models_folder.string(), name);
+  }
+  return meshes;
+}
+
 std::optional<fs::path> find_bop_models(const fs::path& folder) {
   // A scene lies at most DATASET/SPLIT/SCENE deep.
   constexpr int kLevels = 3;

@@ -64,7 +64,7 @@ int append_views(const BopScene& scene, const std::map<int, std::string>& names,
     }
     TrainingView view = object_view(scene, i, names);
     if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
-      spdlog::warn("{}: no depth on the object; view left out", view.source);
+      spdlog::warn("{}: empty mask, or no depth on the object; view left out", view.source);
       ++skipped;
       continue;
     }
@@ -82,7 +82,7 @@ std::vector<TrainingView> read_bop_training_views(const fs::path& folder) {
   for (const fs::path& scene_folder : scene_folders(folder)) {
     skipped += append_views(BopScene(scene_folder), find_bop_names(scene_folder), views);
   }
-  require(!views.empty(), "{}: all {} views have no depth on the object, expected at least one usable view",
+  require(!views.empty(), "{}: all {} views have an empty mask or no depth on the object, expected at least one usable view",
           folder.string(), skipped);
   return views;
 }

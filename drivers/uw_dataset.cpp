@@ -138,7 +138,6 @@ TrainingView read_view(const Instance& instance, const ViewName& name, const Cam
   check_frame(view.frame, prefix);
   require(view.mask.size() == size, "{}: mask {}x{} and picture {}x{}, expected equal sizes", prefix, view.mask.cols,
           view.mask.rows, size.width, size.height);
-  require(cv::countNonZero(view.mask) > 0, "{}: mask is empty, expected the object", prefix);
   return view;
 }
 
@@ -158,13 +157,13 @@ void append_instance(const Instance& instance, const Camera& camera, std::vector
   for (const ViewName& name : list_views(instance)) {
     TrainingView view = read_view(instance, name, camera);
     if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
-      spdlog::warn("{}: no depth on the object; view left out", view.source);
+      spdlog::warn("{}: empty mask, or no depth on the object; view left out", view.source);
       continue;
     }
     videos[name.video].first.push_back(name);
     videos[name.video].second.push_back(std::move(view));
   }
-  require(!videos.empty(), "{}: no view has depth on the object", instance.folder.string());
+  require(!videos.empty(), "{}: every view has an empty mask or no depth on the object", instance.folder.string());
   for (auto& [video, content] : videos) {
     set_poses(content.first, content.second);
     std::move(content.second.begin(), content.second.end(), std::back_inserter(out));

@@ -33,6 +33,15 @@ TEST(BopModels, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(load_mesh(models.mesh_file(12)).triangles.size(), 4U);
 }
 
+TEST(BopModels, MeshesComeByClassNameAndNamesMustDiffer) {
+  const fs::path folder = write_models("models_by_class") / "models";
+  const std::map<std::string, Mesh> meshes = load_class_models(folder);
+  ASSERT_EQ(meshes.size(), 2U);
+  EXPECT_EQ(meshes.at("mug").triangles.size(), 4U);
+  write_bop_names({{1, "mug"}, {12, "mug"}}, folder / "names.json");
+  EXPECT_THROW(load_class_models(folder), InputError);
+}
+
 TEST(BopModels, WithoutNamesObjectsAreNumbered) {
   const fs::path folder = write_models("models_unnamed") / "models";
   fs::remove(folder / "names.json");

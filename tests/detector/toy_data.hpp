@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+#include "pipeline/training_view.hpp"
+
+namespace houghstream::toy {
+
+/// A room of coloured noise 1.6 m away; no object.
+RgbdFrame room(std::uint64_t seed);
+
+/// Puts a 0.12 m wide relief tile with a pattern of its kind (0 or 1) into a frame, its centre `distance` away at pixel
+/// (u, v), and returns its mask.
+cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame);
+
+/// A few views of both kinds (classes 1 "stripes" and 2 "rings") and background frames.
+std::vector<TrainingView> training_views();
+
+/// Settings that train in a second.
+TrainingSettings quick_training();
+
+}  // namespace houghstream::toy

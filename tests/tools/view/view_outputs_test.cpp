@@ -1,0 +1,82 @@
+#include "tools/view/view_outputs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path fresh_folder(const std::string& name) {
+  const fs::path folder = fs::path(testing::TempDir()) / ("view_outputs_test_" + name);
+  fs::remove_all(folder);
+  return folder;
+}
+
+cv::Mat grey(int level) {
+  return cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(level));
+}
+
+int level_of(const fs::path& file) {
+  return static_cast<int>(cv::imread(file.string()).at<cv::Vec3b>(0, 0)[0]);
+}
+
+TEST(ViewOutputs, SnapshotIsThePictureAskedForAndThenAllIsDone) {
+  const fs::path folder = fresh_folder("snapshot");
+  OutputSettings settings;
+  settings.snapshot = folder / "new" / "shot.png";
+  settings.snapshot_after = 2;
+  ViewOutputs outputs(settings);
+  outputs.add(grey(10), 1, 0);
+  EXPECT_FALSE(outputs.complete());
+  outputs.add(grey(20), 2, 1);
+  EXPECT_TRUE(outputs.complete());
+  outputs.add(grey(30), 3, 2);
+  outputs.finish();
+  EXPECT_EQ(level_of(settings.snapshot), 20);
+}
+
+TEST(ViewOutputs, SnapshotOfAShortStreamIsItsLastPicture) {
+  OutputSettings settings;
+  settings.snapshot = fresh_folder("short") / "shot.png";
+  settings.snapshot_after = 100;
+  ViewOutputs outputs(settings);
+  outputs.add(grey(10), 1, 0);
+  outputs.add(grey(20), 2, 1);
+  outputs.finish();
+  EXPECT_EQ(level_of(settings.snapshot), 20);
+}
+
+TEST(ViewOutputs, VideoAndPicturesGoOnAfterTheSnapshot) {
+  const fs::path folder = fresh_folder("all");
+  OutputSettings settings;
+  settings.snapshot = folder / "shot.png";
+  settings.video = folder / "video.mp4";
+  settings.pictures = folder / "pictures";
+  ViewOutputs outputs(settings);
+  outputs.add(grey(10), 111, 0);
+  EXPECT_FALSE(outputs.complete());
+  outputs.add(grey(20), 222, 1);
+  outputs.finish();
+  EXPECT_NEAR(level_of(settings.pictures / "222.jpg"), 20, 2);
+  EXPECT_GT(fs::file_size(settings.video), 0U);
+}
+
+TEST(ViewOutputs, NoFrameAtAllOrABadPathIsAnError) {
+  OutputSettings settings;
+  settings.snapshot = fresh_folder("bad") / "shot.png";
+  EXPECT_THROW(ViewOutputs(settings).finish(), InputError);
+  settings.snapshot = fresh_folder("bad") / "shot.nosuchformat";
+  ViewOutputs outputs(settings);
+  EXPECT_THROW(outputs.add(grey(10), 1, 0), InputError);
+  settings.snapshot = "/proc/nowhere/shot.png";
+  EXPECT_THROW(ViewOutputs{settings}, InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/training_view.hpp"
+
+namespace houghstream {
+
+/// Where training data lies, as the command line names it.
+struct TrainingSources {
+  std::vector<std::string> views;        ///< "bop:DIR" or "uw:DIR"
+  std::vector<std::string> backgrounds;  ///< "bop:DIR" or "images:DIR"
+  std::vector<std::string> instances;    ///< instances of uw: folders to read; empty = all
+  std::vector<std::string> renames;      ///< "can_1=can": what an instance is called; equal names are one class
+  std::optional<std::string> camera;     ///< for data that publish none, see parse_camera
+};
+
+/// Reads everything; class ids of uw: folders count from 1 in the order of their names. Throws InputError.
+std::vector<TrainingView> read_training_sources(const TrainingSources& sources);
+
+}  // namespace houghstream

@@ -1,0 +1,69 @@
+#include "tools/view/bus_watcher.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+#include <vector>
+
+#include "pipeline/channels.hpp"
+#include "pipeline/checks.hpp"
+#include "pipeline/messages.hpp"
+#include "pipeline/stop_signal.hpp"
+
+namespace houghstream {
+namespace {
+
+std::int64_t microseconds(std::chrono::steady_clock::time_point time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count();
+}
+
+}  // namespace
+
+BusWatcher::BusWatcher(const std::string& lcm_url, const std::string& frame_channel, const MatchSettings& match,
+                       std::size_t waiting_frames)
+    : bus_(lcm_url), matcher_(match), queue_(waiting_frames) {
+  require(!bus_.is_log(), "{}: a log is watched by replaying it with lcm-logplayer, expected a network URL",
+          bus_.url());
+  subscribe(frame_channel);
+  const BlockStopSignals block;
+  thread_ = std::thread([this] { listen(); });
+}
+
+BusWatcher::~BusWatcher() {
+  stop();
+}
+
+void BusWatcher::stop() {
+  stopping_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void BusWatcher::subscribe(const std::string& frame_channel) {
+  bus_.subscribe(frame_channel, [this](const Arrival& arrival) {
+    const std::int64_t utime = read_frame_header(arrival.bytes).utime;
+    std::vector<std::uint8_t> bytes(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
+    matcher_.add_frame(std::move(bytes), utime, microseconds(arrival.time));
+  });
+  bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) {
+    const auto message = decode_message<houghstream::detections_t>(arrival.bytes);
+    matcher_.add_detections(detections_from_message(message), microseconds(arrival.time));
+  });
+  bus_.subscribe(channel::kPoses, [this](const Arrival& arrival) {
+    const auto message = decode_message<houghstream::object_poses_t>(arrival.bytes);
+    matcher_.add_poses(poses_from_message(message), microseconds(arrival.time));
+  });
+}
+
+void BusWatcher::listen() {
+  constexpr std::chrono::milliseconds kPatience(50);
+  while (!stopping_) {
+    try {
+      bus_.handle(kPatience);
+    } catch (const std::exception& error) {
+      spdlog::error("{}", error.what());
+    }
+    while (auto frame = matcher_.next(microseconds(std::chrono::steady_clock::now()))) queue_.push(std::move(*frame));
+  }
+}
+
+}  // namespace houghstream

@@ -1,0 +1,64 @@
+#include "tools/view/view_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <system_error>
+#include <utility>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+void make_folder(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  require(fs::is_directory(folder), "{}: folder cannot be made: {}", folder.string(), error.message());
+}
+
+}  // namespace
+
+void write_picture(const fs::path& file, const cv::Mat& picture) {
+  bool written = false;
+  try {
+    written = cv::imwrite(file.string(), picture);
+  } catch (const cv::Exception&) {
+    fail("{}: not a picture format that can be written, expected .png or .jpg", file.string());
+  }
+  require(written, "{}: cannot be written", file.string());
+}
+
+ViewOutputs::ViewOutputs(OutputSettings settings) : settings_(std::move(settings)) {
+  make_folder(settings_.snapshot.parent_path());
+  make_folder(settings_.video.parent_path());
+  make_folder(settings_.pictures);
+  if (!settings_.video.empty()) video_ = std::make_unique<VideoFile>(settings_.video, settings_.rate_hz);
+}
+
+void ViewOutputs::add(const cv::Mat& picture, std::int64_t utime, std::int64_t slot) {
+  ++added_;
+  last_ = picture;
+  if (video_) video_->add(picture, slot);
+  if (!settings_.pictures.empty()) write_picture(settings_.pictures / fmt::format("{}.jpg", utime), picture);
+  if (!settings_.snapshot.empty() && added_ == settings_.snapshot_after) {
+    write_picture(settings_.snapshot, picture);
+    snapshot_written_ = true;
+  }
+}
+
+void ViewOutputs::finish() {
+  const bool wanted = !settings_.snapshot.empty() || !settings_.video.empty() || !settings_.pictures.empty();
+  require(!wanted || added_ > 0, "nothing to write: no frame was seen on the bus");
+  if (!settings_.snapshot.empty() && !snapshot_written_) write_picture(settings_.snapshot, last_);
+  video_.reset();
+}
+
+bool ViewOutputs::complete() const {
+  return snapshot_written_ && settings_.video.empty() && settings_.pictures.empty();
+}
+
+}  // namespace houghstream

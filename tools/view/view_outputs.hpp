@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "tools/view/video_file.hpp"
+
+namespace houghstream {
+
+/// Where pictures go without a display; an empty path is not written.
+struct OutputSettings {
+  std::filesystem::path snapshot;   ///< one picture, PNG or JPEG by its ending
+  std::int64_t snapshot_after = 1;  ///< the so-manieth picture drawn; the last one where the stream ends before
+  std::filesystem::path video;      ///< MP4
+  std::filesystem::path pictures;   ///< folder for every picture drawn, UTIME.jpg
+  double rate_hz = 10.0;            ///< of the video
+};
+
+/// Writes pictures to files.
+class ViewOutputs {
+ public:
+  /// Makes the folders. Throws InputError where that fails.
+  explicit ViewOutputs(OutputSettings settings);
+
+  void add(const cv::Mat& picture, std::int64_t utime, std::int64_t slot);
+
+  /// Writes a snapshot that did not come to its turn. Throws InputError when there was no picture at all.
+  void finish();
+
+  /// Whether everything asked for is there: a snapshot alone needs no more pictures.
+  bool complete() const;
+
+ private:
+  OutputSettings settings_;
+  std::unique_ptr<VideoFile> video_;
+  cv::Mat last_;
+  std::int64_t added_ = 0;
+  bool snapshot_written_ = false;
+};
+
+/// Writes an image; throws InputError where that fails.
+void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
+
+}  // namespace houghstream

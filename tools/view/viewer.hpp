@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "pipeline/channels.hpp"
+#include "tools/view/frame_matcher.hpp"
+#include "tools/view/frame_view.hpp"
+#include "tools/view/view_outputs.hpp"
+
+namespace houghstream {
+
+/// What hs-view does.
+struct ViewerSettings {
+  std::string lcm_url;                          ///< "" = LCM's default
+  std::string frame_channel = channel::kFrame;  ///< images_t
+  std::string models;                           ///< BOP models folder for outlines; "" = none
+  double duration = 0.0;                        ///< seconds; 0 = until asked to end
+  FrameViewSettings picture;
+  OutputSettings outputs;
+
+  /// Files are asked for: then there is no window.
+  bool headless() const { return !outputs.snapshot.empty() || !outputs.video.empty() || !outputs.pictures.empty(); }
+};
+
+/// Shows the stream until a stop signal, the end of the duration, the closing of the window, or until the snapshot is
+/// there and nothing else was asked for. Throws InputError.
+void run_viewer(const ViewerSettings& settings);
+
+}  // namespace houghstream
