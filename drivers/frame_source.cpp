@@ -1,6 +1,7 @@
 #include "drivers/frame_source.hpp"
 
 #include "drivers/bop_source.hpp"
+#include "drivers/render_source.hpp"
 #include "drivers/uw_source.hpp"
 #include "pipeline/checks.hpp"
 
@@ -24,7 +25,8 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& specification)
   const std::string value = colon == std::string::npos ? "" : specification.substr(colon + 1);
   if (kind == "bop" && !value.empty()) return open_bop_source(value);
   if (kind == "uw" && !value.empty()) return open_uw(value);
-  fail("source '{}', expected bop:DIR or uw:DIR", specification);
+  if (kind == "render" && !value.empty()) return open_render_source(value);
+  fail("source '{}', expected bop:DIR, uw:DIR or render:NAME", specification);
 }
 
 }  // namespace houghstream

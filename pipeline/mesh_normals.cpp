@@ -1,5 +1,7 @@
 #include "pipeline/mesh.hpp"
 
+#include <Eigen/Geometry>
+
 namespace houghstream {
 
 void compute_normals(Mesh& mesh) {

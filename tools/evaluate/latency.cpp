@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -25,13 +25,13 @@ std::vector<std::string> split(const std::string& line) {
   return fields;
 }
 
-std::optional<std::int64_t> parse_time(const std::string& text, const std::string& where) {
+std::optional<double> parse_time(const std::string& text, const std::string& where) {
   if (text.empty()) return std::nullopt;
-  std::int64_t value = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  require(result.ec == std::errc() && result.ptr == text.data() + text.size(), "{}: '{}', expected microseconds", where,
-          text);
-  return value;
+  double seconds = 0.0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  require(result.ec == std::errc() && result.ptr == text.data() + text.size() && std::isfinite(seconds),
+          "{}: '{}', expected seconds", where, text);
+  return seconds;
 }
 
 std::size_t column(const std::vector<std::string>& header, const std::string& name, const std::string& file) {
@@ -40,22 +40,12 @@ std::size_t column(const std::vector<std::string>& header, const std::string& na
   return static_cast<std::size_t>(found - header.begin());
 }
 
-void append_difference(const std::optional<std::int64_t>& from, const std::optional<std::int64_t>& to,
+void append_difference(const std::optional<double>& from, const std::optional<double>& to,
                        std::vector<double>& out_ms) {
-  if (from && to) out_ms.push_back(static_cast<double>(*to - *from) * 1e-3);
+  if (from && to) out_ms.push_back((*to - *from) * 1e3);
 }
 
 }  // namespace
-
-std::optional<Percentiles> percentiles(std::vector<double> values_ms) {
-  if (values_ms.empty()) return std::nullopt;
-  std::sort(values_ms.begin(), values_ms.end());
-  const auto at = [&](double share) {
-    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values_ms.size())));
-    return values_ms[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return Percentiles{at(0.50), at(0.95), at(0.99)};
-}
 
 Latencies read_latencies(const std::filesystem::path& csv_file) {
   const std::string file = csv_file.string();

@@ -1,18 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 namespace houghstream {
-
-/// p50, p95 and p99 in milliseconds, by nearest rank; nothing where there are no values.
-struct Percentiles {
-  double p50 = 0.0;
-  double p95 = 0.0;
-  double p99 = 0.0;
-};
-std::optional<Percentiles> percentiles(std::vector<double> values_ms);
 
 /// Times from a frame message's arrival at the observer to the arrival of its results, milliseconds.
 struct Latencies {
@@ -22,8 +13,8 @@ struct Latencies {
   int frames = 0;                 ///< frame messages seen
 };
 
-/// Reads hs-observe's CSV: a header with the columns utime, t_frame, t_detections and t_poses among others;
-/// microseconds, empty where the message never came. Throws InputError.
+/// Reads hs-observe's CSV: a header with the columns utime, t_frame, t_detections and t_poses among others; seconds,
+/// empty where the message never came. Throws InputError.
 Latencies read_latencies(const std::filesystem::path& csv_file);
 
 }  // namespace houghstream

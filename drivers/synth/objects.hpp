@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/synth/thing.hpp"
+
+// The objects. Frame of each: origin at the centre of its bounding box, z up, front to -y.
+
+namespace houghstream {
+
+/// An object that can be taught. Ids 1-4 (bowl, cereal_box, coffee_mug, soda_can) are the demo's classes; 5-8 are
+/// their second instances (bowl_2 ...), of other proportions and prints.
+struct TaughtObject {
+  int id = 0;
+  std::string name;
+  bool symmetric_about_z = false;
+  ThingPtr thing;
+};
+
+inline constexpr int kClassCount = 4;         ///< ids 1 to 4
+inline constexpr int kTaughtObjectCount = 8;  ///< ids 1 to 8, look-alikes included
+
+/// Object `id`, 1 to 8; the same on every call. Throws InputError for another id.
+TaughtObject make_taught_object(int id);
+
+/// "bowl" -> 1. Throws InputError listing the known names.
+int taught_object_id(const std::string& name);
+
+/// Household things that are never taught. `kind` 0 to kDistractorKinds-1; shape and print follow the seed.
+inline constexpr int kDistractorKinds = 16;
+ThingPtr make_distractor(int kind, std::uint64_t seed);
+
+}  // namespace houghstream

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "drivers/synth/room.hpp"
+#include "drivers/synth/seeds.hpp"
+#include "drivers/synth/trajectory.hpp"
+
+namespace houghstream {
+
+/// A furnished, cluttered world and the camera's way through it.
+struct Scene {
+  std::string name;
+  std::uint64_t seed = 0;  ///< from world_seed()
+  World world;
+  Trajectory trajectory;
+};
+
+/// What stands on the table.
+struct Clutter {
+  bool taught_objects = false;  ///< the four classes, once each
+  int look_alikes = 0;          ///< how many of the second instances (ids 5-8)
+  int distractors = 10;         ///< how many things are tried; those that find no place are left out
+};
+
+Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, std::uint64_t seed);
+
+/// The six test scenes, after the six of the paper (Section 6).
+inline constexpr std::array<const char*, 6> kTestScenes = {"table_small_1", "table_small_2",   "desk_1",
+                                                           "desk_2",        "kitchen_small_1", "meeting_small_1"};
+
+/// Throws InputError listing the known names.
+Scene make_test_scene(const std::string& name);
+
+/// Training room number `index` with clutter of its own and none of the taught objects.
+Scene make_background_scene(int index, std::uint64_t seed);
+
+}  // namespace houghstream

@@ -1,0 +1,75 @@
+#include <array>
+#include <cmath>
+
+#include "drivers/synth/materials.hpp"
+#include "drivers/synth/mesh_parts.hpp"
+#include "drivers/synth/objects.hpp"
+#include "drivers/synth/prints.hpp"
+#include "drivers/synth/vessels.hpp"
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+// Fixed, so that an object looks the same in every training view and scene.
+constexpr std::uint64_t kObjectSeed = 7100;
+
+const std::array<const char*, kTaughtObjectCount> kNames = {"bowl",   "cereal_box",   "coffee_mug",   "soda_can",
+                                                            "bowl_2", "cereal_box_2", "coffee_mug_2", "soda_can_2"};
+
+ThingPtr bowl(bool second, Random& random) {
+  const BowlShape shape = second ? BowlShape{0.084, 0.045, 0.056, 0.0035} : BowlShape{0.074, 0.036, 0.066, 0.004};
+  const cv::Scalar colour = second ? hsv(205, 0.22, 0.72) : hsv(42, 0.18, 0.86);
+  return make_thing(second ? "bowl_2" : "bowl", bowl_mesh(shape, plain({256, 256}, colour, 0.03, random)), 0.25F);
+}
+
+ThingPtr cereal_box(bool second, Random& random) {
+  const Eigen::Vector3d size = second ? Eigen::Vector3d(0.165, 0.068, 0.245) : Eigen::Vector3d(0.192, 0.058, 0.285);
+  Palette palette = random_palette(random);
+  palette.base = second ? hsv(28, 0.8, 0.85) : hsv(218, 0.75, 0.68);
+  palette.accent = second ? hsv(340, 0.75, 0.7) : hsv(46, 0.85, 0.92);
+  return make_thing(second ? "cereal_box_2" : "cereal_box", carton_mesh(size, palette, random), 0.12F);
+}
+
+ThingPtr coffee_mug(bool second, Random& random) {
+  const MugShape shape = second ? MugShape{0.046, 0.039, 0.102, 0.004} : MugShape{0.0405, 0.0405, 0.094, 0.0038};
+  Palette palette = random_palette(random);
+  palette.base = second ? hsv(150, 0.35, 0.5) : hsv(40, 0.06, 0.9);
+  palette.accent = second ? hsv(30, 0.6, 0.9) : hsv(2, 0.75, 0.66);
+  return make_thing(second ? "coffee_mug_2" : "coffee_mug", mug_mesh(shape, palette, random), 0.3F);
+}
+
+ThingPtr soda_can(bool second, Random& random) {
+  Palette palette = random_palette(random);
+  palette.base = second ? hsv(212, 0.7, 0.55) : hsv(356, 0.85, 0.62);
+  palette.accent = second ? hsv(200, 0.15, 0.88) : hsv(0, 0.0, 0.85);
+  const double radius = second ? 0.0285 : 0.033;
+  const double height = second ? 0.146 : 0.122;
+  return make_thing(second ? "soda_can_2" : "soda_can", can_mesh(radius, height, palette, random), 0.45F);
+}
+
+}  // namespace
+
+TaughtObject make_taught_object(int id) {
+  require(id >= 1 && id <= kTaughtObjectCount, "taught object: id {}, expected 1 to {}", id, kTaughtObjectCount);
+  const bool second = id > kClassCount;
+  const int kind = (id - 1) % kClassCount;
+  Random random(kObjectSeed + static_cast<std::uint64_t>(id));
+  TaughtObject object{id, kNames[static_cast<std::size_t>(id - 1)], kind == 0 || kind == 3, nullptr};
+  switch (kind) {
+    case 0: object.thing = bowl(second, random); break;
+    case 1: object.thing = cereal_box(second, random); break;
+    case 2: object.thing = coffee_mug(second, random); break;
+    default: object.thing = soda_can(second, random); break;
+  }
+  return object;
+}
+
+int taught_object_id(const std::string& name) {
+  for (int i = 0; i < kTaughtObjectCount; ++i) {
+    if (name == kNames[static_cast<std::size_t>(i)]) return i + 1;
+  }
+  fail("object \"{}\": expected one of {}", name, fmt::join(kNames, ", "));
+}
+
+}  // namespace houghstream

@@ -1,0 +1,70 @@
+#include "drivers/synth/training_views.hpp"
+
+#include <cmath>
+
+#include "drivers/synth/materials.hpp"
+#include "drivers/synth/mesh_parts.hpp"
+#include "drivers/synth/prints.hpp"
+#include "drivers/synth/vessels.hpp"
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr double kTopM = 0.02;
+constexpr std::uint64_t kFirstRoom = 900000;  // numbers of training worlds that backgrounds do not use
+
+ThingPtr make_turntable_disc(Random& random) {
+  const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
+  return make_thing("turntable", turned_mesh({{0.17, 0.0}, {0.17, kTopM}}, cover), 0.08F);
+}
+
+double degrees(double value) {
+  return value * M_PI / 180.0;
+}
+
+}  // namespace
+
+Turntable::Turntable(const TurntableSettings& settings, std::uint64_t seed) : settings_(settings), seed_(seed) {
+  require(settings.azimuths >= 1 && settings.azimuths <= 720, "turntable: {} azimuths, expected 1 to 720",
+          settings.azimuths);
+  require(settings.pitches >= 1 && settings.pitches <= 90, "turntable: {} pitches, expected 1 to 90", settings.pitches);
+  for (int pitch = 0; pitch < settings.pitches; ++pitch) {
+    const auto number = seed * 100000U + kFirstRoom + static_cast<std::uint64_t>(pitch);
+    const std::uint64_t own = world_seed(WorldUse::kTraining, number);
+    World world;
+    world.items = make_room(static_cast<RoomStyle>(pitch % kRoomStyles), aspect_seed(own, 1)).items;
+    set_light_and_photo(world, aspect_seed(own, 2));
+    world.focus_radius_m = 0.5;
+    Random random(aspect_seed(own, 3));
+    Placed disc{make_turntable_disc(random), Eigen::Isometry3d::Identity(), 0, true};
+    disc.T_world_object.translate(Eigen::Vector3d(0, 0, 0.5 * kTopM));
+    world.items.push_back(disc);
+    worlds_.push_back(std::move(world));
+  }
+}
+
+SceneFrame Turntable::render(const TaughtObject& object, int index) const {
+  const int pitch_index = index / settings_.azimuths;
+  const int azimuth_index = index % settings_.azimuths;
+  const auto number = static_cast<std::uint64_t>(object.id) * 1000003U + static_cast<std::uint64_t>(index);
+  Random random(aspect_seed(world_seed(WorldUse::kTraining, seed_), number));
+
+  World world = worlds_[static_cast<std::size_t>(pitch_index)];
+  Placed placed{object.thing, Eigen::Isometry3d::Identity(), object.id, true};
+  const double centre = kTopM - mesh_bounds(object.thing->mesh).min().z();
+  placed.T_world_object.translate(Eigen::Vector3d(0, 0, centre));
+  placed.T_world_object.rotate(
+      Eigen::AngleAxisd(2.0 * M_PI * azimuth_index / settings_.azimuths, Eigen::Vector3d::UnitZ()));
+  world.items.push_back(placed);
+
+  const double share = settings_.pitches > 1 ? static_cast<double>(pitch_index) / (settings_.pitches - 1) : 0.5;
+  const double pitch =
+      degrees(settings_.lowest_pitch_deg + share * (settings_.highest_pitch_deg - settings_.lowest_pitch_deg));
+  const double distance = settings_.distance_m * random.uniform(0.96, 1.04);
+  const Eigen::Vector3d target(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), centre);
+  const Eigen::Vector3d eye = target + distance * Eigen::Vector3d(0.0, -std::cos(pitch), std::sin(pitch));
+  return render_frame(light_world(std::move(world)), look_at(eye, target), random.bits() & ~1ULL);
+}
+
+}  // namespace houghstream

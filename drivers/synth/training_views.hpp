@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "drivers/synth/objects.hpp"
+#include "drivers/synth/scene_frames.hpp"
+
+namespace houghstream {
+
+/// Training views as in the paper's Section 4 (and Lai et al. 2011): an object on a turntable in front of a fixed
+/// camera, all round at several pitches.
+struct TurntableSettings {
+  int azimuths = 36;  ///< steps of a full turn
+  int pitches = 3;    ///< camera heights, evenly spread over lowest to highest
+  double lowest_pitch_deg = 30.0;
+  double highest_pitch_deg = 60.0;
+  double distance_m = 0.7;  ///< camera to object
+};
+
+/// A training room with an empty turntable; one for each pitch, since light changes between recordings.
+class Turntable {
+ public:
+  Turntable(const TurntableSettings& settings, std::uint64_t seed);
+
+  int view_count() const { return settings_.azimuths * settings_.pitches; }
+
+  /// View `index` (pitch by pitch, azimuth by azimuth) of an object, with its truth. utime is left 0.
+  SceneFrame render(const TaughtObject& object, int index) const;
+
+ private:
+  TurntableSettings settings_;
+  std::uint64_t seed_;
+  std::vector<World> worlds_;  ///< one per pitch
+};
+
+}  // namespace houghstream

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <set>
+
+#include "detector/forest_file.hpp"
+#include "pipeline/checks.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/evaluate/in_process.hpp"
+#include "tools/evaluate/report.hpp"
+
+namespace {
+
+using namespace houghstream;
+
+struct EvaluateOptions {
+  std::string scene;
+  std::string log;
+  std::string forest;
+  std::string models;
+  std::string latency;
+  std::string out;
+  std::vector<std::string> classes;
+  EvaluationRules rules;
+  DetectionSettings detection;
+};
+
+/// The classes that were asked for, else those that the forest knows, else those of the truth.
+std::vector<std::string> listed_classes(const EvaluateOptions& options, const std::optional<Forest>& forest,
+                                        const std::vector<EvaluatedFrame>& frames) {
+  if (!options.classes.empty()) return options.classes;
+  std::set<std::string> names;
+  if (forest) {
+    for (const ObjectClass& known : forest->classes) names.insert(known.name);
+  } else {
+    for (const EvaluatedFrame& frame : frames) {
+      for (const NamedObject& object : frame.objects) names.insert(object.class_name);
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+std::map<std::string, Mesh> load_models(const std::string& folder) {
+  std::map<std::string, Mesh> meshes;
+  if (folder.empty()) return meshes;
+  const BopModels models = read_bop_models(folder);
+  for (const auto& entry : models.diameters) {
+    meshes[models.names.at(entry.first)] = load_mesh(models.mesh_file(entry.first));
+  }
+  return meshes;
+}
+
+void run(const EvaluateOptions& options) {
+  require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
+  const BopScene scene(options.scene);
+  std::vector<EvaluatedFrame> frames = read_truth(scene, find_bop_names(options.scene));
+  std::optional<Forest> forest;
+  if (!options.forest.empty()) forest = load_forest(options.forest);
+  const std::vector<std::string> classes = listed_classes(options, forest, frames);
+  const std::map<std::string, Mesh> meshes = load_models(options.models);
+  const PublishedResults results =
+      options.log.empty() ? run_in_process(scene, *forest, options.detection, meshes) : read_result_log(options.log);
+  const std::string source = options.log.empty() ? options.scene : options.log;
+  add_detections(frames, results.detections, source);
+  add_poses(frames, results.poses, source);
+  std::map<std::string, PoseModel> models;
+  for (const auto& [name, mesh] : meshes) models[name] = make_pose_model(mesh);
+  const Evaluation evaluation = evaluate(frames, classes, models, options.rules);
+  std::optional<Latencies> latencies;
+  if (!options.latency.empty()) latencies = read_latencies(options.latency);
+  fmt::print("{}", summary_table(evaluation, options.rules));
+  if (!options.out.empty()) write_report(evaluation, summary_json(evaluation, options.rules, latencies), options.out);
+}
+
+void add_options(CLI::App& app, EvaluateOptions& options) {
+  app.add_option("--scene", options.scene, "BOP scene folder with the truth; without objects, every detection is false")
+      ->required();
+  app.add_option("--log", options.log, "LCM log with published results");
+  app.add_option("--forest", options.forest, "forest: detects in-process without --log, and names the classes");
+  app.add_option("--models", options.models, "models/ of the scene: measures poses (in-process: estimates them)");
+  app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")
+      ->delimiter(',');
+  app.add_option("--latency", options.latency, "hs-observe's CSV");
+  app.add_option("--out", options.out, "folder for summary.json, curves.csv and poses.csv");
+  EvaluationRules& rules = options.rules;
+  app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection")->capture_default_str();
+  app.add_option("--min-visible", rules.detection.min_visible, "less visible objects are ignored")
+      ->capture_default_str();
+  app.add_option("--pose-min-visible", rules.pose_min_visible, "less visible objects do not enter the pose recall")
+      ->capture_default_str();
+  app.add_option("--operating-score", rules.operating_score, "score from which precision and false detections count")
+      ->capture_default_str();
+  app.add_flag("--processed-only", rules.processed_only, "leave skipped frames out; default: they count as missed");
+  app.add_option("--threshold", options.detection.threshold, "in-process: smallest score")->capture_default_str();
+  app.add_option("--stride", options.detection.stride, "in-process: patch offset")->capture_default_str();
+  app.add_option("--threads", options.detection.threads, "in-process: threads")->capture_default_str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Compares detections and poses with the truth of a scene", "hs-evaluate");
+  EvaluateOptions options;
+  add_options(app, options);
+  return houghstream::run_tool(app, argc, argv, [&] { run(options); });
+}

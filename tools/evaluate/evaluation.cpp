@@ -1,0 +1,84 @@
+#include "tools/evaluate/evaluation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "pipeline/percentiles.hpp"
+
+namespace houghstream {
+namespace {
+
+std::set<std::string> detected_classes(const std::vector<EvaluatedFrame>& frames) {
+  std::set<std::string> names;
+  for (const EvaluatedFrame& frame : frames) {
+    if (!frame.detections) continue;
+    for (const Detection& detection : frame.detections->detections) names.insert(detection.class_name);
+  }
+  return names;
+}
+
+/// Poses carry the stages of the detections too; the frame's later message has them all.
+std::map<std::string, double> stage_medians(const std::vector<EvaluatedFrame>& frames) {
+  std::map<std::string, std::vector<double>> times_ms;
+  for (const EvaluatedFrame& frame : frames) {
+    if (!frame.detections) continue;
+    const std::vector<StageTime>& stages = frame.poses ? frame.poses->stages : frame.detections->stages;
+    for (const StageTime& stage : stages) {
+      times_ms[stage.stage].push_back(static_cast<double>(stage.duration_us) * 1e-3);
+    }
+  }
+  std::map<std::string, double> medians;
+  for (const auto& [stage, times] : times_ms) medians[stage] = percentiles(times).p50;
+  return medians;
+}
+
+void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
+                    double min_visible, Evaluation& out) {
+  for (const ClassResult& result : out.classes) {
+    const auto model = models.find(result.class_name);
+    if (model == models.end()) continue;
+    const std::vector<JudgedPose> judged = judge_poses(frames, result, model->second);
+    if (judged.empty()) continue;
+    out.add_s_recall[result.class_name] = add_s_recall(judged, model->second.diameter, min_visible);
+    out.poses.insert(out.poses.end(), judged.begin(), judged.end());
+  }
+}
+
+}  // namespace
+
+Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::vector<std::string>& class_names,
+                    const std::map<std::string, PoseModel>& models, const EvaluationRules& rules) {
+  const std::vector<EvaluatedFrame> processed = processed_frames(all_frames);
+  const std::vector<EvaluatedFrame>& frames = rules.processed_only ? processed : all_frames;
+  Evaluation out;
+  out.frames = static_cast<int>(all_frames.size());
+  out.frames_processed = static_cast<int>(processed.size());
+  for (const EvaluatedFrame& frame : processed) out.frames_with_poses += frame.poses ? 1 : 0;
+  for (const std::string& name : class_names) {
+    out.classes.push_back(evaluate_class(frames, name, rules.detection));
+    out.operating[name] = {count_verdicts(out.classes.back(), Verdict::kTrue, rules.operating_score),
+                           count_verdicts(out.classes.back(), Verdict::kFalse, rules.operating_score)};
+  }
+  for (const std::string& name : detected_classes(frames)) {
+    const ClassResult result = evaluate_class(frames, name, rules.detection);
+    out.false_detections += count_verdicts(result, Verdict::kFalse, rules.operating_score);
+  }
+  evaluate_poses(frames, models, rules.pose_min_visible, out);
+  out.stage_ms = stage_medians(frames);
+  return out;
+}
+
+double mean_of(const std::map<std::string, double>& values) {
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& entry : values) {
+    if (!std::isfinite(entry.second)) continue;
+    sum += entry.second;
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace houghstream

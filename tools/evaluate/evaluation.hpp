@@ -1,0 +1,45 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/evaluate/detection_metrics.hpp"
+#include "tools/evaluate/pose_metrics.hpp"
+
+namespace houghstream {
+
+struct EvaluationRules {
+  DetectionRules detection;
+  double pose_min_visible = 0.5;  ///< poses of less visible objects do not enter the recall
+  float operating_score = 0.0F;   ///< precision, recall and false detections count detections from this score on
+  bool processed_only = false;    ///< leave skipped frames out instead of counting their objects as missed
+};
+
+/// How the detections of one class fared from the operating score on.
+struct OperatingPoint {
+  int true_count = 0;
+  int false_count = 0;
+};
+
+/// A scene's figures. NaN where there is nothing to measure.
+struct Evaluation {
+  int frames = 0;            ///< of the scene
+  int frames_processed = 0;  ///< with detections
+  int frames_with_poses = 0;
+  std::vector<ClassResult> classes;  ///< as listed
+  std::map<std::string, OperatingPoint> operating;
+  int false_detections = 0;       ///< of all classes, listed or not, from the operating score on
+  std::vector<JudgedPose> poses;  ///< of true detections of listed classes that have a model
+  std::map<std::string, double> add_s_recall;
+  std::map<std::string, double> stage_ms;  ///< median by stage
+};
+
+/// Compares results with the truth for the listed classes; `models` by class name, may lack some.
+Evaluation evaluate(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& class_names,
+                    const std::map<std::string, PoseModel>& models, const EvaluationRules& rules);
+
+/// Mean over the finite values; NaN without any.
+double mean_of(const std::map<std::string, double>& values);
+
+}  // namespace houghstream

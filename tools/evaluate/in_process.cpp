@@ -1,0 +1,27 @@
+#include "tools/evaluate/in_process.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "detector/detector.hpp"
+#include "pose/pose_estimator.hpp"
+
+namespace houghstream {
+
+PublishedResults run_in_process(const BopScene& scene, Forest forest, const DetectionSettings& settings,
+                                const std::map<std::string, Mesh>& models) {
+  const Detector detector(std::move(forest), settings);
+  PoseSettings pose_settings;
+  pose_settings.threads = settings.threads;
+  const PoseEstimator estimator(models, pose_settings);
+  PublishedResults results;
+  for (std::size_t i = 0; i < scene.images().size(); ++i) {
+    const RgbdFrame frame = scene.read_frame(i);
+    results.detections.push_back(detector.detect(frame));
+    if (!models.empty()) results.poses.push_back(estimator.estimate(frame, results.detections.back()));
+    spdlog::debug("frame {} of {}: {} detections", i + 1, scene.images().size(),
+                  results.detections.back().detections.size());
+  }
+  return results;
+}
+
+}  // namespace houghstream

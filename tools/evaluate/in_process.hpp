@@ -1,0 +1,19 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "detector/detector_settings.hpp"
+#include "detector/forest.hpp"
+#include "drivers/bop_dataset.hpp"
+#include "pipeline/mesh.hpp"
+#include "tools/evaluate/result_log.hpp"
+
+namespace houghstream {
+
+/// Detects in every frame of the scene, and estimates poses where there are models (by class name), without LCM.
+PublishedResults run_in_process(const BopScene& scene, Forest forest, const DetectionSettings& settings,
+                                const std::map<std::string, Mesh>& models);
+
+}  // namespace houghstream

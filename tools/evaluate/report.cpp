@@ -1,0 +1,133 @@
+#include "tools/evaluate/report.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include "pipeline/checks.hpp"
+#include "pipeline/percentiles.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// JSON has no NaN.
+OrderedJson number(double value) {
+  return std::isfinite(value) ? OrderedJson(std::round(value * 1e4) / 1e4) : OrderedJson(nullptr);
+}
+
+OrderedJson ratio(int part, int whole) {
+  return whole > 0 ? number(static_cast<double>(part) / whole) : OrderedJson(nullptr);
+}
+
+OrderedJson to_json(const std::vector<double>& values_ms) {
+  const Percentiles p = percentiles(values_ms);
+  return {{"p50", number(p.p50)}, {"p95", number(p.p95)}, {"p99", number(p.p99)}};
+}
+
+OrderedJson rules_json(const EvaluationRules& rules) {
+  return {{"min_iou", rules.detection.min_iou},
+          {"min_visible", rules.detection.min_visible},
+          {"max_per_class", rules.detection.max_per_class},
+          {"operating_score", number(static_cast<double>(rules.operating_score))},
+          {"pose_min_visible", rules.pose_min_visible},
+          {"skipped_frames", rules.processed_only ? "left out" : "missed"}};
+}
+
+void add_detection_figures(const Evaluation& evaluation, OrderedJson& json) {
+  for (const ClassResult& result : evaluation.classes) {
+    const OperatingPoint& point = evaluation.operating.at(result.class_name);
+    json["auc"][result.class_name] = number(result.auc);
+    json["required"][result.class_name] = result.required;
+    json["precision"][result.class_name] = ratio(point.true_count, point.true_count + point.false_count);
+    json["recall"][result.class_name] = ratio(point.true_count, result.required);
+  }
+  json["auc"]["mean"] = number(mean_auc(evaluation.classes));
+  json["auc"]["weighted"] = number(weighted_auc(evaluation.classes));
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  require(out.good(), "{}: cannot be written", file.string());
+}
+
+std::string curves_csv(const Evaluation& evaluation) {
+  std::string text = "object,score,precision,recall\n";
+  for (const ClassResult& result : evaluation.classes) {
+    for (const CurvePoint& point : result.curve) {
+      text += fmt::format("{},{},{:.6f},{:.6f}\n", result.class_name, point.score, point.precision, point.recall);
+    }
+  }
+  return text;
+}
+
+std::string poses_csv(const Evaluation& evaluation) {
+  const auto metres = [](double value) { return std::isfinite(value) ? fmt::format("{:.6f}", value) : std::string(); };
+  std::string text = "frame,object,add,add_s,visible,status\n";
+  for (const JudgedPose& pose : evaluation.poses) {
+    text += fmt::format("{},{},{},{},{:.3f},{}\n", pose.frame, pose.class_name, metres(pose.add), metres(pose.add_s),
+                        pose.visible_fraction, to_string(pose.status));
+  }
+  return text;
+}
+
+}  // namespace
+
+OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& rules,
+                         const std::optional<Latencies>& latencies) {
+  const int counted = rules.processed_only ? evaluation.frames_processed : evaluation.frames;
+  OrderedJson json;
+  json["frames"] = evaluation.frames;
+  json["frames_processed"] = evaluation.frames_processed;
+  json["frames_with_poses"] = evaluation.frames_with_poses;
+  add_detection_figures(evaluation, json);
+  json["false_detections"] = evaluation.false_detections;
+  // Only a frame that was looked at can have a false detection.
+  json["false_per_frame"] = ratio(evaluation.false_detections, evaluation.frames_processed);
+  json["frames_counted"] = counted;
+  json["pose_recall_add_s_10"] = OrderedJson::object();
+  for (const auto& [name, recall] : evaluation.add_s_recall) json["pose_recall_add_s_10"][name] = number(recall);
+  json["pose_recall_add_s_10"]["mean"] = number(mean_of(evaluation.add_s_recall));
+  if (latencies) {
+    json["latency_ms"] = {{"detect", to_json(latencies->detect_ms)},
+                          {"pose", to_json(latencies->pose_ms)},
+                          {"total", to_json(latencies->total_ms)}};
+  }
+  json["stage_ms_median"] = OrderedJson::object();
+  for (const auto& [stage, median] : evaluation.stage_ms) json["stage_ms_median"][stage] = number(median);
+  json["rules"] = rules_json(rules);
+  return json;
+}
+
+std::string summary_table(const Evaluation& evaluation, const EvaluationRules& rules) {
+  std::string text = fmt::format("{} frames, {} processed, {} with poses; skipped frames {}\n", evaluation.frames,
+                                 evaluation.frames_processed, evaluation.frames_with_poses,
+                                 rules.processed_only ? "left out" : "count as missed");
+  text += fmt::format("{:<20}{:>8}{:>8}{:>8}{:>8}{:>12}\n", "object", "there", "AUC", "true", "false", "ADD-S<10%");
+  for (const ClassResult& result : evaluation.classes) {
+    const OperatingPoint& point = evaluation.operating.at(result.class_name);
+    const auto recall = evaluation.add_s_recall.find(result.class_name);
+    text += fmt::format("{:<20}{:>8}{:>8.3f}{:>8}{:>8}{:>12}\n", result.class_name, result.required, result.auc,
+                        point.true_count, point.false_count,
+                        recall != evaluation.add_s_recall.end() ? fmt::format("{:.3f}", recall->second) : "-");
+  }
+  text +=
+      fmt::format("{:<28}{:>8.3f}{:>28.3f}\n", "mean", mean_auc(evaluation.classes), mean_of(evaluation.add_s_recall));
+  text += fmt::format("{:<28}{:>8.3f}\n", "weighted by objects", weighted_auc(evaluation.classes));
+  text += fmt::format("false detections {} from score {} on\n", evaluation.false_detections, rules.operating_score);
+  for (const auto& [stage, median] : evaluation.stage_ms) text += fmt::format("{:<28}{:>8.2f} ms\n", stage, median);
+  return text;
+}
+
+void write_report(const Evaluation& evaluation, const OrderedJson& summary, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  require(!error, "{}: cannot make this folder: {}", folder.string(), error.message());
+  write_json(summary, folder / "summary.json");
+  write_text(folder / "curves.csv", curves_csv(evaluation));
+  write_text(folder / "poses.csv", poses_csv(evaluation));
+}
+
+}  // namespace houghstream

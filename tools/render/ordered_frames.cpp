@@ -1,0 +1,67 @@
+#include "tools/render/ordered_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+
+#include "pipeline/parallel.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Lets items through one at a time, by number.
+class Gate {
+ public:
+  /// Runs `work` when all items before `index` are through. False when one of them failed.
+  bool pass(int index, const std::function<void()>& work) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    turn_.wait(lock, [&] { return next_ == index || failed_; });
+    if (failed_) return false;
+    work();
+    ++next_;
+    turn_.notify_all();
+    return true;
+  }
+
+  /// Whoever waits gives up.
+  void fail_all() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    failed_ = true;
+    turn_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable turn_;
+  int next_ = 0;
+  bool failed_ = false;
+};
+
+void show_progress(const std::string& title, int done, int count) {
+  if (done % 10 == 0 || done == count)
+    fmt::print(stderr, "\r{} {}/{}{}", title, done, count, done == count ? "\n" : "");
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+void render_in_order(const std::string& title, int threads, int count, const std::function<SceneFrame(int)>& render,
+                     const std::function<void(const SceneFrame&)>& write) {
+  Gate gate;
+  parallel_for(threads, count, [&](int index) {
+    try {
+      const SceneFrame frame = render(index);
+      gate.pass(index, [&] {
+        write(frame);
+        show_progress(title, index + 1, count);
+      });
+    } catch (...) {
+      gate.fail_all();
+      throw;
+    }
+  });
+}
+
+}  // namespace houghstream

@@ -1,0 +1,88 @@
+#include "tools/render/render_jobs.hpp"
+
+#include <algorithm>
+
+#include "drivers/bop_writer.hpp"
+#include "pipeline/checks.hpp"
+#include "tools/render/ordered_frames.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr int kMostFrames = 100000;
+constexpr int kFramesPerRoom = 5;
+
+std::vector<TaughtObject> taught_objects(const std::vector<std::string>& names) {
+  std::vector<TaughtObject> objects;
+  if (names.empty() || (names.size() == 1 && names.front() == "all")) {
+    for (int id = 1; id <= kClassCount; ++id) objects.push_back(make_taught_object(id));
+  } else {
+    for (const std::string& name : names) objects.push_back(make_taught_object(taught_object_id(name)));
+  }
+  return objects;
+}
+
+void write_models(const std::vector<TaughtObject>& objects, const std::filesystem::path& folder) {
+  std::vector<NamedModel> models;
+  for (const TaughtObject& object : objects)
+    models.push_back({object.id, object.name, object.thing->mesh, object.symmetric_about_z});
+  write_bop_models(models, folder);
+}
+
+/// Folders are written anew: frames of an earlier, longer run must not stay behind.
+std::filesystem::path fresh_scene(const std::filesystem::path& folder) {
+  for (const char* part : {"rgb", "depth", "mask_visib"}) {
+    std::error_code error;
+    std::filesystem::remove_all(folder / part, error);
+    require(!error, "{}: cannot be emptied: {}", (folder / part).string(), error.message());
+  }
+  return folder;
+}
+
+}  // namespace
+
+void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
+                     const TurntableSettings& turntable) {
+  const std::vector<TaughtObject> taught = taught_objects(objects);
+  const Turntable table(turntable, options.seed);
+  write_models(taught, options.out / "models");
+  for (const TaughtObject& object : taught) {
+    BopWriter writer(fresh_scene(options.out / fmt::format("{:06d}", object.id)));
+    render_in_order(
+        object.name, options.threads, table.view_count(), [&](int index) { return table.render(object, index); },
+        [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
+    writer.finish();
+  }
+}
+
+void render_background(const RenderOptions& options, int count) {
+  require(count >= 1 && count <= kMostFrames, "background: {} frames, expected 1 to {}", count, kMostFrames);
+  BopWriter writer(fresh_scene(options.out));
+  const int rooms = (count + kFramesPerRoom - 1) / kFramesPerRoom;
+  for (int room = 0; room < rooms; ++room) {
+    const int here = std::min(kFramesPerRoom, count - room * kFramesPerRoom);
+    const Scene scene = make_background_scene(room, options.seed);
+    const LitWorld lit_world = light_world(scene.world);
+    render_in_order(
+        fmt::format("background room {}/{}", room + 1, rooms), options.threads, here,
+        [&](int index) { return render_scene_frame(scene, lit_world, index, kFramesPerRoom); },
+        [&](const SceneFrame& view) { writer.add(view.frame, {}, {}); });
+  }
+  writer.finish();
+}
+
+void render_scene(const RenderOptions& options, const std::string& name, int frames, int every) {
+  require(frames >= 1 && frames <= kMostFrames, "scene: {} frames, expected 1 to {}", frames, kMostFrames);
+  require(every >= 1, "scene: every {}th frame, expected at least 1", every);
+  const Scene scene = make_test_scene(name);
+  const LitWorld lit_world = light_world(scene.world);
+  write_models(taught_objects({}), options.out / "models");
+  BopWriter writer(fresh_scene(options.out));
+  render_in_order(
+      name, options.threads, (frames + every - 1) / every,
+      [&](int index) { return render_scene_frame(scene, lit_world, index * every, frames); },
+      [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
+  writer.finish();
+}
+
+}  // namespace houghstream

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drivers/synth/training_views.hpp"
+
+namespace houghstream {
+
+/// What all jobs share.
+struct RenderOptions {
+  std::filesystem::path out;  ///< folder to write to
+  std::uint64_t seed = 1;     ///< of training rooms; test scenes have seeds of their own
+  int threads = 2;
+};
+
+/// OUT/00000I/ for each object id I, and OUT/models/.
+void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
+                     const TurntableSettings& turntable);
+
+/// OUT/ becomes one BOP scene of `count` frames of training rooms without the objects.
+void render_background(const RenderOptions& options, int count);
+
+/// OUT/ becomes one BOP scene: every `every`-th of `frames` frames of the test scene `name`, and OUT/models/.
+void render_scene(const RenderOptions& options, const std::string& name, int frames, int every);
+
+}  // namespace houghstream
