@@ -11,16 +11,14 @@ PoseCandidate best_place(const RgbdFrame& frame, const ObjectModel& model, const
                          const PoseSettings& settings) {
   const SearchSettings& search = settings.search;
   const DepthTolerance tolerance{search.tolerance_m, settings.noise};
-  const double reach = model.radius + settings.region.gate_margin_m;
   PoseCandidate best;
   for (int j = -search.steps; j <= search.steps; ++j) {
     for (int i = -search.steps; i <= search.steps; ++i) {
       Eigen::Isometry3d T = Eigen::Translation3d(i * search.step_m, j * search.step_m, 0.0) * T_camera_object;
-      const double shift = best_depth_shift(frame, model, T, search.points, reach, tolerance);
-      T.pretranslate(Eigen::Vector3d(0.0, 0.0, shift));
-      const float score = score_pose(frame, model, T, search.points, tolerance).value;
+      const DepthShift found = best_depth_shift(frame, model, T, search.points, search.reach_m, tolerance);
+      T.translation() *= 1.0 + found.shift_m / T.translation().z();
       const bool first = i == -search.steps && j == -search.steps;
-      if (first || score > best.score) best = {T, score};
+      if (first || found.score.value > best.score) best = {T, found.score.value};
     }
   }
   return best;

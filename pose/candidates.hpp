@@ -17,7 +17,7 @@ struct PoseCandidate {
   float score = 0.0F;  ///< DepthScore::value
 };
 
-/// Tries each rotation at places about the detected centre, moved along the optical axis onto the measured surface;
+/// Tries each rotation at places about the detected centre, moved along the line of sight onto the measured surface;
 /// gives the best place of each rotation, best first, at most SearchSettings::keep.
 std::vector<PoseCandidate> place_candidates(const RgbdFrame& frame, const ObjectModel& model,
                                             const Eigen::Vector3f& centre_camera,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace houghstream {
@@ -19,54 +20,72 @@ float depth_beyond(const RgbdFrame& frame, const Eigen::Vector3d& point) {
          static_cast<float>(point.z());
 }
 
-}  // namespace
+/// Per point measured minus model depth, NaN where unknown.
+std::vector<float> depths_beyond(const RgbdFrame& frame, const ModelView& view,
+                                 const Eigen::Isometry3d& T_camera_object, int points) {
+  std::vector<float> beyond(std::min<std::size_t>(std::max(0, points), view.points.size()));
+  for (std::size_t i = 0; i < beyond.size(); ++i) {
+    beyond[i] = depth_beyond(frame, T_camera_object * view.points[i].cast<double>());
+  }
+  return beyond;
+}
 
-DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                      int points, const DepthTolerance& tolerance) {
-  const ModelView& view = nearest_view(model, T_camera_object);
-  const std::size_t count = std::min<std::size_t>(points, view.points.size());
+/// `width` is the tolerance at the object's depth.
+DepthScore score_of(const std::vector<float>& beyond, float shift, float width, float area) {
   DepthScore score;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d point = T_camera_object * view.points[i].cast<double>();
-    const auto beyond = static_cast<float>(depth_beyond(frame, point) / tolerance.at(point.z()));
-    if (std::abs(beyond) <= 1.0F) {
-      score.agreeing += 1.0F - beyond * beyond;
-    } else if (beyond > 1.0F) {
-      score.violating += std::min(1.0F, beyond - 1.0F);
+  for (const float value : beyond) {
+    const float ratio = (value - shift) / width;
+    if (std::abs(ratio) <= 1.0F) {
+      score.agreeing += 1.0F - ratio * ratio;
+    } else if (ratio > 1.0F) {
+      score.violating += std::min(1.0F, ratio - 1.0F);
     }
   }
-  score.agreeing /= static_cast<float>(count);
-  score.violating /= static_cast<float>(count);
-  score.value = (score.agreeing - score.violating) * view.area;
+  score.agreeing /= static_cast<float>(beyond.size());
+  score.violating /= static_cast<float>(beyond.size());
+  score.value = (score.agreeing - score.violating) * area;
   return score;
 }
 
-double best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                        int points, double reach, const DepthTolerance& tolerance) {
-  const ModelView& view = nearest_view(model, T_camera_object);
-  const std::size_t count = std::min<std::size_t>(points, view.points.size());
-  std::vector<float> shifts;
-  shifts.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float beyond = depth_beyond(frame, T_camera_object * view.points[i].cast<double>());
-    if (std::abs(beyond) <= reach) shifts.push_back(beyond);
-  }
-  std::sort(shifts.begin(), shifts.end());
-  const auto width = static_cast<float>(tolerance.at(T_camera_object.translation().z()));
+/// Mean of the fullest window of `width` among the sorted values; 0 without values.
+float densest_mean(const std::vector<float>& sorted, float width) {
   std::size_t best_first = 0;
   std::size_t best_count = 0;
   std::size_t last = 0;
-  for (std::size_t first = 0; first < shifts.size(); ++first) {
-    while (last < shifts.size() && shifts[last] <= shifts[first] + width) ++last;
+  for (std::size_t first = 0; first < sorted.size(); ++first) {
+    while (last < sorted.size() && sorted[last] <= sorted[first] + width) ++last;
     if (last - first > best_count) {
       best_count = last - first;
       best_first = first;
     }
   }
-  if (best_count == 0) return 0.0;
-  double sum = 0.0;
-  for (std::size_t i = best_first; i < best_first + best_count; ++i) sum += shifts[i];
-  return sum / static_cast<double>(best_count);
+  float sum = 0.0F;
+  for (std::size_t i = best_first; i < best_first + best_count; ++i) sum += sorted[i];
+  return best_count == 0 ? 0.0F : sum / static_cast<float>(best_count);
+}
+
+}  // namespace
+
+DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points, const DepthTolerance& tolerance) {
+  const ModelView& view = nearest_view(model, T_camera_object);
+  const auto width = static_cast<float>(tolerance.at(T_camera_object.translation().z()));
+  return score_of(depths_beyond(frame, view, T_camera_object, points), 0.0F, width, view.area);
+}
+
+DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                            int points, double reach, const DepthTolerance& tolerance) {
+  const ModelView& view = nearest_view(model, T_camera_object);
+  const auto width = static_cast<float>(tolerance.at(T_camera_object.translation().z()));
+  const std::vector<float> beyond = depths_beyond(frame, view, T_camera_object, points);
+  std::vector<float> within;
+  within.reserve(beyond.size());
+  for (const float value : beyond) {
+    if (std::abs(value) <= reach) within.push_back(value);  // false for NaN
+  }
+  std::sort(within.begin(), within.end());
+  const float shift = densest_mean(within, width);
+  return {shift, score_of(beyond, shift, width, view.area)};
 }
 
 }  // namespace houghstream

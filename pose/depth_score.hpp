@@ -20,8 +20,14 @@ struct DepthScore {
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance);
 
-/// The shift along the optical axis, within `reach` metres, that makes most visible points agree; 0 if none does.
-double best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                        int points, double reach, const DepthTolerance& tolerance);
+/// A move of the pose along the line of sight, and how the depth speaks for the pose after it.
+struct DepthShift {
+  double shift_m = 0.0;
+  DepthScore score;  ///< as score_pose would give it, but for the small change of scale
+};
+
+/// The shift within `reach` metres that makes most visible points agree; none where no point is within reach.
+DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                            int points, double reach, const DepthTolerance& tolerance);
 
 }  // namespace houghstream

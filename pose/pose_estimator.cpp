@@ -26,30 +26,35 @@ RegistrationResult register_once(const RgbdFrame& frame, const DepthRegion& regi
   return register_pcl(region_points(frame, region, stage.points), model, T_camera_object, stage, settings.registration);
 }
 
-/// Coarse on all candidates, fine on the one that the depth speaks for most.
+/// Coarse on all candidates, fine on the one that the depth speaks for most. No inliers where none stayed near
+/// `centre`.
 RegistrationResult register_candidates(const RgbdFrame& frame, const DepthRegion& region, const ObjectModel& model,
-                                       const std::vector<PoseCandidate>& candidates, const PoseSettings& settings) {
+                                       const Eigen::Vector3f& centre, const std::vector<PoseCandidate>& candidates,
+                                       const PoseSettings& settings) {
   const RegistrationSettings& registration = settings.registration;
-  const double z = candidates.front().T_camera_object.translation().z();
-  const double end = DepthTolerance{registration.end_distance_m, settings.noise}.at(z);
+  const double end = DepthTolerance{registration.end_distance_m, settings.noise}.at(centre.z());
   const double start = std::max(end, registration.start_distance_m);
   const DepthTolerance tolerance{settings.verification.tolerance_m, settings.noise};
+  const auto is_near = [&](const RegistrationResult& result) {
+    const Eigen::Vector3d shift = result.T_camera_object.translation() - centre.cast<double>();
+    return shift.norm() <= registration.max_shift_m;
+  };
   RegistrationResult best;
-  float best_score = 0.0F;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
+  float best_score = -std::numeric_limits<float>::infinity();
+  for (const PoseCandidate& candidate : candidates) {
     const RegistrationResult coarse =
-        register_once(frame, region, model, candidates[i].T_camera_object,
+        register_once(frame, region, model, candidate.T_camera_object,
                       {registration.coarse_iterations, registration.coarse_points, start, end}, settings);
     const float score = score_pose(frame, model, coarse.T_camera_object, registration.fine_points, tolerance).value;
-    if (i == 0 || score > best_score) {
-      best = coarse;
-      best_score = score;
-    }
+    if (!is_near(coarse) || !(score > best_score)) continue;
+    best = coarse;
+    best_score = score;
   }
+  if (best.inliers == 0) return best;
   RegistrationResult fine = register_once(frame, region, model, best.T_camera_object,
                                           {registration.fine_iterations, registration.fine_points, end, end}, settings);
   fine.iterations += best.iterations;
-  return fine;
+  return is_near(fine) ? fine : best;
 }
 
 bool is_finite(const Eigen::Vector3f& centre_camera) {
@@ -78,7 +83,8 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
   const std::vector<PoseCandidate> candidates =
       place_candidates(frame, *model, detection.centre_camera, rotations, settings);
 
-  const RegistrationResult registered = register_candidates(frame, region, *model, candidates, settings);
+  const RegistrationResult registered =
+      register_candidates(frame, region, *model, detection.centre_camera, candidates, settings);
   pose.converged = registered.converged;
   pose.iterations = registered.iterations;
   pose.inliers = registered.inliers;

@@ -48,6 +48,7 @@ struct InitialSettings {
 
 /// Coarse choice by depth score: each rotation at several places, the best go to registration.
 struct SearchSettings {
+  double reach_m = 0.06;      ///< along the line of sight, to each side of the detected centre
   double step_m = 0.012;      ///< between places across the line of sight
   int steps = 1;              ///< to each side
   int points = 80;            ///< of a view
@@ -65,6 +66,7 @@ struct RegistrationSettings {
   double start_distance_m = 0.035;  ///< pairs farther apart have no weight; shrinks with every iteration
   double end_distance_m = 0.008;    ///< 3 sigma is added
   double point_weight = 0.1;        ///< of the distance along the surface beside that across it
+  double max_shift_m = 0.07;        ///< from the detected centre; what ended farther away is something else
   double converged_m = 0.0005;      ///< last step moved the model's surface by less
 };
 
@@ -73,6 +75,7 @@ struct VerificationSettings {
   double tolerance_m = 0.008;         ///< measured and model depth agree; 3 sigma is added
   double min_visible_fraction = 0.2;  ///< agreeing of all rendered pixels
   double max_violation = 0.35;        ///< of the agreeing and violating pixels, those that violate free space
+  double min_outline = 0.15;          ///< of the outline with depth on both sides, what the measured surface ends at
 };
 
 struct PoseSettings {

@@ -22,65 +22,87 @@ struct StepEquations {
   double squares = 0.0;  // of the distances along the normals
 };
 
-/// The measured point nearest to `point` among a lattice of pixels that reaches `distance` to each side.
-bool nearest_measured(const RgbdFrame& frame, const Eigen::Vector3d& point, double distance, Eigen::Vector3d& nearest) {
+/// Rays of pixels with z = 1: that of (0,0), and the steps between neighbours.
+struct Rays {
+  explicit Rays(const Camera& camera)
+      : first(camera.backproject(0, 0, 1.0).cast<float>()),
+        step((camera.backproject(1, 1, 1.0) - camera.backproject(0, 0, 1.0)).cast<float>()) {}
+  Eigen::Vector3f first;
+  Eigen::Vector3f step;
+};
+
+/// The gap to the measured point nearest to `point` among a lattice of pixels that reaches `distance` to each side.
+bool nearest_measured(const RgbdFrame& frame, const Rays& rays, const Eigen::Vector3d& point, float distance,
+                      Eigen::Vector3f& gap) {
   const Eigen::Vector2d pixel = frame.camera.project(point);
-  const double reach_px = distance / frame.camera.metres_per_px(point.z());
-  const int stride = std::max(1, static_cast<int>(reach_px / kSearchSteps));
-  const int reach = stride * kSearchSteps;
   const bool inside =
       pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= frame.depth.cols - 1 && pixel.y() <= frame.depth.rows - 1;
   if (!inside) return false;
-  const int u = static_cast<int>(std::lround(pixel.x()));
-  const int v = static_cast<int>(std::lround(pixel.y()));
-  double best_sq = distance * distance;
-  bool found = false;
-  for (int y = v - reach; y <= v + reach; y += stride) {
-    if (y < 0 || y >= frame.depth.rows) continue;
+  const Eigen::Vector3f p = point.cast<float>();
+  const int stride = std::max(1, static_cast<int>(distance / (rays.step.x() * p.z()) / kSearchSteps));
+  const int u = static_cast<int>(pixel.x() + 0.5);
+  const int v = static_cast<int>(pixel.y() + 0.5);
+  const auto least = [stride](int at) { return -std::min(kSearchSteps, at / stride); };
+  const auto most = [stride](int at, int size) { return std::min(kSearchSteps, (size - 1 - at) / stride); };
+  float best_sq = distance * distance;
+  const float limit_sq = best_sq;
+  for (int j = least(v); j <= most(v, frame.depth.rows); ++j) {
+    const int y = v + j * stride;
     const float* depth = frame.depth.ptr<float>(y);
-    for (int x = std::max(u - reach, u % stride); x <= std::min(u + reach, frame.depth.cols - 1); x += stride) {
-      if (!(std::abs(depth[x] - point.z()) < distance)) continue;
-      const Eigen::Vector3d measured = frame.camera.backproject(x, y, depth[x]);
-      const double distance_sq = (measured - point).squaredNorm();
-      if (distance_sq >= best_sq) continue;
+    const float ray_y = rays.first.y() + rays.step.y() * static_cast<float>(y);
+    for (int i = least(u); i <= most(u, frame.depth.cols); ++i) {
+      const int x = u + i * stride;
+      const float z = depth[x];  // NaN fails the comparison below
+      const Eigen::Vector3f here(z * (rays.first.x() + rays.step.x() * static_cast<float>(x)) - p.x(),
+                                 z * ray_y - p.y(), z - p.z());
+      const float distance_sq = here.squaredNorm();
+      if (!(distance_sq < best_sq)) continue;
       best_sq = distance_sq;
-      nearest = measured;
-      found = true;
+      gap = here;
     }
   }
-  return found;
+  return best_sq < limit_sq;
 }
 
-void add_row(StepEquations& equations, const Vector6d& row, double residual, double weight) {
-  equations.curvature.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-  equations.gradient += weight * residual * row;
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d out;
+  out << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
+  return out;
+}
+
+/// Adds the pull of one pair: gap^T W gap with W = weight (n n^T + point_weight I).
+void add_pair(StepEquations& equations, const Eigen::Vector3d& arm, const Eigen::Vector3d& gap,
+              const Eigen::Matrix3d& pull) {
+  const Eigen::Matrix3d S = cross_matrix(arm);
+  const Eigen::Matrix3d turned = S * pull;
+  equations.curvature.topLeftCorner<3, 3>() += turned * S.transpose();
+  equations.curvature.bottomLeftCorner<3, 3>() += turned.transpose();
+  equations.curvature.bottomRightCorner<3, 3>() += pull;
+  equations.gradient.head<3>() += turned * gap;
+  equations.gradient.tail<3>() += pull * gap;
 }
 
 StepEquations pair_up(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       std::size_t count, double distance, double point_weight) {
   const ModelView& view = nearest_view(model, T_camera_object);
   const Eigen::Vector3d centre = T_camera_object * model.centre.cast<double>();
+  const Rays rays(frame.camera);
   StepEquations equations;
   for (std::size_t i = 0; i < std::min(count, view.points.size()); ++i) {
     const Eigen::Vector3d point = T_camera_object * view.points[i].cast<double>();
     const Eigen::Vector3d normal = T_camera_object.linear() * view.normals[i].cast<double>();
-    Eigen::Vector3d measured;
     if (!(point.z() > 0.0) || normal.dot(point) >= 0.0) continue;  // turned away since the view was chosen
-    if (!nearest_measured(frame, point, distance, measured)) continue;
-    const Eigen::Vector3d gap = measured - point;
+    Eigen::Vector3f measured_gap = Eigen::Vector3f::Zero();
+    if (!nearest_measured(frame, rays, point, static_cast<float>(distance), measured_gap)) continue;
+    const Eigen::Vector3d gap = measured_gap.cast<double>();
     const double across = gap.dot(normal);
-    const double ratio_sq = gap.squaredNorm() / (distance * distance);
-    const double weight = (1.0 - ratio_sq) * (1.0 - ratio_sq);  // Tukey's biweight
+    const double left = 1.0 - gap.squaredNorm() / (distance * distance);
+    const double weight = left * left;  // Tukey's biweight
     ++equations.pairs;
     equations.squares += across * across;
-    const Eigen::Vector3d arm = (point - centre) / model.radius;
-    Vector6d row;
-    row << arm.cross(normal), normal;
-    add_row(equations, row, across, weight);
-    for (int axis = 0; axis < 3; ++axis) {
-      row << arm.cross(Eigen::Vector3d::Unit(axis)), Eigen::Vector3d::Unit(axis);
-      add_row(equations, row, gap[axis], weight * point_weight);
-    }
+    Eigen::Matrix3d pull = weight * normal * normal.transpose();
+    pull.diagonal().array() += weight * point_weight;
+    add_pair(equations, (point - centre) / model.radius, gap, pull);
   }
   return equations;
 }

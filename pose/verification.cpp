@@ -1,8 +1,8 @@
 #include "pose/verification.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
 
 #include "pipeline/renderer.hpp"
 
@@ -26,6 +26,34 @@ cv::Rect bounds_px(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, c
   const int right = clip(std::floor(high.x()) + 1.0, camera.width);
   const int bottom = clip(std::floor(high.y()) + 1.0, camera.height);
   return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
+}
+
+/// Looks `reach_px` outside the outline, to the left and right of each row's and above and below each column's.
+void compare_outline(const RgbdFrame& frame, const cv::Mat& rendered, const cv::Rect& region,
+                     const DepthTolerance& tolerance, Verification& result) {
+  constexpr double kReach = 0.008;  // metres outside
+  const auto is_model = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < rendered.cols && y < rendered.rows && !std::isnan(rendered.at<float>(y, x));
+  };
+  const std::array<cv::Point, 4> sides{cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}};
+  for (int y = 0; y < rendered.rows; ++y) {
+    for (int x = 0; x < rendered.cols; ++x) {
+      if (!is_model(x, y)) continue;
+      const float z = rendered.at<float>(y, x);
+      for (const cv::Point& side : sides) {
+        if (is_model(x + side.x, y + side.y)) continue;
+        const int reach_px = 1 + static_cast<int>(kReach / frame.camera.metres_per_px(z));
+        const cv::Point there = cv::Point(x, y) + reach_px * side;
+        if (is_model(there.x, there.y)) continue;  // across a notch
+        const cv::Point pixel = there + region.tl();
+        if (!cv::Rect(cv::Point(), frame.depth.size()).contains(pixel)) continue;
+        const float beyond = frame.depth.at<float>(pixel) - z;
+        const auto limit = static_cast<float>(tolerance.at(z));
+        result.outline_ends += beyond > limit ? 1 : 0;
+        result.outline_continues += std::abs(beyond) <= limit ? 1 : 0;
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -57,11 +85,14 @@ Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::
       result.occluded += beyond < -limit ? 1 : 0;
     }
   }
+  compare_outline(frame, rendered, region, tolerance, result);
   return result;
 }
 
 bool is_supported(const Verification& verification, const VerificationSettings& settings) {
   const int judged = verification.agreeing + verification.violating;
+  const int outline = verification.outline_ends + verification.outline_continues;
+  if (verification.outline_ends < settings.min_outline * outline) return false;
   return judged > 0 && verification.visible_fraction() >= settings.min_visible_fraction &&
          verification.violating <= settings.max_violation * judged;
 }

@@ -10,18 +10,21 @@ namespace houghstream {
 
 /// The rendered model against the measured depth, pixel by pixel.
 struct Verification {
-  int rendered = 0;                    ///< pixels of the model inside the image
-  int agreeing = 0;                    ///< measured within the tolerance
-  int violating = 0;                   ///< measured behind the model: the camera saw through it
-  int occluded = 0;                    ///< measured in front of the model; says nothing about the pose
-  float visible_fraction() const;      ///< agreeing of rendered, 0 if nothing is rendered
+  int rendered = 0;                ///< pixels of the model inside the image
+  int agreeing = 0;                ///< measured within the tolerance
+  int violating = 0;               ///< measured behind the model: the camera saw through it
+  int occluded = 0;                ///< measured in front of the model; says nothing about the pose
+  int outline_ends = 0;            ///< places just outside the outline where the surface ends: measured well behind it
+  int outline_continues = 0;       ///< where the measured surface goes on as if there were no outline
+  float visible_fraction() const;  ///< agreeing of rendered, 0 if nothing is rendered
   float free_space_violation() const;  ///< violating of rendered, 0 if nothing is rendered
 };
 
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
                          const DepthTolerance& tolerance);
 
-/// Enough of the model is seen, and little of it contradicts what was seen.
+/// Enough of the model is seen, little of it contradicts what was seen, and its outline is one of the scene's too:
+/// a model's flat face sunk into a table top agrees everywhere and ends nowhere.
 bool is_supported(const Verification& verification, const VerificationSettings& settings);
 
 }  // namespace houghstream
