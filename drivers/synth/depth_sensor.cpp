@@ -71,7 +71,7 @@ class Sensor {
   }
 
   bool lost(int x, int y, double z) const {
-    const double wobble = 1.0 + 0.25 * loss_noise_.at<float>(y, x);
+    const double wobble = std::max(0.2, 1.0 + 0.25 * loss_noise_.at<float>(y, x));
     const double cosine = view_.cos_incidence.at<float>(y, x);
     const double gloss = view_.gloss.at<float>(y, x);
     const double signal = view_.reflectance.at<float>(y, x) * (1.0 - 0.6 * gloss) * cosine / (z * z);
