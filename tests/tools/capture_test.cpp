@@ -13,16 +13,16 @@
 namespace houghstream {
 namespace {
 
-/// Frames at 1000, 1100, ...
+/// Frames at 1000, 2000, ...
 class FakeSource : public FrameSource {
  public:
   explicit FakeSource(int frames) : left_(frames) {}
   std::optional<RgbdFrame> next() override {
     if (left_ == 0) return std::nullopt;
     --left_;
-    return make_test_frame(1000 + 100 * count_++);
+    return make_test_frame(1000 + 1000 * count_++);
   }
-  double rate_hz() const override { return 1e4; }
+  double rate_hz() const override { return 1e3; }
 
  private:
   int left_;
@@ -61,8 +61,8 @@ TEST_F(CaptureLog, HoldsTheSourcesFrames) {
   const std::vector<Line> lines = capture(4, CaptureSettings{});
   ASSERT_EQ(lines.size(), 4U);
   for (std::int64_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(lines[i].utime, 1000 + 100 * i);
-    EXPECT_EQ(lines[i].timestamp, 1000 + 100 * i);
+    EXPECT_EQ(lines[i].utime, 1000 + 1000 * i);
+    EXPECT_EQ(lines[i].timestamp, 1000 + 1000 * i);
     EXPECT_EQ(lines[i].sequence, i);
   }
 }
@@ -73,7 +73,7 @@ TEST_F(CaptureLog, IsStampedAtTheRateAskedFor) {
   const std::vector<Line> lines = capture(3, settings);
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[2].timestamp, 1000 + 200000);
-  EXPECT_EQ(lines[2].utime, 1200) << "a frame keeps its name";
+  EXPECT_EQ(lines[2].utime, 3000) << "a frame keeps its name";
 }
 
 TEST_F(CaptureLog, LoopsWithoutRepeatingATime) {
@@ -83,7 +83,7 @@ TEST_F(CaptureLog, LoopsWithoutRepeatingATime) {
   const std::vector<Line> lines = capture(3, settings);
   ASSERT_EQ(lines.size(), 8U);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    EXPECT_EQ(lines[i].utime, 1000 + 100 * static_cast<std::int64_t>(i));
+    EXPECT_EQ(lines[i].utime, 1000 + 1000 * static_cast<std::int64_t>(i));
     EXPECT_EQ(lines[i].sequence, static_cast<std::int64_t>(i));
   }
 }
