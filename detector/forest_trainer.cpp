@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "detector/calibration.hpp"
 #include "detector/tree_trainer.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -62,6 +63,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const FeatureSetting
   forest.views = set.views;
   forest.leaves.push_back(0);
   for (const Forest& tree : trees) append_tree(tree, forest);
+  calibrate_masses(set, settings, DetectionSettings{}.vote_sigma, forest);
   return forest;
 }
 

@@ -72,23 +72,17 @@ float start_depth(const HoughSpace& space, const Cell& cell) {
 class MaximumSearch {
  public:
   MaximumSearch(const HoughSpace& space, const Camera& camera, const DetectionSettings& settings)
-      : space_(space), camera_(camera), reach_(2.5F * settings.vote_sigma) {}
-
-  /// Weight of a vote at this distance: (1 - d^2/reach^2)^2, which needs no exponential and ends at the reach.
-  float kernel(const Eigen::Vector3f& difference) const {
-    const float q = 1.0F - difference.squaredNorm() / (reach_ * reach_);
-    return q > 0.0F ? q * q : 0.0F;
-  }
+      : space_(space), camera_(camera), sigma_(settings.vote_sigma) {}
 
   template <typename Visit>
   void for_votes_around(const Eigen::Vector3f& centre, const Visit& visit) const {
     const Eigen::Vector2d px = camera_.project(centre.cast<double>());
     const int x = static_cast<int>(std::floor((px.x() + 0.5) / space_.cell_px));
     const int y = static_cast<int>(std::floor((px.y() + 0.5) / space_.cell_px));
-    const double reach_px = reach_ / camera_.metres_per_px(centre.z());
+    const double reach_px = kVoteReach * sigma_ / camera_.metres_per_px(centre.z());
     const int radius = static_cast<int>(reach_px / space_.cell_px) + 1;
     for_votes_near(space_, x, y, radius, [&](const Vote& vote) {
-      const float k = kernel(vote.centre_camera - centre);
+      const float k = vote_kernel((vote.centre_camera - centre).squaredNorm(), sigma_);
       if (k > 0.0F) visit(vote, k);
     });
   }
@@ -114,7 +108,7 @@ class MaximumSearch {
  private:
   const HoughSpace& space_;
   const Camera& camera_;
-  float reach_;
+  float sigma_;
 };
 
 /// Pairs of index and sum of those sums that are not 0, in order of the index.

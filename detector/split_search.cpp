@@ -48,17 +48,27 @@ void SplitSearch::load_items(const std::vector<std::uint32_t>& samples) {
   }
 }
 
-/// Sample by sample, so that a patch is in the cache for all tests.
+/// Sample by sample, so that a patch is in the cache for all tests; in blocks, so that the values, which are read test
+/// by test, are not written one cache line each.
 void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples) {
+  constexpr std::size_t kBlock = 32;
   const std::size_t count = samples.size();
   values_.resize(test_count * count);
-  for (std::size_t s = 0; s < count; ++s) {
-    const TrainingSample& sample = set_.samples[samples[s]];
-    const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
-    const std::uint8_t* centre = picture.at(sample.x, sample.y);
-    const int stride = picture.row_stride();
+  block_.resize(test_count * kBlock);
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    const std::size_t size = std::min(kBlock, count - begin);
+    for (std::size_t s = 0; s < size; ++s) {
+      const TrainingSample& sample = set_.samples[samples[begin + s]];
+      const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
+      const std::uint8_t* centre = picture.at(sample.x, sample.y);
+      const int stride = picture.row_stride();
+      for (std::size_t t = 0; t < test_count; ++t) {
+        block_[s * test_count + t] = static_cast<std::int16_t>(test_value(tests_[t], centre, sample.scale, stride));
+      }
+    }
     for (std::size_t t = 0; t < test_count; ++t) {
-      values_[t * count + s] = static_cast<std::int16_t>(test_value(tests_[t], centre, sample.scale, stride));
+      std::int16_t* out = values_.data() + t * count + begin;
+      for (std::size_t s = 0; s < size; ++s) out[s] = block_[s * test_count + t];
     }
   }
 }

@@ -60,6 +60,7 @@ class SplitSearch {
   std::vector<float> label_weights_;
   std::vector<PixelTest> tests_;
   std::vector<std::int16_t> values_;  // tests x samples
+  std::vector<std::int16_t> block_;   // some samples x tests
   std::vector<Item> items_;           // per sample
   std::array<int, kBins> bin_counts_{};
   std::vector<Sums> bins_;  // kBins x labels

@@ -158,7 +158,7 @@ void measure_classes(const std::vector<Picture>& pictures, TrainingSet& set) {
     const std::size_t rank = distances.size() * 98 / 100;
     std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(rank), distances.end());
     set.classes[c].radius = distances[rank];
-    set.classes[c].expected_mass = static_cast<float>(area / count);
+    set.visible_areas.push_back(static_cast<float>(area / count));
   }
 }
 

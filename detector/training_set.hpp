@@ -29,6 +29,7 @@ struct TrainingSet {
   std::vector<TrainingSample> samples;  ///< grouped by picture
   std::vector<ObjectClass> classes;     ///< by class id
   std::vector<ViewRotation> views;
+  std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
 };
 
 /// Puts every view into several backgrounds, computes features and draws patches (paper, Section 4: 250 an image).

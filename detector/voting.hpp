@@ -9,6 +9,16 @@
 
 namespace houghstream {
 
+constexpr float kVoteReach = 2.5F;  ///< of vote_kernel, in sigmas
+
+/// How much a vote this far from a maximum supports it: (1 - d^2 / reach^2)^2 with a reach of 2.5 sigma, close to a
+/// Gaussian, but it needs no exponential and ends at the reach.
+inline float vote_kernel(float distance_sq, float vote_sigma) {
+  const float reach = kVoteReach * vote_sigma;
+  const float q = 1.0F - distance_sq / (reach * reach);
+  return q > 0.0F ? q * q : 0.0F;
+}
+
 /// One vote for an object's centre in the camera frame.
 struct Vote {
   Eigen::Vector3f centre_camera;  ///< metres
