@@ -57,8 +57,9 @@ std::vector<Detection> detect_class(const Forest& forest, int class_index, const
   const float least_mass = settings.threshold * object.expected_mass;
   for (const Hypothesis& hypothesis : find_maxima(forest, space, patches, frame.camera, least_mass, settings)) {
     if (detections.size() >= static_cast<std::size_t>(settings.max_per_class)) break;
-    const cv::Rect2f box = backprojected_box(hypothesis, patches, settings.stride);
-    const cv::Rect2f full(box.x * to_full, box.y * to_full, box.width * to_full, box.height * to_full);
+    const cv::Rect2f box = backprojected_box(forest, hypothesis, patches, frame.camera, settings.stride);
+    const cv::Rect2f full((box.x + 0.5F) * to_full, (box.y + 0.5F) * to_full, box.width * to_full,
+                          box.height * to_full);
     detections.push_back(to_detection(forest, object, hypothesis, full, settings.max_rotations));
   }
   return detections;

@@ -14,7 +14,7 @@ struct FeatureSettings {
 
 /// How patches are tested. Stored in the forest file.
 struct PatchSettings {
-  float unit = 0.002F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
+  float unit = 0.004F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
   int radius = 10;      ///< test offsets reach from -radius to +radius steps
 };
 

@@ -1,6 +1,7 @@
 #include "detector/hypotheses.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace houghstream {
@@ -52,6 +53,17 @@ void for_votes_near(const HoughSpace& space, int cell_x, int cell_y, int radius_
   }
 }
 
+/// The value with half the weight below it; 0 where there are none.
+float weighted_median(std::vector<std::pair<float, float>>& values, float total) {
+  std::sort(values.begin(), values.end());
+  float sum = 0.0F;
+  for (const auto& [value, weight] : values) {
+    sum += weight;
+    if (sum >= 0.5F * total) return value;
+  }
+  return 0.0F;
+}
+
 /// Weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
 float start_depth(const HoughSpace& space, const Cell& cell) {
   std::vector<std::pair<float, float>> depths;
@@ -60,13 +72,7 @@ float start_depth(const HoughSpace& space, const Cell& cell) {
     depths.emplace_back(vote.centre_camera.z(), vote.weight);
     total += vote.weight;
   });
-  std::sort(depths.begin(), depths.end());
-  float sum = 0.0F;
-  for (const auto& [z, weight] : depths) {
-    sum += weight;
-    if (sum >= 0.5F * total) return z;
-  }
-  return 0.0F;
+  return weighted_median(depths, total);
 }
 
 class MaximumSearch {
@@ -156,6 +162,50 @@ Hypothesis gather_support(const Forest& forest, const MaximumSearch& search, con
   return hypothesis;
 }
 
+/// Left, top, right and bottom, working pixels.
+using Sides = std::array<float, 4>;
+
+/// Where the supporting patches lie. Patches that hardly believe in the object lie beside it; the median supporter
+/// says what believing is here.
+Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, int stride) {
+  std::vector<float> weights;
+  for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
+  std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
+  const float least = 0.3F * weights[weights.size() / 2];
+  std::vector<std::int16_t> xs;
+  std::vector<std::int16_t> ys;
+  for (const auto& [patch, weight] : hypothesis.patches) {
+    if (weight < least) continue;
+    xs.push_back(patches.x[patch]);
+    ys.push_back(patches.y[patch]);
+  }
+  std::sort(xs.begin(), xs.end());
+  std::sort(ys.begin(), ys.end());
+  const std::size_t outliers = xs.size() / 50;
+  const float half = 0.5F * static_cast<float>(stride);
+  return {xs[outliers] - half, ys[outliers] - half, xs[xs.size() - 1 - outliers] + half,
+          ys[ys.size() - 1 - outliers] + half};
+}
+
+/// Where the remembered training views have their sides: weighted medians.
+Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera) {
+  const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
+  const Eigen::Vector2d centre_px = camera.project(centre);
+  const auto px_per_metre = static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
+  Sides sides{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    std::vector<std::pair<float, float>> values;
+    float total = 0.0F;
+    for (const auto& [view, weight] : hypothesis.views) {
+      values.emplace_back(forest.views[view].box[i], weight);
+      total += weight;
+    }
+    sides[i] =
+        static_cast<float>(centre_px[static_cast<Eigen::Index>(i % 2)]) + px_per_metre * weighted_median(values, total);
+  }
+  return sides;
+}
+
 }  // namespace
 
 std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
@@ -185,29 +235,22 @@ std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& spac
   return hypotheses;
 }
 
-cv::Rect2f backprojected_box(const Hypothesis& hypothesis, const PatchGrid& patches, int stride) {
-  // Patches that hardly believe in the object lie beside it. The median supporter says what believing is here.
-  std::vector<float> weights;
-  for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
-  if (weights.empty()) return {};
-  std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
-  const float least = 0.3F * weights[weights.size() / 2];
-  std::vector<std::int16_t> xs;
-  std::vector<std::int16_t> ys;
-  for (const auto& [patch, weight] : hypothesis.patches) {
-    if (weight < least) continue;
-    xs.push_back(patches.x[patch]);
-    ys.push_back(patches.y[patch]);
+cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
+                             const Camera& working_camera, int stride) {
+  if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
+  constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
+  const Sides seen = supporting_sides(hypothesis, patches, stride);
+  const Sides whole = remembered_sides(forest, hypothesis, working_camera);
+  Sides sides{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const float size = whole[(i % 2) + 2] - whole[i % 2];
+    const float outwards = i < 2 ? seen[i] - whole[i] : whole[i] - seen[i];
+    sides[i] = outwards < kHidden * size ? whole[i] : seen[i];
   }
-  std::sort(xs.begin(), xs.end());
-  std::sort(ys.begin(), ys.end());
-  const std::size_t outliers = xs.size() / 50;
-  const float half = 0.5F * static_cast<float>(stride);
-  const float x0 = xs[outliers] - half + 0.5F;
-  const float y0 = ys[outliers] - half + 0.5F;
-  const float x1 = xs[xs.size() - 1 - outliers] + half + 0.5F;
-  const float y1 = ys[ys.size() - 1 - outliers] + half + 0.5F;
-  return {x0, y0, x1 - x0, y1 - y0};
+  const cv::Rect2f box(sides[0], sides[1], sides[2] - sides[0], sides[3] - sides[1]);
+  const auto width = static_cast<float>(working_camera.width);
+  const auto height = static_cast<float>(working_camera.height);
+  return box & cv::Rect2f(-0.5F, -0.5F, width, height);
 }
 
 std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, float max_overlap) {

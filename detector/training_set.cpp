@@ -76,7 +76,12 @@ Picture object_picture(const TrainingView& view, int label, std::uint32_t view_i
   cv::resize(composite->mask, mask, frame.colour.size(), 0, 0, cv::INTER_NEAREST);
   const double to_frame = static_cast<double>(composite->mask.cols) / mask.cols;
   const auto known = [&](int x, int y) { return std::isfinite(frame.filled_depth.at<float>(y, x)); };
-  const auto on_object = [&](int x, int y) { return mask.at<std::uint8_t>(y, x) != 0 && known(x, y); };
+  // A hole's borrowed depth may be the background's: good enough to look at a patch, not to learn where the centre is.
+  cv::Mat measured;
+  cv::resize(composite->frame.depth, measured, mask.size(), 0, 0, cv::INTER_NEAREST);
+  const auto on_object = [&](int x, int y) {
+    return mask.at<std::uint8_t>(y, x) != 0 && known(x, y) && std::isfinite(measured.at<float>(y, x));
+  };
   const auto beside = [&](int x, int y) { return mask.at<std::uint8_t>(y, x) == 0 && known(x, y); };
 
   const int count = settings.patches_per_view / settings.composites_per_view;
@@ -104,7 +109,7 @@ Picture background_picture(const RgbdFrame& background, const Recipe& recipe, Ra
   part.colour = background.colour(place).clone();
   part.depth = background.depth(place);
   part.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
-  vary_light(part.colour, 0.6 * recipe.settings.light_variation, random);
+  vary_exposure(part.colour, recipe.settings.light_variation, random);
 
   const WorkingFrame frame = make_working_frame(part, recipe.features);
   Picture picture;
@@ -117,11 +122,20 @@ Picture background_picture(const RgbdFrame& background, const Recipe& recipe, Ra
   return picture;
 }
 
-/// Rotation of the view relative to the ray through the object's centre.
-ViewRotation view_rotation(const TrainingView& view, std::uint32_t class_index) {
-  const Eigen::Vector3f centre = view.T_camera_object.translation().cast<float>();
+/// What the pose process and the boxes need to remember of a view.
+TrainedView trained_view(const TrainingView& view, std::uint32_t class_index) {
+  const Eigen::Vector3d centre = view.T_camera_object.translation();
   const Eigen::Matrix3f R_camera_object = view.T_camera_object.rotation().cast<float>();
-  return {class_index, Eigen::Quaternionf(ray_rotation(centre).transpose() * R_camera_object).normalized()};
+  const Eigen::Vector2d centre_px = view.frame.camera.project(centre);
+  const cv::Rect box = cv::boundingRect(view.mask);
+  const auto metres = static_cast<float>(view.frame.camera.metres_per_px(centre.z()));
+  TrainedView out;
+  out.class_index = class_index;
+  out.R_ray_object = Eigen::Quaternionf(ray_rotation(centre.cast<float>()).transpose() * R_camera_object).normalized();
+  const auto side = [&](int px, double origin_px) { return static_cast<float>(px - 0.5 - origin_px) * metres; };
+  out.box = {side(box.x, centre_px.x()), side(box.y, centre_px.y()), side(box.br().x, centre_px.x()),
+             side(box.br().y, centre_px.y())};
+  return out;
 }
 
 std::vector<ObjectClass> list_classes(const std::vector<TrainingView>& views) {
@@ -179,7 +193,7 @@ TrainingSet make_training_set(const std::vector<TrainingView>& views, const Feat
     const auto same = [&](const ObjectClass& c) { return c.class_id == view->class_id; };
     const auto index = std::find_if(set.classes.begin(), set.classes.end(), same) - set.classes.begin();
     labels.push_back(static_cast<int>(index) + 1);
-    set.views.push_back(view_rotation(*view, static_cast<std::uint32_t>(index)));
+    set.views.push_back(trained_view(*view, static_cast<std::uint32_t>(index)));
   }
   const int copies = settings.composites_per_view;
   const int object_count = static_cast<int>(objects.size()) * copies;

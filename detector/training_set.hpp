@@ -28,7 +28,7 @@ struct TrainingSet {
   std::vector<FeatureImage> pictures;
   std::vector<TrainingSample> samples;  ///< grouped by picture
   std::vector<ObjectClass> classes;     ///< by class id
-  std::vector<ViewRotation> views;
+  std::vector<TrainedView> views;
   std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
 };
 
