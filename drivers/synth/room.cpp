@@ -147,7 +147,7 @@ void set_light_and_photo(World& world, std::uint64_t seed) {
   key.position_world =
       random.uniform(2.0, 3.2) * Eigen::Vector3d(std::cos(azimuth) * std::cos(elevation),
                                                  std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
-  key.colour_bgr = light_colour(warmth, random.uniform(0.35, 1.1));
+  key.colour_bgr = light_colour(warmth, random.uniform(0.5, 1.3));
   key.penumbra_m = random.uniform(0.004, 0.05);
   key.casts_shadow = !chance(random, 0.12);
   Light overhead;
@@ -155,9 +155,9 @@ void set_light_and_photo(World& world, std::uint64_t seed) {
   overhead.colour_bgr = light_colour(random.uniform(-0.4, 0.6), random.uniform(0.15, 0.5));
   overhead.penumbra_m = random.uniform(0.08, 0.16);
   world.lights = {key, overhead};
-  world.ambient_bgr = light_colour(random.uniform(-0.4, 0.5), random.uniform(0.12, 0.4));
+  world.ambient_bgr = light_colour(random.uniform(-0.4, 0.5), random.uniform(0.12, 0.32));
 
-  world.photo.mean_level = random.uniform(0.13, 0.24);
+  world.photo.mean_level = random.uniform(0.16, 0.28);
   world.photo.exposure_bias = random.uniform(0.75, 1.3);
   world.photo.blur_px = random.uniform(0.5, 0.9);
   world.photo.shot_noise = random.uniform(0.006, 0.018);

@@ -42,7 +42,7 @@ Eigen::Vector3f sample_level(const cv::Mat& level, const Eigen::Vector2f& uv) {
 // The level whose texels are about as large as the pixel on the surface.
 const cv::Mat& mip_level(const Thing& thing, int triangle, float pixel_on_surface_m) {
   const float texels = std::max(1.0F, thing.texels_per_m[static_cast<std::size_t>(triangle)] * pixel_on_surface_m);
-  const int level = static_cast<int>(std::log2(texels) + 0.3F);
+  const int level = std::ilogb(1.23F * texels);  // rounds log2 up from seven tenths
   return thing.mip_levels[std::min(static_cast<std::size_t>(level), thing.mip_levels.size() - 1)];
 }
 

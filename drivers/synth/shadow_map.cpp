@@ -8,19 +8,19 @@
 namespace houghstream {
 namespace {
 
-constexpr int kMapSizePx = 1024;
+constexpr double kMapPxPerM = 430.0;  // of the part of the world that the map shows
 constexpr float kBiasM = 0.006F;
 constexpr int kTaps = 8;
 constexpr int kTurns = 64;
 
 using Taps = std::array<std::array<Eigen::Vector2f, kTaps>, kTurns>;
 
-// Vogel's spiral in the unit disc, for each turn of the pattern.
+// Vogel's spiral in the unit disc, from the rim inwards, for each turn of the pattern.
 Taps make_taps() {
   Taps taps;
   for (int turn = 0; turn < kTurns; ++turn) {
     for (int i = 0; i < kTaps; ++i) {
-      const double radius = std::sqrt((i + 0.5) / kTaps);
+      const double radius = std::sqrt((kTaps - i - 0.5) / kTaps);
       const double angle = 2.399963 * i + 2.0 * M_PI * turn / kTurns;  // golden angle
       taps[static_cast<std::size_t>(turn)][static_cast<std::size_t>(i)] =
           Eigen::Vector2d(radius * std::cos(angle), radius * std::sin(angle)).cast<float>();
@@ -35,11 +35,12 @@ ShadowMap make_shadow_map(const World& world, const Light& light) {
   ShadowMap map;
   if (!light.casts_shadow) return map;
   const double distance = light.position_world.norm();
-  const double focal = 0.5 * kMapSizePx * distance / world.focus_radius_m;
-  const double centre = 0.5 * (kMapSizePx - 1);
-  map.camera = Camera{kMapSizePx, kMapSizePx, focal, focal, centre, centre};
+  const int size = static_cast<int>(std::lround(2.0 * world.focus_radius_m * kMapPxPerM));
+  const double focal = 0.5 * size * distance / world.focus_radius_m;
+  const double centre = 0.5 * (size - 1);
+  map.camera = Camera{size, size, focal, focal, centre, centre};
   map.T_light_world = look_at(light.position_world, Eigen::Vector3d::Zero());
-  map.inverse_depth = cv::Mat::zeros(kMapSizePx, kMapSizePx, CV_32FC1);
+  map.inverse_depth = cv::Mat::zeros(size, size, CV_32FC1);
   std::vector<RenderItem> items;
   for (const Placed& placed : world.items) {
     if (placed.casts_shadow) items.push_back({&placed.thing->mesh, map.T_light_world * placed.T_world_object, 1});
@@ -66,17 +67,22 @@ float ShadowLookup::lit(const Eigen::Vector3f& point_camera, float turn) const {
   if (point.z() <= 0.1F) return 1.0F;
   const auto focal = static_cast<float>(map_.camera.fx);
   const auto centre = static_cast<float>(map_.camera.cx);
-  const float u = focal * point.x() / point.z() + centre;
-  const float v = focal * point.y() / point.z() + centre;
+  // Half a pixel and the first pixel's row of safety are added, so that cutting off rounds.
+  const float u = focal * point.x() / point.z() + centre + 1.5F;
+  const float v = focal * point.y() / point.z() + centre + 1.5F;
   const float radius = penumbra_m_ * focal / point.z();
+  const auto last = static_cast<float>(map_.camera.width + 1) - radius;
+  if (!(u > 1.0F + radius && v > 1.0F + radius && u < last && v < last)) return 1.0F;
   const float limit = 1.0F / (point.z() - kBiasM - 0.25F * penumbra_m_);
   const auto& taps = kPatterns[static_cast<std::size_t>(turn * kTurns) % kTurns];
   int lit = 0;
-  for (const Eigen::Vector2f& tap : taps) {
-    const int x = static_cast<int>(std::floor(u + radius * tap.x() + 0.5F));
-    const int y = static_cast<int>(std::floor(v + radius * tap.y() + 0.5F));
-    const bool outside = x < 0 || y < 0 || x >= kMapSizePx || y >= kMapSizePx;
-    if (outside || map_.inverse_depth.at<float>(y, x) <= limit) ++lit;
+  for (int i = 0; i < kTaps; ++i) {
+    // Where the outer half agrees, the inner one will not differ.
+    if (i == kTaps / 2 && (lit == 0 || lit == i)) return lit == 0 ? 0.0F : 1.0F;
+    const Eigen::Vector2f& tap = taps[static_cast<std::size_t>(i)];
+    const int x = static_cast<int>(u + radius * tap.x()) - 1;
+    const int y = static_cast<int>(v + radius * tap.y()) - 1;
+    if (map_.inverse_depth.at<float>(y, x) <= limit) ++lit;
   }
   return static_cast<float>(lit) / kTaps;
 }

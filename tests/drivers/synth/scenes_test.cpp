@@ -1,0 +1,109 @@
+#include "drivers/synth/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "drivers/synth/mesh_parts.hpp"
+#include "drivers/synth/objects.hpp"
+#include "drivers/synth/table_layout.hpp"
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+// Each is made once: drawing all textures takes a while.
+const Scene& test_scene(const std::string& name) {
+  static std::map<std::string, Scene> scenes;
+  const auto found = scenes.find(name);
+  return found != scenes.end() ? found->second : scenes.emplace(name, make_test_scene(name)).first->second;
+}
+
+double yaw_of(const Eigen::Isometry3d& T) {
+  return std::atan2(T.linear()(1, 0), T.linear()(0, 0));
+}
+
+// Footprints of what stands on the table: its lowest point is at the table's height.
+std::vector<Footprint> standing(const World& world) {
+  std::vector<Footprint> footprints;
+  for (const Placed& placed : world.items) {
+    const Eigen::AlignedBox3d bounds = mesh_bounds(placed.thing->mesh).cast<double>();
+    if (std::abs(placed.T_world_object.translation().z() + bounds.min().z()) > 1e-6) continue;
+    footprints.push_back(
+        {placed.T_world_object.translation().head<2>(), 0.5 * bounds.sizes().head<2>(), yaw_of(placed.T_world_object)});
+  }
+  return footprints;
+}
+
+TEST(Scenes, TestAndTrainingSeedsNeverCoincide) {
+  for (std::uint64_t number = 0; number < 2000; ++number) {
+    const std::uint64_t training = world_seed(WorldUse::kTraining, number);
+    const std::uint64_t test = world_seed(WorldUse::kTest, number);
+    EXPECT_EQ(training % 2, 0U);
+    EXPECT_EQ(test % 2, 1U);
+    EXPECT_EQ(aspect_seed(training, number) % 2, 0U);
+    EXPECT_EQ(aspect_seed(test, number) % 2, 1U);
+  }
+  for (const char* name : kTestScenes) EXPECT_EQ(test_scene(name).seed % 2, 1U);
+  EXPECT_EQ(make_background_scene(0, 1).seed % 2, 0U);
+}
+
+TEST(Scenes, HoldTheFourClassesAmongClutterThatDoesNotTouch) {
+  for (const char* name : kTestScenes) {
+    SCOPED_TRACE(name);
+    const Scene& scene = test_scene(name);
+    std::multiset<int> ids;
+    for (const Placed& placed : scene.world.items) {
+      if (placed.object_id != 0) ids.insert(placed.object_id);
+    }
+    EXPECT_EQ(ids, (std::multiset<int>{1, 2, 3, 4}));
+    const std::vector<Footprint> footprints = standing(scene.world);
+    EXPECT_GE(footprints.size(), 12U);
+    for (std::size_t i = 0; i < footprints.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(footprints_touch(footprints[i], footprints[j], 0.0));
+    }
+  }
+}
+
+TEST(Scenes, ObjectsAreBetween60CentimetresAnd250FromTheCamera) {
+  for (const char* name : kTestScenes) {
+    SCOPED_TRACE(name);
+    const Scene& scene = test_scene(name);
+    for (int i = 0; i <= 100; ++i) {
+      const Eigen::Isometry3d T_camera_world = camera_at(scene.trajectory, i / 100.0);
+      for (const Placed& placed : scene.world.items) {
+        if (placed.object_id == 0) continue;
+        const double z = (T_camera_world * placed.T_world_object).translation().z();
+        EXPECT_GT(z, 0.55);
+        EXPECT_LT(z, 2.5);
+      }
+    }
+  }
+}
+
+TEST(Scenes, CameraMovesSmoothly) {
+  const Trajectory trajectory = make_trajectory(1);
+  for (int i = 0; i < 299; ++i) {
+    const Eigen::Isometry3d step = camera_at(trajectory, (i + 1) / 299.0) * camera_at(trajectory, i / 299.0).inverse();
+    EXPECT_LT(step.translation().norm(), 0.03);
+    EXPECT_LT(Eigen::AngleAxisd(step.linear()).angle(), 0.02);
+  }
+}
+
+TEST(Scenes, BackgroundsHoldNoTaughtObject) {
+  std::set<std::string> taught;
+  for (int id = 1; id <= kTaughtObjectCount; ++id) taught.insert(make_taught_object(id).name);
+  for (int i = 0; i < kRoomStyles; ++i) {
+    for (const Placed& placed : make_background_scene(i, 1).world.items)
+      EXPECT_EQ(taught.count(placed.thing->name), 0U);
+  }
+}
+
+TEST(Scenes, UnknownNamesAreRefused) {
+  EXPECT_THROW(make_test_scene("cellar_1"), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,33 @@
+#include "tools/render/ordered_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+TEST(OrderedFrames, AreWrittenInOrderByAnyNumberOfThreads) {
+  for (const int threads : {1, 3}) {
+    std::vector<std::int64_t> order;
+    render_in_order(
+        "test", threads, 20,
+        [](int index) {
+          SceneFrame frame;
+          frame.frame.utime = index;
+          return frame;
+        },
+        [&](const SceneFrame& frame) { order.push_back(frame.frame.utime); });
+    ASSERT_EQ(order.size(), 20U);
+    for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], static_cast<std::int64_t>(i));
+  }
+}
+
+TEST(OrderedFrames, AFailureEndsTheLoopAndIsRethrown) {
+  const auto render = [](int) { return SceneFrame{}; };
+  const auto write = [](const SceneFrame&) { fail("disk full"); };
+  EXPECT_THROW(render_in_order("test", 3, 20, render, write), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream
