@@ -3,6 +3,7 @@
 #include <lcm/lcm.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -27,7 +28,8 @@ constexpr int kQueueCapacity = 100;
 std::string complete_url(const std::string& url) {
   const char* environment = std::getenv("LCM_DEFAULT_URL");
   const std::string chosen = !url.empty() ? url : environment != nullptr ? environment : kDefaultUrl;
-  return with_receive_buffer(chosen);
+  // Asked for more than is granted, LCM would print a warning of its own that tells nothing.
+  return with_receive_buffer(chosen, std::max(granted_receive_buffer(kAskedReceiveBuffer), std::int64_t{1}));
 }
 
 struct Subscription {

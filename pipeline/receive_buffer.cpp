@@ -6,11 +6,11 @@
 
 namespace houghstream {
 
-std::string with_receive_buffer(const std::string& url) {
+std::string with_receive_buffer(const std::string& url, std::int64_t bytes) {
   const bool is_udpm = url.rfind("udpm://", 0) == 0;
   if (!is_udpm || url.find("recv_buf_size=") != std::string::npos) return url;
   const char separator = url.find('?') == std::string::npos ? '?' : '&';
-  return fmt::format("{}{}recv_buf_size={}", url, separator, kAskedReceiveBuffer);
+  return fmt::format("{}{}recv_buf_size={}", url, separator, bytes);
 }
 
 std::int64_t granted_receive_buffer(std::int64_t asked) {

@@ -13,7 +13,7 @@ constexpr std::int64_t kAskedReceiveBuffer = std::int64_t{16} << 20U;
 constexpr std::int64_t kNeededReceiveBuffer = std::int64_t{4} << 20U;
 
 /// Adds recv_buf_size to a udpm URL that does not state it; other URLs come back as they are.
-std::string with_receive_buffer(const std::string& url);
+std::string with_receive_buffer(const std::string& url, std::int64_t bytes);
 
 /// What the kernel grants when `asked` bytes are asked for, in the same measure; nothing is left open.
 std::int64_t granted_receive_buffer(std::int64_t asked);

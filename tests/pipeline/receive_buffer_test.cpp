@@ -6,11 +6,11 @@ namespace houghstream {
 namespace {
 
 TEST(ReceiveBuffer, IsAskedForWhereTheUrlDoesNot) {
-  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667?ttl=0"),
-            "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=16777216");
-  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667"), "udpm://239.255.76.67:7667?recv_buf_size=16777216");
-  EXPECT_EQ(with_receive_buffer("udpm://?recv_buf_size=5"), "udpm://?recv_buf_size=5");
-  EXPECT_EQ(with_receive_buffer("memq://"), "memq://");
+  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667?ttl=0", 1024),
+            "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1024");
+  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667", 1024), "udpm://239.255.76.67:7667?recv_buf_size=1024");
+  EXPECT_EQ(with_receive_buffer("udpm://?recv_buf_size=5", 1024), "udpm://?recv_buf_size=5");
+  EXPECT_EQ(with_receive_buffer("memq://", 1024), "memq://");
 }
 
 TEST(ReceiveBuffer, SmallRequestsAreGranted) {

@@ -37,9 +37,8 @@ Detections only(const Detection& detection) {
   return detections;
 }
 
-/// ADD-S less what the sampling of the surface adds.
 double error_of(const StandingScene& scene, const ObjectPose& pose) {
-  return add_s(scene.object, scene.truth, *pose.T_camera_object) - add_s(scene.object, scene.truth, scene.truth);
+  return SurfaceError(scene.object)(scene.truth, *pose.T_camera_object);
 }
 
 TEST(PoseEstimator, KnownPosesComeBackFromVotesWithOutliers) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include "pipeline/channels.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/event_log.hpp"
 #include "pipeline/lcm_bus.hpp"
@@ -102,6 +103,7 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
     ++result.frames;
     result.bytes += static_cast<std::int64_t>(bytes.size());
   }
+  bus.publish(channel::kStatus, status.message());
   result.seconds = seconds_since(start);
   return result;
 }

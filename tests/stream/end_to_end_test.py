@@ -1,0 +1,200 @@
+"""Capture -> detect -> pose through LCM with separate processes, compared with the rendered truth.
+
+Renders a few training views and a short scene, trains a small forest, replays the scene with the stock
+lcm-logplayer to hs-detect and hs-pose, records the bus with the stock lcm-logger, and adds up.
+"""
+
+import argparse
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+from bus import Process, enter_private_network
+from lcm_messages import detections_of, poses_of, read_log, utime_of
+
+FRAMES = 24
+REPLAYED = 120  # the scene again and again
+VALID = 1  # object_pose_t
+CLASSES = {1: "bowl", 4: "soda_can"}
+
+
+def run(*command, **options):
+    return subprocess.run([str(part) for part in command], check=True, text=True, **options)
+
+
+def make_data(tools, folder):
+    """Training views, background, scene, forest and two logs of the scene; returns the scene's truth."""
+    run(tools / "hs-render", "training", "--out", folder / "views", "--objects", ",".join(CLASSES.values()),
+        "--azimuths", 12, "--pitches", 2)
+    run(tools / "hs-render", "background", "--out", folder / "background", "--count", 8)
+    run(tools / "hs-render", "scene", "desk_2", "--out", folder / "scene", "--frames", 12 * FRAMES, "--every", 12)
+    run(tools / "hs-train", "--views", f"bop:{folder / 'views'}", "--background", f"bop:{folder / 'background'}",
+        "--out", folder / "small.forest", "--trees", 6, "--composites", 2)
+    source = f"bop:{folder / 'scene'}"
+    run(tools / "hs-capture", "--source", source, "--log", folder / "scene.log")
+    run(tools / "hs-capture", "--source", source, "--log", folder / "replay.log", "--loop", "--frames", REPLAYED)
+    truth = json.loads((folder / "scene" / "scene_gt.json").read_text())
+    boxes = json.loads((folder / "scene" / "scene_gt_info.json").read_text())
+    return [list(zip(truth[key], boxes[key])) for key in sorted(truth, key=int)]
+
+
+def start_stream(tools, folder):
+    detect = Process(folder, tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 2)
+    pose = Process(folder, tools / "hs-pose", "--models", folder / "views" / "models")
+    detect.wait_until_ready()
+    pose.wait_until_ready()
+    return detect, pose
+
+
+def check_account(summary, sent):
+    """Every frame is accounted for, and none was lost on the way."""
+    account = summary["account"]
+    assert summary["frames_received"] == sent, summary
+    assert account["balanced"] and account["lost"] == 0 and account["refused"] == 0, account
+    assert account["detected"] + account["skipped"] == sent, account
+    assert summary["frames_detected"] == account["detected"], summary
+    pose = summary["processes"]["hs-pose"]
+    assert pose["received"] == account["detected"] and pose["refused"] == 0, pose
+    assert pose["processed"] + pose["skipped"] == pose["received"], pose
+    assert summary["frames_with_poses"] == pose["processed"], summary
+    assert summary["latency_ms"]["total"]["p50"] > 0.0, summary
+
+
+def replay(tools, folder):
+    """Replays the log through the processes with LCM's own tools; returns (channel, data) of all that was heard."""
+    recorded = folder / "recorded.log"
+    logger = subprocess.Popen(["lcm-logger", "-f", "-q", str(recorded)], stderr=subprocess.DEVNULL)
+    observe = Process(folder, tools / "hs-observe", "--expect", REPLAYED, "--out", folder / "observed.json")
+    processes = [observe]
+    try:
+        observe.wait_until_ready()
+        processes += start_stream(tools, folder)
+        run("lcm-logplayer", folder / "replay.log", stdout=subprocess.DEVNULL)
+        observe.wait(30)
+        for process in processes[1:]:
+            process.stop()
+    finally:
+        logger.terminate()
+        logger.wait()
+        for process in processes:
+            process.kill()
+    check_account(json.loads((folder / "observed.json").read_text()), REPLAYED)
+    return [(channel, data) for _, channel, data in read_log(recorded)]
+
+
+def capture_live(tools, folder):
+    """hs-capture itself on the bus, raw images: 1.5 MB a frame must not be lost either."""
+    observe = Process(folder, tools / "hs-observe", "--expect", FRAMES, "--out", folder / "live.json")
+    processes = [observe]
+    try:
+        observe.wait_until_ready()
+        processes += start_stream(tools, folder)
+        run(tools / "hs-capture", "--source", f"bop:{folder / 'scene'}", "--raw-colour", "--raw-depth", "--rate", 10)
+        observe.wait(30)
+        for process in processes[1:]:
+            process.stop()
+    finally:
+        for process in processes:
+            process.kill()
+    check_account(json.loads((folder / "live.json").read_text()), FRAMES)
+
+
+def detect_offline(tools, folder):
+    """Detections of every frame of the scene, by utime, straight from the log and with one thread."""
+    results = folder / "results.log"
+    run(tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 1, "-l", f"file://{folder / 'scene.log'}",
+        "--output-log", results)
+    return {utime_of(data): detections_of(data) for _, channel, data in read_log(results)
+            if channel == "HOUGHSTREAM_DETECTIONS"}
+
+
+def iou(a, b):
+    width = min(a[0] + a[2], b[0] + b[2]) - max(a[0], b[0])
+    height = min(a[1] + a[3], b[1] + b[3]) - max(a[1], b[1])
+    shared = max(width, 0) * max(height, 0)
+    return shared / (a[2] * a[3] + b[2] * b[3] - shared)
+
+
+def is_found(detection, item, info):
+    return detection.class_id == item["obj_id"] and iou(detection.box, info["bbox_visib"]) >= 0.5
+
+
+def check_detections(truth, offline):
+    """Most of the well visible taught objects are found where they are."""
+    wanted = found = 0
+    for objects, detections in zip(truth, (offline[utime] for utime in sorted(offline))):
+        for item, info in objects:
+            if item["obj_id"] not in CLASSES or info["visib_fract"] < 0.6:
+                continue
+            wanted += 1
+            found += any(is_found(detection, item, info) for detection in detections)
+    print(f"{found} of {wanted} well visible objects found by a forest of 6 trees")
+    assert wanted >= FRAMES and found >= 0.5 * wanted, (found, wanted)
+
+
+def check_same_on_the_bus(heard, offline):
+    """What went over the network is what the log gives: other threads, other timing, same detections."""
+    compared = 0
+    for channel, data in heard:
+        if channel == "HOUGHSTREAM_DETECTIONS" and utime_of(data) in offline:
+            assert detections_of(data) == offline[utime_of(data)], utime_of(data)
+            compared += 1
+    assert compared > 0, "no detections of the scene's first round were heard"
+
+
+def check_poses(truth, folder, heard):
+    """Where an object was found, a pose that claims to be valid is near the truth."""
+    utimes = [utime_of(data) for _, _, data in read_log(folder / "replay.log")]
+    objects_of = {utime: truth[i % FRAMES] for i, utime in enumerate(utimes)}
+    detections = {utime_of(data): detections_of(data) for channel, data in heard if channel == "HOUGHSTREAM_DETECTIONS"}
+    errors = []
+    for data in (data for channel, data in heard if channel == "HOUGHSTREAM_POSES"):
+        for _, index, status, translation in poses_of(data):
+            detection = detections[utime_of(data)][index]
+            places = [item["cam_t_m2c"] for item, info in objects_of[utime_of(data)] if is_found(detection, item, info)]
+            if status == VALID and places:
+                errors.append(sum((t - p * 1e-3) ** 2 for t, p in zip(translation, places[0])) ** 0.5)
+    near = sum(error < 0.03 for error in errors)
+    print(f"{near} of {len(errors)} valid poses of found objects within 3 cm of the truth")
+    assert near >= 5 and near >= 0.7 * len(errors), sorted(errors)
+
+
+def check_bad_input(tools, folder):
+    """A cut log: one clear line, and a failure."""
+    cut = folder / "cut.log"
+    cut.write_bytes((folder / "scene.log").read_bytes()[:-1000])
+    result = subprocess.run([str(tools / "hs-detect"), "--forest", str(folder / "small.forest"), "-l", f"file://{cut}",
+                             "--output-log", str(folder / "none.log")], capture_output=True, text=True, check=False)
+    assert result.returncode != 0 and f"{cut}: cut in event {FRAMES - 1}" in result.stderr, result
+    truncated = folder / "cut.forest"
+    truncated.write_bytes((folder / "small.forest").read_bytes()[:1000])
+    result = subprocess.run([str(tools / "hs-detect"), "--forest", str(truncated)], capture_output=True, text=True,
+                            check=False, timeout=20)
+    assert result.returncode != 0 and str(truncated) in result.stderr, result
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for what the test makes")
+    arguments = parser.parse_args()
+    enter_private_network()
+    shutil.rmtree(arguments.out, ignore_errors=True)
+    arguments.out.mkdir(parents=True)
+    tools, folder = arguments.tools.resolve(), arguments.out.resolve()
+    truth = make_data(tools, folder)
+    offline = detect_offline(tools, folder)
+    assert len(offline) == FRAMES, "a log is worked on without skipping"
+    check_detections(truth, offline)
+    heard = replay(tools, folder)
+    check_same_on_the_bus(heard, offline)
+    check_poses(truth, folder, heard)
+    capture_live(tools, folder)
+    check_bad_input(tools, folder)
+    print("end to end: everything accounted for")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,78 @@
+"""Reads LCM event logs and Houghstream's results without the lcm module: two formats of a few lines each."""
+
+import struct
+from dataclasses import dataclass
+
+
+def read_log(path):
+    """Yields (timestamp, channel, data) of each event of an LCM log."""
+    with open(path, "rb") as log:
+        while header := log.read(28):
+            sync, _, timestamp, channel_size, data_size = struct.unpack(">IqqII", header)
+            assert sync == 0xEDA1DA01, f"{path}: no event header at byte {log.tell() - 28}"
+            yield timestamp, log.read(channel_size).decode(), log.read(data_size)
+
+
+class Wire:
+    """An encoded message, read from front to back; big-endian."""
+
+    def __init__(self, data):
+        self.data = data
+        self.position = 8  # behind the fingerprint
+
+    def read(self, form):
+        values = struct.unpack_from(">" + form, self.data, self.position)
+        self.position += struct.calcsize(">" + form)
+        return values if len(values) > 1 else values[0]
+
+    def text(self):
+        size = self.read("i")
+        value = self.data[self.position : self.position + size - 1].decode()
+        self.position += size
+        return value
+
+
+@dataclass
+class Detection:
+    class_id: int
+    name: str
+    score: float
+    box: tuple  # x, y, width, height in pixels
+    centre: tuple  # metres
+    votes: tuple
+
+
+def utime_of(data):
+    return struct.unpack_from(">q", data, 8)[0]
+
+
+def detections_of(data):
+    """The detections of an encoded detections_t; stage times are left out, they differ from run to run."""
+    wire = Wire(data)
+    wire.read("q")
+    wire.text()
+    found = []
+    for _ in range(wire.read("i")):
+        class_id, name = wire.read("i"), wire.text()
+        score, *box = wire.read("5f")
+        centre = wire.read("3f")
+        weight, total, count = wire.read("fii")
+        votes = wire.read(f"{5 * count}f") if count else ()
+        found.append(Detection(class_id, name, score, tuple(box), centre, (weight, total, votes)))
+    return found
+
+
+def poses_of(data):
+    """(class name, index of the detection, status, translation in metres) of each pose of an object_poses_t."""
+    wire = Wire(data)
+    wire.read("q")
+    wire.text()
+    poses = []
+    for _ in range(wire.read("i")):
+        wire.read("i")
+        name = wire.text()
+        _, index, status = wire.read("fib")
+        translation = wire.read("3d")
+        wire.read("4dbii4f")
+        poses.append((name, index, status, translation))
+    return poses

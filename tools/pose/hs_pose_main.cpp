@@ -1,0 +1,52 @@
+#include <spdlog/spdlog.h>
+
+#include "drivers/bop_dataset.hpp"
+#include "pipeline/pose_process.hpp"
+#include "pipeline/stop_signal.hpp"
+#include "pose/pose_estimator.hpp"
+#include "tools/common/tool_main.hpp"
+
+namespace {
+
+/// Meshes by class name, from a BOP models/ folder; without one every detection is answered with "no model".
+std::map<std::string, houghstream::Mesh> load_models(const std::string& folder) {
+  std::map<std::string, houghstream::Mesh> meshes;
+  if (folder.empty()) {
+    spdlog::warn("no --models: detections are answered without a pose");
+    return meshes;
+  }
+  const houghstream::BopModels models = houghstream::read_bop_models(folder);
+  for (const auto& [id, diameter] : models.diameters) {
+    meshes.emplace(models.names.at(id), houghstream::load_mesh(models.mesh_file(id)));
+  }
+  return meshes;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace houghstream;
+  CLI::App app("Refines detections to 6-DoF poses and publishes object_poses_t", "hs-pose");
+  std::string models;
+  std::string camera;
+  std::string url;
+  std::string output_log;
+  PoseSettings settings;
+  PoseProcessOptions options;
+  app.add_option("--models", models, "models/ folder of a BOP dataset");
+  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--threads", settings.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("-c,--channel", options.frame_channel, "channel of the frames")->capture_default_str();
+  app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
+  add_lcm_url_option(app, url);
+
+  return run_tool(app, argc, argv, [&] {
+    catch_stop_signals();
+    if (!camera.empty()) options.camera = parse_camera(camera);
+    const PoseEstimator estimator(load_models(models), settings);
+    LcmBus bus(url, output_log);
+    run_pose_process(bus, options, [&](const RgbdFrame& frame, const Detections& detections) {
+      return estimator.estimate(frame, detections);
+    });
+  });
+}
