@@ -110,6 +110,7 @@ TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
       const bool has_reason = pose.status == PoseStatus::kRejectedByDepth || pose.status == PoseStatus::kNotConverged;
       EXPECT_TRUE(has_reason) << seed << " " << pose.detection_index << " " << to_string(pose.status);
       EXPECT_FALSE(pose.T_camera_object.has_value());
+      EXPECT_EQ(std::isnan(pose.residual), pose.inliers == 0);
     }
   }
 }
