@@ -54,7 +54,7 @@ Eigen::Matrix3d upright_rotation(double elevation) {
 Features object_features(const Sample& sample, const Turntable& table) {
   // A full change of one colour channel counts as much as 2 cm.
   constexpr float kMetresPerLevel = 0.02F / 255.0F;
-  const Eigen::Isometry3d T_object_camera = table.T_camera_object(sample.yaw).inverse();
+  const Eigen::Isometry3d T_object_camera = table.pose_at(sample.yaw).inverse();
   Features features;
   for (const ColouredPoint& point : sample.points) {
     Vector6f feature;
@@ -69,6 +69,7 @@ Features object_features(const Sample& sample, const Turntable& table) {
 /// surface is hidden in the other.
 double trimmed_distance_sq(const Features& from, const Features& to) {
   std::vector<float> nearest_sq;
+  nearest_sq.reserve(from.size());
   for (const Vector6f& point : from) {
     float best = std::numeric_limits<float>::infinity();
     for (const Vector6f& other : to) best = std::min(best, (other - point).squaredNorm());
@@ -84,6 +85,7 @@ double trimmed_distance_sq(const Features& from, const Features& to) {
 /// How badly the views fit on each other when they are turned back: each against the next and the one after it.
 double looseness(const std::vector<Sample>& samples, const Turntable& table) {
   std::vector<Features> features;
+  features.reserve(samples.size());
   for (const Sample& sample : samples) features.push_back(object_features(sample, table));
   double sum = 0.0;
   for (std::size_t i = 0; i < features.size(); ++i) {
@@ -155,7 +157,7 @@ std::pair<double, Turntable> fit_table(const std::vector<Sample>& samples, doubl
 void centre_height(const std::vector<Sample>& samples, Turntable& table) {
   std::vector<double> heights;
   for (const Sample& sample : samples) {
-    const Eigen::Isometry3d T_object_camera = table.T_camera_object(sample.yaw).inverse();
+    const Eigen::Isometry3d T_object_camera = table.pose_at(sample.yaw).inverse();
     for (const ColouredPoint& point : sample.points) heights.push_back((T_object_camera * point.position).z());
   }
   std::sort(heights.begin(), heights.end());
@@ -166,7 +168,7 @@ void centre_height(const std::vector<Sample>& samples, Turntable& table) {
 
 }  // namespace
 
-Eigen::Isometry3d Turntable::T_camera_object(double yaw) const {
+Eigen::Isometry3d Turntable::pose_at(double yaw) const {
   return T_camera_axis * Eigen::AngleAxisd(direction * yaw, Eigen::Vector3d::UnitZ());
 }
 

@@ -19,8 +19,8 @@ struct Turntable {
   Eigen::Isometry3d T_camera_axis = Eigen::Isometry3d::Identity();
   double direction = 1.0;  ///< +1 where yaw turns the object counter-clockwise seen from above, else -1
 
-  /// Pose of the object's frame in the camera frame when the table stands at `yaw`.
-  Eigen::Isometry3d T_camera_object(double yaw) const;
+  /// T_camera_object when the table stands at `yaw`.
+  Eigen::Isometry3d pose_at(double yaw) const;
 };
 
 /// Finds the axis, the camera's elevation and the direction from the points of one full turn. Needs at least one view;

@@ -149,7 +149,7 @@ void set_poses(const std::vector<ViewName>& names, std::vector<TrainingView>& vi
     turn.push_back({names[i].yaw, object_points(frame.colour, frame.depth, views[i].mask, frame.camera)});
   }
   const Turntable table = estimate_turntable(turn);
-  for (std::size_t i = 0; i < views.size(); ++i) views[i].T_camera_object = table.T_camera_object(turn[i].yaw);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].T_camera_object = table.pose_at(turn[i].yaw);
 }
 
 void append_instance(const Instance& instance, const Camera& camera, std::vector<TrainingView>& out) {

@@ -110,8 +110,8 @@ struct PoseEstimator::State {
 
 PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings)
     : state_(std::make_unique<State>()) {
-  for (auto& [name, mesh] : models) {
-    state_->models.emplace(name, make_object_model(name, std::move(mesh), settings.model));
+  for (auto& model : models) {
+    state_->models.emplace(model.first, make_object_model(model.first, std::move(model.second), settings.model));
   }
   state_->settings = settings;
 }

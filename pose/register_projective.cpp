@@ -40,8 +40,8 @@ bool nearest_measured(const RgbdFrame& frame, const Rays& rays, const Eigen::Vec
   if (!inside) return false;
   const Eigen::Vector3f p = point.cast<float>();
   const int stride = std::max(1, static_cast<int>(distance / (rays.step.x() * p.z()) / kSearchSteps));
-  const int u = static_cast<int>(pixel.x() + 0.5);
-  const int v = static_cast<int>(pixel.y() + 0.5);
+  const int u = static_cast<int>(std::lround(pixel.x()));
+  const int v = static_cast<int>(std::lround(pixel.y()));
   const auto least = [stride](int at) { return -std::min(kSearchSteps, at / stride); };
   const auto most = [stride](int at, int size) { return std::min(kSearchSteps, (size - 1 - at) / stride); };
   float best_sq = distance * distance;
@@ -73,9 +73,9 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
 /// Adds the pull of one pair: gap^T W gap with W = weight (n n^T + point_weight I).
 void add_pair(StepEquations& equations, const Eigen::Vector3d& arm, const Eigen::Vector3d& gap,
               const Eigen::Matrix3d& pull) {
-  const Eigen::Matrix3d S = cross_matrix(arm);
-  const Eigen::Matrix3d turned = S * pull;
-  equations.curvature.topLeftCorner<3, 3>() += turned * S.transpose();
+  const Eigen::Matrix3d turning = cross_matrix(arm);
+  const Eigen::Matrix3d turned = turning * pull;
+  equations.curvature.topLeftCorner<3, 3>() += turned * turning.transpose();
   equations.curvature.bottomLeftCorner<3, 3>() += turned.transpose();
   equations.curvature.bottomRightCorner<3, 3>() += pull;
   equations.gradient.head<3>() += turned * gap;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <vector>
 
 #include "pipeline/frame.hpp"
@@ -16,7 +17,7 @@ struct RegistrationResult {
   int iterations = 0;
   int inliers = 0;  ///< model points with a measured point within the last pair distance
   float inlier_fraction = 0.0F;
-  float residual = 0.0F;  ///< root mean square distance of the inliers along the normals, metres; NaN if none
+  float residual = std::numeric_limits<float>::quiet_NaN();  ///< RMS distance of the inliers along normals, metres
 };
 
 /// How far one registration goes: pairs farther apart than the distance, which shrinks from start to end, have no

@@ -74,6 +74,7 @@ ThingPtr plates(Random& random) {
       glaze);
   std::vector<Part> parts;
   const int count = random.between(1, 6);
+  parts.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) parts.push_back(at(plate, {0, 0, 0.0075 * i}));
   return make_thing("plates", finish_object(compose(parts)), 0.3F);
 }

@@ -64,7 +64,9 @@ ThingPtr make_bookshelf(Random& random) {
   for (const double side : {-0.5, 0.5})
     parts.push_back(at(box({0.02, kDepth, kRows * kRowHeight}, board), {side * width, 0, 0.5 * kRows * kRowHeight}));
   std::vector<cv::Mat> spines;
-  for (int i = 0; i < 10; ++i) spines.push_back(carton_side({64, 256}, random_palette(random), random));
+  constexpr int kSpines = 10;
+  spines.reserve(kSpines);
+  for (int i = 0; i < kSpines; ++i) spines.push_back(carton_side({64, 256}, random_palette(random), random));
   for (int row = 0; row < kRows; ++row) {
     parts.push_back(at(box({width, kDepth, 0.02}, board), {0, 0, row * kRowHeight}));
     double x = -0.5 * width + 0.03;

@@ -104,6 +104,7 @@ void draw_logo(cv::Mat& image, const cv::Rect& region, const Palette& palette, R
     std::vector<cv::Point> star;
     const int points = random.between(5, 14);
     const double inner = random.uniform(0.45, 0.8);
+    star.reserve(2 * static_cast<std::size_t>(points));
     for (int i = 0; i < 2 * points; ++i) {
       const double r = radius * (i % 2 == 0 ? 1.0 : inner);
       const double angle = M_PI * i / points;

@@ -32,8 +32,10 @@ std::vector<Eigen::Vector3d> handle_path(const MugShape& shape) {
   std::vector<Eigen::Vector3d> path;
   const double mean_radius = 0.5 * (shape.rim_radius + shape.foot_radius);
   const double reach = 0.032;
-  for (int i = 0; i <= 10; ++i) {
-    const double angle = M_PI * (i / 10.0 - 0.5);
+  constexpr int kSteps = 10;
+  path.reserve(kSteps + 1);
+  for (int i = 0; i <= kSteps; ++i) {
+    const double angle = M_PI * (static_cast<double>(i) / kSteps - 0.5);
     // Both ends lie inside the wall.
     path.emplace_back(mean_radius - 0.6 * shape.wall + reach * std::cos(angle), 0.0,
                       shape.height * (0.52 + 0.29 * std::sin(angle)));

@@ -58,7 +58,7 @@ void expect_found(double elevation, double direction) {
   const double tilt = std::acos(table.T_camera_axis.linear().col(2).dot(truth.linear().col(2)));
   EXPECT_LT(tilt, 3.0 * M_PI / 180.0) << "elevation " << elevation << " direction " << direction;
   EXPECT_LT((table.T_camera_axis.translation() - t).norm(), 0.005) << "elevation " << elevation;
-  EXPECT_TRUE(table.T_camera_object(0.0).isApprox(table.T_camera_axis));
+  EXPECT_TRUE(table.pose_at(0.0).isApprox(table.T_camera_axis));
 }
 
 TEST(Turntable, AxisElevationAndDirectionAreFound) {

@@ -37,9 +37,8 @@ Detections only(const Detection& detection) {
   return detections;
 }
 
-/// ADD-S less what the sampling of the surface adds.
 double error_of(const StandingScene& scene, const ObjectPose& pose) {
-  return add_s(scene.object, scene.truth, *pose.T_camera_object) - add_s(scene.object, scene.truth, scene.truth);
+  return SurfaceError(scene.object)(scene.truth, *pose.T_camera_object);
 }
 
 TEST(PoseEstimator, KnownPosesComeBackFromVotesWithOutliers) {
@@ -111,6 +110,7 @@ TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
       const bool has_reason = pose.status == PoseStatus::kRejectedByDepth || pose.status == PoseStatus::kNotConverged;
       EXPECT_TRUE(has_reason) << seed << " " << pose.detection_index << " " << to_string(pose.status);
       EXPECT_FALSE(pose.T_camera_object.has_value());
+      EXPECT_EQ(std::isnan(pose.residual), pose.inliers == 0);
     }
   }
 }

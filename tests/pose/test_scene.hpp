@@ -118,20 +118,35 @@ inline Eigen::Isometry3d perturbed(const Eigen::Isometry3d& T_camera_object, dou
   return out;
 }
 
-/// ADD-S (Hinterstoisser et al. 2012): mean distance from each point under the true pose to the nearest one
-/// under the estimate, metres.
-inline double add_s(const Mesh& mesh, const Eigen::Isometry3d& truth, const Eigen::Isometry3d& estimate) {
-  const SurfacePoints surface = sample_surface(mesh, 400, 1);
-  const SurfacePoints dense = sample_surface(mesh, 1500, 2);
-  double sum = 0.0;
-  for (const Eigen::Vector3f& p : surface.points) {
-    const Eigen::Vector3f here = (estimate.inverse() * truth * p.cast<double>()).cast<float>();
-    float best_sq = 1e9F;
-    for (const Eigen::Vector3f& q : dense.points) best_sq = std::min(best_sq, (q - here).squaredNorm());
-    sum += std::sqrt(best_sq);
+/// ADD-S (Hinterstoisser et al. 2012): mean distance from each point under the true pose to the nearest one under the
+/// estimate, less what the sampling of the surface adds, metres.
+class SurfaceError {
+ public:
+  explicit SurfaceError(const Mesh& mesh)
+      : some_(sample_surface(mesh, 300, 1).points),
+        many_(sample_surface(mesh, 1000, 2).points),
+        of_truth_(mean_distance(Eigen::Isometry3d::Identity())) {}
+
+  double operator()(const Eigen::Isometry3d& truth, const Eigen::Isometry3d& estimate) const {
+    return mean_distance(estimate.inverse() * truth) - of_truth_;
   }
-  return sum / static_cast<double>(surface.points.size());
-}
+
+ private:
+  double mean_distance(const Eigen::Isometry3d& motion) const {
+    double sum = 0.0;
+    for (const Eigen::Vector3f& p : some_) {
+      const Eigen::Vector3f here = motion.cast<float>() * p;
+      float best_sq = 1e9F;
+      for (const Eigen::Vector3f& q : many_) best_sq = std::min(best_sq, (q - here).squaredNorm());
+      sum += std::sqrt(best_sq);
+    }
+    return sum / static_cast<double>(some_.size());
+  }
+
+  std::vector<Eigen::Vector3f> some_;
+  std::vector<Eigen::Vector3f> many_;
+  double of_truth_;
+};
 
 /// A detection as the detector gives it: box about the true silhouette, centre off by 15 mm, half the votes about the
 /// truth (15 degrees), half anywhere.

@@ -12,7 +12,7 @@ h1 { margin-bottom: 0; } h2 { margin-top: 2em; border-bottom: 1px solid #ddd; }
 img, video { max-width: 100%; border-radius: 4px; }
 table { border-collapse: collapse; } td, th { padding: .2em 1em .2em 0; text-align: right; border-bottom: 1px solid #eee; }
 td:first-child, th:first-child { text-align: left; }
-.charts, .sheet { display: flex; flex-wrap: wrap; gap: 1em; } .charts figure { flex: 1 1 480px; margin: 0; }
+.charts, .sheet { display: flex; flex-wrap: wrap; gap: 1em; } .charts { align-items: flex-start; } .charts figure { flex: 1 1 480px; margin: 0; }
 .sheet img { width: calc(50% - .5em); } svg { width: 100%; } svg text { font-size: 12px; fill: #444; }
 .grid { stroke: #e4e4e4; } figcaption span { margin-right: 1.2em; }
 figcaption i { display: inline-block; width: .8em; height: .8em; margin-right: .4em; border-radius: 2px; }

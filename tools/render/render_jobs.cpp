@@ -1,6 +1,7 @@
 #include "tools/render/render_jobs.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "drivers/bop_writer.hpp"
 #include "pipeline/checks.hpp"
@@ -13,17 +14,20 @@ constexpr int kMostFrames = 100000;
 constexpr int kFramesPerRoom = 5;
 
 std::vector<TaughtObject> taught_objects(const std::vector<std::string>& names) {
-  std::vector<TaughtObject> objects;
-  if (names.empty() || (names.size() == 1 && names.front() == "all")) {
-    for (int id = 1; id <= kClassCount; ++id) objects.push_back(make_taught_object(id));
-  } else {
-    for (const std::string& name : names) objects.push_back(make_taught_object(taught_object_id(name)));
+  std::vector<int> ids(kClassCount);
+  std::iota(ids.begin(), ids.end(), 1);
+  if (names != std::vector<std::string>{"all"}) {
+    ids.resize(names.size());
+    std::transform(names.begin(), names.end(), ids.begin(), taught_object_id);
   }
+  std::vector<TaughtObject> objects(ids.size());
+  std::transform(ids.begin(), ids.end(), objects.begin(), make_taught_object);
   return objects;
 }
 
 void write_models(const std::vector<TaughtObject>& objects, const std::filesystem::path& folder) {
   std::vector<NamedModel> models;
+  models.reserve(objects.size());
   for (const TaughtObject& object : objects)
     models.push_back({object.id, object.name, object.thing->mesh, object.symmetric_about_z});
   write_bop_models(models, folder);
@@ -76,7 +80,7 @@ void render_scene(const RenderOptions& options, const std::string& name, int fra
   require(every >= 1, "scene: every {}th frame, expected at least 1", every);
   const Scene scene = make_test_scene(name);
   const LitWorld lit_world = light_world(scene.world);
-  write_models(taught_objects({}), options.out / "models");
+  write_models(taught_objects({"all"}), options.out / "models");
   BopWriter writer(fresh_scene(options.out));
   render_in_order(
       name, options.threads, (frames + every - 1) / every,

@@ -40,9 +40,11 @@ void BusWatcher::stop() {
 
 void BusWatcher::subscribe(const std::string& frame_channel) {
   bus_.subscribe(frame_channel, [this](const Arrival& arrival) {
-    const std::int64_t utime = read_frame_header(arrival.bytes).utime;
+    status_.count_received();
+    const FrameHeader header = read_frame_header(arrival.bytes);
+    status_.note_sequence(header.sequence);
     std::vector<std::uint8_t> bytes(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
-    matcher_.add_frame(std::move(bytes), utime, microseconds(arrival.time));
+    matcher_.add_frame(std::move(bytes), header.utime, microseconds(arrival.time));
   });
   bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) {
     const auto message = decode_message<houghstream::detections_t>(arrival.bytes);
@@ -54,6 +56,19 @@ void BusWatcher::subscribe(const std::string& frame_channel) {
   });
 }
 
+void BusWatcher::note_drawn(const MatchedFrame& frame) {
+  const auto arrival = std::chrono::microseconds(frame.arrival_us);
+  status_.count_processed(std::chrono::steady_clock::now().time_since_epoch() - arrival);
+}
+
+void BusWatcher::hand_over() {
+  const std::int64_t before = matcher_.passed_over();
+  while (auto frame = matcher_.next(microseconds(std::chrono::steady_clock::now()))) {
+    if (!queue_.push(std::move(*frame))) status_.count_skipped(1);
+  }
+  status_.count_skipped(matcher_.passed_over() - before);
+}
+
 void BusWatcher::listen() {
   constexpr std::chrono::milliseconds kPatience(50);
   while (!stopping_) {
@@ -62,7 +77,8 @@ void BusWatcher::listen() {
     } catch (const std::exception& error) {
       spdlog::error("{}", error.what());
     }
-    while (auto frame = matcher_.next(microseconds(std::chrono::steady_clock::now()))) queue_.push(std::move(*frame));
+    hand_over();
+    status_.publish_if_due(bus_);
   }
 }
 

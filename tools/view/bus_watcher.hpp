@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "pipeline/lcm_bus.hpp"
+#include "pipeline/process_loop.hpp"
+#include "pipeline/status_reporter.hpp"
 #include "tools/view/match_queue.hpp"
 
 namespace houghstream {
@@ -24,17 +26,23 @@ class BusWatcher {
   /// The next frame to draw, or nothing when none comes within `timeout`.
   std::optional<MatchedFrame> next(std::chrono::milliseconds timeout) { return queue_.pop(timeout); }
 
+  /// What became of a frame that was taken, for the status that goes out once a second.
+  void note_drawn(const MatchedFrame& frame);
+  void note_refused(const std::string& reason) { status_.count_refused(reason); }
+
   /// Stops listening; frames that wait can still be taken.
   void stop();
 
-  /// Frames that were not drawn because drawing was too slow.
-  std::int64_t dropped() const { return queue_.dropped(); }
+  /// Says the last word about what was received, drawn and skipped.
+  void finish() { end_process(bus_, status_); }
 
  private:
   void subscribe(const std::string& frame_channel);
   void listen();
+  void hand_over();
 
   LcmBus bus_;
+  StatusReporter status_{"hs-view"};
   FrameMatcher matcher_;
   MatchQueue queue_;
   std::atomic<bool> stopping_{false};

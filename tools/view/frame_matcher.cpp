@@ -13,7 +13,7 @@ FrameMatcher::FrameMatcher(MatchSettings settings) : settings_(settings) {
 }
 
 void FrameMatcher::add_frame(std::vector<std::uint8_t> bytes, std::int64_t utime, std::int64_t now_us) {
-  if (!first_arrival_us_) first_arrival_us_ = now_us;
+  if (!first_arrival_us_) first_arrival_us_ = last_detections_us_ = last_poses_us_ = now_us;
   MatchedFrame& frame = waiting_[utime];
   frame = MatchedFrame();
   frame.frame_bytes = std::move(bytes);
@@ -42,13 +42,14 @@ void FrameMatcher::add_poses(ObjectPoses poses, std::int64_t now_us) {
 bool FrameMatcher::ready(const MatchedFrame& frame, std::int64_t now_us) const {
   if (frame.detections && frame.poses) return true;
   if (now_us - frame.arrival_us < settings_.wait_us) return false;
-  const auto silent = [&](std::int64_t last_us) { return last_us < 0 || now_us - last_us > settings_.wait_us; };
+  const auto silent = [&](std::int64_t last_us) { return now_us - last_us > settings_.silence_us; };
   return frame.detections ? silent(last_poses_us_) : silent(last_detections_us_);
 }
 
 std::optional<MatchedFrame> FrameMatcher::next(std::int64_t now_us) {
   for (auto it = waiting_.begin(); it != waiting_.end();) {
     const bool late = it->second.slot <= last_slot_ || now_us - it->second.arrival_us > settings_.kept_us;
+    if (late) ++passed_over_;
     it = late ? waiting_.erase(it) : std::next(it);
   }
   const MatchedFrame* earliest = nullptr;

@@ -12,9 +12,10 @@ namespace houghstream {
 
 /// How frames wait for their results.
 struct MatchSettings {
-  double rate_hz = 10.0;             ///< at most so many frames a second are handed out
-  std::int64_t wait_us = 500'000;    ///< a frame whose results are not complete after this is not waited for
-  std::int64_t kept_us = 3'000'000;  ///< a frame is forgotten after this
+  double rate_hz = 10.0;                ///< at most so many frames a second are handed out
+  std::int64_t wait_us = 500'000;       ///< a frame waits at least so long for its results
+  std::int64_t silence_us = 2'000'000;  ///< when nothing comes for so long, no process is there to send it
+  std::int64_t kept_us = 3'000'000;     ///< a frame is forgotten after this
 };
 
 /// A frame as it came off the bus, with what was published about it.
@@ -39,9 +40,12 @@ class FrameMatcher {
   void add_poses(ObjectPoses poses, std::int64_t now_us);
 
   /// The next frame worth drawing, in order of arrival, at most `rate_hz` a second: one with poses as soon as these
-  /// are there; one with detections only, or with nothing, when no poses or no results at all have come for as
-  /// long as `wait_us`.
+  /// are there; one with detections only, or with nothing, when no poses or no detections at all have come for as
+  /// long as `silence_us`.
   std::optional<MatchedFrame> next(std::int64_t now_us);
+
+  /// Frames that were forgotten without having been handed out.
+  std::int64_t passed_over() const { return passed_over_; }
 
  private:
   bool ready(const MatchedFrame& frame, std::int64_t now_us) const;
@@ -50,8 +54,9 @@ class FrameMatcher {
   std::map<std::int64_t, MatchedFrame> waiting_;  ///< by utime
   std::optional<std::int64_t> first_arrival_us_;
   std::int64_t last_slot_ = -1;
-  std::int64_t last_detections_us_ = -1;  ///< when detections last came; -1 = never
-  std::int64_t last_poses_us_ = -1;       ///< when poses last came; -1 = never
+  std::int64_t passed_over_ = 0;
+  std::int64_t last_detections_us_ = 0;  ///< when detections last came, or the first frame
+  std::int64_t last_poses_us_ = 0;       ///< when poses last came, or the first frame
 };
 
 }  // namespace houghstream

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -17,14 +16,14 @@ class MatchQueue {
  public:
   explicit MatchQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  void push(MatchedFrame frame) {
+  /// False when an older one had to be dropped.
+  bool push(MatchedFrame frame) {
     const std::lock_guard lock(mutex_);
-    if (frames_.size() >= capacity_) {
-      frames_.pop_front();
-      ++dropped_;
-    }
+    const bool full = frames_.size() >= capacity_;
+    if (full) frames_.pop_front();
     frames_.push_back(std::move(frame));
     arrived_.notify_one();
+    return !full;
   }
 
   /// The oldest frame, or nothing when none comes within `timeout`.
@@ -36,17 +35,11 @@ class MatchQueue {
     return frame;
   }
 
-  std::int64_t dropped() const {
-    const std::lock_guard lock(mutex_);
-    return dropped_;
-  }
-
  private:
   std::size_t capacity_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<MatchedFrame> frames_;
-  std::int64_t dropped_ = 0;
 };
 
 }  // namespace houghstream

@@ -37,11 +37,14 @@ ViewedFrame decode(const MatchedFrame& matched) {
 }
 
 // A frame that cannot be understood is reported and passed over.
-std::optional<cv::Mat> draw(const MatchedFrame& matched, const ClassModels& models, const FrameViewSettings& settings) {
+std::optional<cv::Mat> draw(const MatchedFrame& matched, const ClassModels& models, const FrameViewSettings& settings,
+                            BusWatcher& watcher) {
   try {
-    return draw_frame_view(decode(matched), models, settings);
+    cv::Mat picture = draw_frame_view(decode(matched), models, settings);
+    watcher.note_drawn(matched);
+    return picture;
   } catch (const InputError& error) {
-    spdlog::error("frame {} not drawn: {}", matched.utime, error.what());
+    watcher.note_refused(error.what());
     return std::nullopt;
   }
 }
@@ -74,7 +77,7 @@ void run_viewer(const ViewerSettings& settings) {
   spdlog::info("ready: watching {}", settings.frame_channel);
 
   const auto show = [&](const MatchedFrame& matched) {
-    const std::optional<cv::Mat> picture = draw(matched, models, picture_settings);
+    const std::optional<cv::Mat> picture = draw(matched, models, picture_settings, watcher);
     if (!picture) return;
     outputs.add(*picture, matched.utime, matched.slot);
     if (window) window->show(*picture, matched.utime);
@@ -87,7 +90,7 @@ void run_viewer(const ViewerSettings& settings) {
   }
   watcher.stop();
   while (const auto matched = watcher.next(std::chrono::milliseconds(0))) show(*matched);
-  if (settings.headless() && watcher.dropped() > 0) spdlog::warn("{} frames not drawn: too slow", watcher.dropped());
+  watcher.finish();
   outputs.finish();
 }
 

@@ -54,6 +54,8 @@ TEST(FrameMatcher, HandsOutAtMostTheRate) {
     if (matcher.next(now + 16 * kMs)) ++drawn;
   }
   EXPECT_EQ(drawn, 20);
+  EXPECT_FALSE(matcher.next(10'000 * kMs));
+  EXPECT_EQ(matcher.passed_over(), 40);
 }
 
 TEST(FrameMatcher, PassedOverFramesAreNotShownWhileTheDetectorRuns) {
@@ -70,8 +72,8 @@ TEST(FrameMatcher, WithoutPoseProcessDetectionsAreShownAfterTheWait) {
   FrameMatcher matcher({});
   matcher.add_frame({}, 1, 0);
   matcher.add_detections(detections_of(1), 20 * kMs);
-  EXPECT_FALSE(matcher.next(400 * kMs));
-  const auto matched = matcher.next(501 * kMs);
+  EXPECT_FALSE(matcher.next(1900 * kMs));
+  const auto matched = matcher.next(2001 * kMs);
   ASSERT_TRUE(matched);
   EXPECT_TRUE(matched->detections);
   EXPECT_FALSE(matched->poses);
@@ -80,7 +82,8 @@ TEST(FrameMatcher, WithoutPoseProcessDetectionsAreShownAfterTheWait) {
 TEST(FrameMatcher, WithoutAnyResultsFramesAreShownBare) {
   FrameMatcher matcher({});
   matcher.add_frame({}, 1, 0);
-  const auto matched = matcher.next(501 * kMs);
+  EXPECT_FALSE(matcher.next(1900 * kMs));
+  const auto matched = matcher.next(2001 * kMs);
   ASSERT_TRUE(matched);
   EXPECT_FALSE(matched->detections);
 }
