@@ -80,7 +80,7 @@ void vary_exposure(cv::Mat& colour, double strength, Random& random) {
 
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
                                         const TrainingSettings& settings, Random& random) {
-  constexpr int kMargin = 56;  // frame pixels around the object: patches at its edge see the room
+  constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
   const double view_distance = view.T_camera_object.translation().z();
   Composite out;
   out.scale = view_distance / distance;

@@ -127,13 +127,10 @@ std::vector<std::pair<std::uint32_t, float>> nonzero(const std::vector<float>& s
 }
 
 /// What is seen of the object: weight of the supporting votes times the area of their patches.
-float support_mass(const MaximumSearch& search, const Eigen::Vector3f& centre, const PatchGrid& patches,
-                   float patch_side_per_metre) {
+float support_mass(const MaximumSearch& search, const Eigen::Vector3f& centre, const PatchGrid& patches) {
   float mass = 0.0F;
-  search.for_votes_around(centre, [&](const Vote& vote, float k) {
-    const float side = patches.point_camera[vote.patch].z() * patch_side_per_metre;
-    mass += k * vote.weight * side * side;
-  });
+  search.for_votes_around(centre,
+                          [&](const Vote& vote, float k) { mass += k * vote.weight * patches.area[vote.patch]; });
   return mass;
 }
 
@@ -162,29 +159,32 @@ Hypothesis gather_support(const Forest& forest, const MaximumSearch& search, con
   return hypothesis;
 }
 
-/// Left, top, right and bottom, working pixels.
+/// Left, top, right and bottom of a box, frame pixels; 0 is the left edge of the first pixel.
 using Sides = std::array<float, 4>;
 
 /// Where the supporting patches lie. Patches that hardly believe in the object lie beside it; the median supporter
 /// says what believing is here.
-Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, int stride) {
+Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches) {
   std::vector<float> weights;
   for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
   std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
   const float least = 0.3F * weights[weights.size() / 2];
-  std::vector<std::int16_t> xs;
-  std::vector<std::int16_t> ys;
+  std::array<std::vector<float>, 4> values;
   for (const auto& [patch, weight] : hypothesis.patches) {
     if (weight < least) continue;
-    xs.push_back(patches.x[patch]);
-    ys.push_back(patches.y[patch]);
+    const cv::Rect2f& cell = patches.cell_px[patch];
+    values[0].push_back(cell.x);
+    values[1].push_back(cell.y);
+    values[2].push_back(cell.br().x);
+    values[3].push_back(cell.br().y);
   }
-  std::sort(xs.begin(), xs.end());
-  std::sort(ys.begin(), ys.end());
-  const std::size_t outliers = xs.size() / 50;
-  const float half = 0.5F * static_cast<float>(stride);
-  return {xs[outliers] - half, ys[outliers] - half, xs[xs.size() - 1 - outliers] + half,
-          ys[ys.size() - 1 - outliers] + half};
+  Sides sides{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    std::sort(values[i].begin(), values[i].end());
+    const std::size_t outliers = values[i].size() / 50;
+    sides[i] = i < 2 ? values[i][outliers] : values[i][values[i].size() - 1 - outliers];
+  }
+  return sides;
 }
 
 /// Where the remembered training views have their sides: weighted medians.
@@ -223,10 +223,9 @@ std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& spac
     };
     if (std::none_of(centres.begin(), centres.end(), meets)) centres.push_back(centre);
   }
-  const auto patch_side_per_metre = static_cast<float>(settings.stride * working_camera.metres_per_px(1.0));
   std::vector<Hypothesis> hypotheses;
   for (const Eigen::Vector3f& centre : centres) {
-    const float mass = support_mass(search, centre, patches, patch_side_per_metre);
+    const float mass = support_mass(search, centre, patches);
     if (mass < least_mass) continue;
     hypotheses.push_back(gather_support(forest, search, centre, mass, patches.size()));
   }
@@ -236,11 +235,11 @@ std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& spac
 }
 
 cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
-                             const Camera& working_camera, int stride) {
+                             const Camera& camera) {
   if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
   constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
-  const Sides seen = supporting_sides(hypothesis, patches, stride);
-  const Sides whole = remembered_sides(forest, hypothesis, working_camera);
+  const Sides seen = supporting_sides(hypothesis, patches);
+  const Sides whole = remembered_sides(forest, hypothesis, camera);
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const float size = whole[(i % 2) + 2] - whole[i % 2];
@@ -248,9 +247,7 @@ cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis,
     sides[i] = outwards < kHidden * size ? whole[i] : seen[i];
   }
   const cv::Rect2f box(sides[0], sides[1], sides[2] - sides[0], sides[3] - sides[1]);
-  const auto width = static_cast<float>(working_camera.width);
-  const auto height = static_cast<float>(working_camera.height);
-  return box & cv::Rect2f(-0.5F, -0.5F, width, height);
+  return box & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
 }
 
 std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, float max_overlap) {
