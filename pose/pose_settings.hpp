@@ -74,7 +74,7 @@ struct RegistrationSettings {
 struct VerificationSettings {
   double tolerance_m = 0.008;         ///< measured and model depth agree; 3 sigma is added
   double min_visible_fraction = 0.2;  ///< agreeing of all rendered pixels
-  double max_violation = 0.35;        ///< of the agreeing and violating pixels, those that violate free space
+  double max_violation = 0.2;         ///< of the agreeing and violating pixels, those that violate free space
   double min_outline = 0.15;          ///< of the outline with depth on both sides, what the measured surface ends at
 };
 

@@ -55,9 +55,10 @@ TEST(DetectProcess, TakesTheNewestAndAccountsForTheRest) {
     if (i != 7) test.bus.publish(channel::kFrame, frame_message(1000 + i, i));
     std::this_thread::sleep_for(milliseconds(10));
   }
-  std::this_thread::sleep_for(milliseconds(200));
-  const auto newest = test.last<detections_t>(channel::kDetections);
-  EXPECT_EQ(newest.utime, 1000 + kFrames - 1) << "the last frame has to be worked on";
+  const auto newest = [&] { return test.last<detections_t>(channel::kDetections).utime; };
+  ASSERT_TRUE(test.wait_for(channel::kDetections, 1));
+  for (int i = 0; i < 200 && newest() != 1000 + kFrames - 1; ++i) std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_EQ(newest(), 1000 + kFrames - 1) << "the last frame has to be worked on";
   test.stop();
   const auto status = test.last<status_t>(channel::kStatus);
   EXPECT_EQ(status.frames_received, kFrames - 1);
@@ -75,7 +76,7 @@ TEST(DetectProcess, BadFramesAreCountedReportedAndDropped) {
   }));
   const auto send = [&](const images_t& message) {
     test.bus.publish(channel::kFrame, message);
-    std::this_thread::sleep_for(milliseconds(40));
+    std::this_thread::sleep_for(milliseconds(150));
   };
   images_t truncated = frame_message(1, 0);
   truncated.images[0].data.resize(100);
@@ -87,7 +88,7 @@ TEST(DetectProcess, BadFramesAreCountedReportedAndDropped) {
   send(no_camera);
   const std::vector<std::uint8_t> noise(50, 0x5A);
   test.bus.publish(channel::kFrame, {noise.data(), noise.size()}, 0);
-  std::this_thread::sleep_for(milliseconds(40));
+  std::this_thread::sleep_for(milliseconds(150));
   send(frame_message(4, 3));
   send(frame_message(5, 4));
   ASSERT_TRUE(test.wait_for(channel::kDetections, 1));

@@ -76,7 +76,7 @@ TEST(PoseProcess, DetectionsMayComeBeforeTheirFrame) {
   ProcessOnMemq test({channel::kPoses, channel::kStatus});
   test.start(run_fake);
   test.bus.publish(channel::kDetections, to_message(one_bowl(12)));
-  std::this_thread::sleep_for(milliseconds(150));
+  std::this_thread::sleep_for(milliseconds(300));
   EXPECT_EQ(test.count(channel::kPoses), 0U);
   send_frame(test, 12);
   ASSERT_TRUE(test.wait_for(channel::kPoses, 1));
@@ -92,7 +92,7 @@ TEST(PoseProcess, DetectionsOfAFrameThatIsNotThereAreCountedAndDropped) {
   const std::vector<std::uint8_t> noise(50, 0x5A);
   test.bus.publish(channel::kDetections, {noise.data(), noise.size()}, 0);
   test.bus.publish(channel::kFrame, {noise.data(), noise.size()}, 0);
-  std::this_thread::sleep_for(milliseconds(150));
+  std::this_thread::sleep_for(milliseconds(300));
   test.stop();
   EXPECT_EQ(test.count(channel::kPoses), 0U);
   const auto status = test.last<status_t>(channel::kStatus);

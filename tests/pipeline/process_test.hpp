@@ -31,9 +31,13 @@ class ProcessOnMemq {
     }
   }
 
+  ~ProcessOnMemq() {
+    if (thread_.joinable()) stop();
+  }
+
   void start(const std::function<void(LcmBus&)>& process) {
     thread_ = std::thread([this, process] { process(bus); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until it has subscribed
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until it has subscribed
   }
 
   std::size_t count(const std::string& name) {

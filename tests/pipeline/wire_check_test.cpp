@@ -57,9 +57,11 @@ TEST(WireCheck, EveryCutIsRefused) {
   EXPECT_NO_THROW(decode_message<images_t>(view(bytes)));
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
     EXPECT_THROW(decode_message<images_t>({bytes.data(), size}), InputError) << size;
+    EXPECT_THROW(read_frame_header({bytes.data(), size}), InputError) << size;
   }
   bytes.push_back(0);
   EXPECT_THROW(decode_message<images_t>(view(bytes)), InputError);
+  EXPECT_THROW(read_frame_header(view(bytes)), InputError);
 }
 
 TEST(WireCheck, NegativeAndAbsurdCountsAreRefused) {
