@@ -62,7 +62,7 @@ class PairInbox {
   void drop_hopeless();
   FramePair take_pair(std::size_t index);
 
-  const bool newest_first_;
+  bool newest_first_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Frame> frames_;
