@@ -50,10 +50,10 @@ void paste(const Patchwork& part, cv::Point at, float depth_shift, double extra_
 
 }  // namespace
 
-void vary_light(cv::Mat& colour, double strength, Random& random) {
-  const double gain = std::exp2(strength * random.uniform(-0.7, 0.7));
-  const double gamma = std::exp2(strength * random.uniform(-0.3, 0.3));
-  const double haze = strength * std::max(0.0, random.uniform(-30.0, 30.0));
+void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
+  const double gain = std::exp2(strength * random.uniform(darkest_stops, brightest_stops));
+  const double gamma = std::exp2(strength * random.uniform(-0.25, 0.25));
+  const double haze = strength * std::max(0.0, random.uniform(-20.0, 20.0));
   const double noise = strength * random.uniform(0.0, 4.0);
   std::array<std::array<double, 256>, 3> table{};
   for (auto& channel : table) {
@@ -74,9 +74,13 @@ void vary_light(cv::Mat& colour, double strength, Random& random) {
   }
 }
 
+void vary_exposure(cv::Mat& colour, double strength, Random& random) {
+  vary_light(colour, strength, -1.4, 0.7, random);
+}
+
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
                                         const TrainingSettings& settings, Random& random) {
-  constexpr int kMargin = 56;  // frame pixels around the object: patches at its edge see the room
+  constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
   const double view_distance = view.T_camera_object.translation().z();
   Composite out;
   out.scale = view_distance / distance;
@@ -94,11 +98,11 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   out.origin_px = cv::Point2d(kMargin - part.box_px.x * out.scale, kMargin - part.box_px.y * out.scale);
 
   Patchwork lit = part;
-  vary_light(lit.colour, 0.6 * settings.light_variation, random);
+  vary_light(lit.colour, settings.light_variation, -0.4, 0.4, random);
   const double sigma_sq =
       axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
   paste(lit, cv::Point(kMargin, kMargin), out.depth_shift, sigma_sq > 0 ? std::sqrt(sigma_sq) : 0.0, out, random);
-  vary_light(out.frame.colour, 0.6 * settings.light_variation, random);
+  vary_exposure(out.frame.colour, settings.light_variation, random);
   return out;
 }
 

@@ -22,7 +22,11 @@ struct Composite {
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
                                         const TrainingSettings& settings, Random& random);
 
-/// Changes exposure, contrast, colour cast and haze of the whole picture and adds noise, in place.
-void vary_light(cv::Mat& colour, double strength, Random& random);
+/// Changes a picture's light in place: gain between two limits in stops (powers of two), contrast, colour cast, haze,
+/// noise.
+void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);
+
+/// The same with the limits of a camera's exposure: dim rooms are commoner than overexposed ones.
+void vary_exposure(cv::Mat& colour, double strength, Random& random);
 
 }  // namespace houghstream

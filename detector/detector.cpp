@@ -48,18 +48,16 @@ Detection to_detection(const Forest& forest, const ObjectClass& object, const Hy
 
 /// All detections of one class in full-size pixels.
 std::vector<Detection> detect_class(const Forest& forest, int class_index, const PatchGrid& patches,
-                                    const std::vector<std::int32_t>& leaves, const WorkingFrame& frame,
-                                    const Camera& camera, const DetectionSettings& settings) {
+                                    const PatchLeaves& leaves, const Camera& hough_camera, const Camera& camera,
+                                    const DetectionSettings& settings) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
-  const HoughSpace space = cast_votes(forest, class_index, patches, leaves, frame.camera, settings);
+  const HoughSpace space = cast_votes(forest, class_index, patches, leaves, hough_camera, settings);
   std::vector<Detection> detections;
-  const auto to_full = static_cast<float>(camera.fx / frame.camera.fx);
-  for (const Hypothesis& hypothesis : find_maxima(forest, space, patches, frame.camera, settings.stride, settings)) {
-    if (hypothesis.mass / object.expected_mass < settings.threshold) continue;
+  const float least_mass = settings.threshold * object.expected_mass;
+  for (const Hypothesis& hypothesis : find_maxima(forest, space, patches, hough_camera, least_mass, settings)) {
     if (detections.size() >= static_cast<std::size_t>(settings.max_per_class)) break;
-    const cv::Rect2f box = backprojected_box(hypothesis, patches, settings.stride);
-    const cv::Rect2f full(box.x * to_full, box.y * to_full, box.width * to_full, box.height * to_full);
-    detections.push_back(to_detection(forest, object, hypothesis, full, settings.max_rotations));
+    const cv::Rect2f box_px = backprojected_box(forest, hypothesis, patches, camera);
+    detections.push_back(to_detection(forest, object, hypothesis, box_px, settings.max_rotations));
   }
   return detections;
 }
@@ -72,18 +70,31 @@ Detections Detector::detect(const RgbdFrame& frame) const {
   check_frame(frame, "detector");
   StageClock clock;
 
-  const WorkingFrame working = make_working_frame(frame, forest.features);  // Section 5.1.1
+  const auto levels = feature_levels(forest.features);
+  std::vector<WorkingFrame> working;
+  for (const FeatureLevel& level : levels) {  // Section 5.1.1
+    working.push_back(make_working_frame(frame, level.scale, forest.features));
+  }
   clock.mark("detect.resize");
-  const FeatureImage features = compute_features(working, forest.features);  // Section 3
+  std::vector<FeatureImage> features;
+  for (const WorkingFrame& view : working) {  // Section 3
+    features.push_back(compute_features(view, forest.features, settings.threads));
+  }
   clock.mark("detect.features");
-  const PatchGrid patches = make_patch_grid(working, forest.patch, settings.stride);                    // Section 5.1.3
-  const std::vector<std::int32_t> leaves = assign_leaves(forest, features, patches, settings.threads);  // Section 5.1.2
+  PatchGrid patches;
+  for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
+    add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, patches);
+  }
+  PatchLeaves leaves;
+  leaves.leaves = assign_leaves(forest, features, patches, settings.threads);  // Section 5.1.2
+  leaves.probabilities = class_probabilities(forest, leaves.leaves, settings.threads);
   clock.mark("detect.forest");
 
   const int class_count = static_cast<int>(forest.classes.size());
   std::vector<std::vector<Detection>> by_class(forest.classes.size());
   parallel_for(settings.threads, class_count, [&](int c) {  // Section 2
-    by_class[static_cast<std::size_t>(c)] = detect_class(forest, c, patches, leaves, working, frame.camera, settings);
+    by_class[static_cast<std::size_t>(c)] =
+        detect_class(forest, c, patches, leaves, working[0].camera, frame.camera, settings);
   });
   clock.mark("detect.voting");
 

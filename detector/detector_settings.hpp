@@ -6,7 +6,9 @@ namespace houghstream {
 
 /// How a frame becomes feature planes. Stored in the forest file: training and detection must agree.
 struct FeatureSettings {
-  float image_scale = 0.5F;         ///< working size over frame size (paper, Section 5.1.1)
+  float image_scale = 0.5F;        ///< working size over frame size for near surfaces (paper, Section 5.1.1)
+  float far_distance = 1.2F;       ///< surfaces beyond are looked at in twice that size, metres: see feature_levels
+  float max_distance = 2.8F;       ///< surfaces beyond belong to no object that was taught, metres
   int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
   int min_max_px = 5;              ///< neighbourhood of minimum and maximum, working pixels (paper, Section 3)
   float fill_distance_px = 24.0F;  ///< how far from measured depth a pixel may borrow it, working pixels
@@ -14,7 +16,7 @@ struct FeatureSettings {
 
 /// How patches are tested. Stored in the forest file.
 struct PatchSettings {
-  float unit = 0.002F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
+  float unit = 0.004F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
   int radius = 10;      ///< test offsets reach from -radius to +radius steps
 };
 
@@ -24,10 +26,10 @@ struct TrainingSettings {
   int max_depth = 25;            ///< levels
   int min_samples = 20;          ///< a node with fewer becomes a leaf
   int tests_per_node = 400;      ///< random pixel tests tried
-  int thresholds_per_test = 15;  ///< thresholds tried for each
-  int node_samples = 2000;       ///< at most so many samples choose a node's test; all are then split by it
+  int node_samples = 1500;       ///< at most so many samples choose a node's test; all are then split by it
   int patches_per_view = 250;    ///< per training view, and per background frame
   int composites_per_view = 3;   ///< pictures made of one view: other background, distance and light
+  int spare_background = 10;     ///< background patches looked through for each one drawn blindly, see hard_negatives
   double in_bag = 0.75;          ///< share of the pictures that a tree sees
   float min_distance = 0.35F;    ///< nearest distance taught, metres
   float max_distance = 2.6F;     ///< farthest distance taught, metres
@@ -42,15 +44,16 @@ struct TrainingSettings {
 /// How a frame is searched.
 struct DetectionSettings {
   int threads = 2;
-  int stride = 2;                 ///< patch offset, working pixels (paper, Section 5.1.3)
-  float threshold = 0.3F;         ///< smallest score that is reported
-  int max_per_class = 250;        ///< at most so many detections of one class (paper, Section 4)
-  float min_class_share = 0.15F;  ///< a patch votes for a class from this share of its leaves on
-  int candidates_per_class = 24;  ///< maxima of the Hough image that are looked at in 3-D
-  float hough_sigma_px = 3.0F;    ///< smoothing of the Hough image, working pixels
-  float vote_sigma = 0.02F;       ///< bandwidth of the 3-D maximum, metres
-  float max_overlap = 0.5F;       ///< a weaker box of another object may overlap a stronger one by this IoU
-  int max_rotations = 48;         ///< rotations handed to the pose process
+  int stride = 2;                  ///< patch offset, working pixels (paper, Section 5.1.3)
+  float threshold = 0.3F;          ///< smallest score that is reported
+  int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
+  float min_class_share = 0.15F;   ///< a patch votes for a class from this share of its leaves on
+  int candidates_per_class = 24;   ///< maxima of the Hough image that are looked at in 3-D
+  float min_relative_peak = 0.1F;  ///< of the Hough image's highest value, for a maximum to be looked at
+  float hough_sigma_px = 3.0F;     ///< smoothing of the Hough image, working pixels
+  float vote_sigma = 0.016F;       ///< bandwidth of the 3-D maximum, metres
+  float max_overlap = 0.5F;        ///< a weaker box of another object may overlap a stronger one by this IoU
+  int max_rotations = 48;          ///< rotations handed to the pose process
 };
 
 }  // namespace houghstream

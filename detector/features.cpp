@@ -1,18 +1,12 @@
 #include "detector/features.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
+
+#include "pipeline/parallel.hpp"
 
 namespace houghstream {
 namespace {
-
-void store(const cv::Mat& plane, int channel, FeatureImage& image) {
-  for (int y = 0; y < plane.rows; ++y) {
-    const auto* in = plane.ptr<std::uint8_t>(y);
-    std::uint8_t* out = image.at(0, y) + channel;
-    for (int x = 0; x < plane.cols; ++x) out[static_cast<std::ptrdiff_t>(x) * FeatureImage::kChannels] = in[x];
-  }
-}
 
 /// Depth to the wrapping byte planes described in FeatureLayout.
 cv::Mat wrapped(const cv::Mat& depth) {
@@ -29,31 +23,56 @@ cv::Mat wrapped(const cv::Mat& depth) {
   return out;
 }
 
-/// Maximum to `channel`, minimum to `channel` + `count`.
-void store_min_max(const cv::Mat& plane, int channel, int count, const cv::Mat& kernel, FeatureImage& image) {
-  cv::Mat largest;
-  cv::Mat smallest;
-  cv::dilate(plane, largest, kernel);
-  cv::erode(plane, smallest, kernel);
-  const bool is_depth = plane.type() == CV_32FC1;
-  store(is_depth ? wrapped(largest) : largest, channel, image);
-  store(is_depth ? wrapped(smallest) : smallest, channel + count, image);
+/// Planes in the order of FeatureLayout: maxima, then minima, of `base` planes to `planes` from `channel` on.
+void min_max_planes(const std::vector<cv::Mat>& base, std::size_t channel, int kernel_px, int threads,
+                    std::vector<cv::Mat>& planes) {
+  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(kernel_px, kernel_px));
+  parallel_for(threads, static_cast<int>(base.size()), [&](int i) {
+    const auto b = static_cast<std::size_t>(i);
+    const bool is_depth = base[b].type() == CV_32FC1;
+    cv::Mat largest;
+    cv::Mat smallest;
+    cv::dilate(base[b], largest, kernel);
+    cv::erode(base[b], smallest, kernel);
+    planes[channel + b] = is_depth ? wrapped(largest) : largest;
+    planes[channel + b + base.size()] = is_depth ? wrapped(smallest) : smallest;
+  });
+}
+
+/// All planes into one image, pixel by pixel, so that every cache line is written once.
+void interleave(const std::vector<cv::Mat>& planes, int threads, FeatureImage& image) {
+  constexpr int kRows = 16;
+  parallel_for(threads, (image.height() + kRows - 1) / kRows, [&](int band) {
+    std::vector<const std::uint8_t*> rows(planes.size());
+    for (int y = band * kRows; y < std::min(image.height(), (band + 1) * kRows); ++y) {
+      for (std::size_t p = 0; p < planes.size(); ++p) rows[p] = planes[p].ptr<std::uint8_t>(y);
+      std::uint8_t* out = image.at(0, y);
+      for (int x = 0; x < image.width(); ++x, out += FeatureImage::kChannels) {
+        for (std::size_t p = 0; p < planes.size(); ++p) out[p] = rows[p][x];
+      }
+    }
+  });
 }
 
 }  // namespace
 
-FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings) {
+FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads) {
+  std::vector<cv::Mat> intensity;
+  std::vector<cv::Mat> depth;
+  parallel_for(threads, 2, [&](int part) {
+    if (part == 0) {
+      intensity = intensity_planes(frame.colour);
+    } else {
+      depth = depth_planes(frame, settings);
+    }
+  });
+  depth[0] = depth[0].clone();
+  cv::patchNaNs(depth[0], 0.0);  // filters order NaN unpredictably
+  std::vector<cv::Mat> planes(FeatureLayout::kPlanes);
+  min_max_planes(intensity, 0, settings.min_max_px, threads, planes);
+  min_max_planes(depth, FeatureLayout::kDepthMax, settings.min_max_px, threads, planes);
   FeatureImage image(frame.colour.cols, frame.colour.rows);
-  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(settings.min_max_px, settings.min_max_px));
-  int channel = 0;
-  for (const cv::Mat& plane : intensity_planes(frame.colour)) {
-    store_min_max(plane, channel++, FeatureLayout::kIntensity, kernel, image);
-  }
-  channel = FeatureLayout::kDepthMax;
-  for (cv::Mat& plane : depth_planes(frame, settings)) {
-    if (plane.type() == CV_32FC1) cv::patchNaNs(plane = plane.clone(), 0.0);  // filters order NaN unpredictably
-    store_min_max(plane, channel++, FeatureLayout::kDepth, kernel, image);
-  }
+  interleave(planes, threads, image);
   image.replicate_border();
   return image;
 }

@@ -24,7 +24,7 @@ struct FeatureLayout {
 
 /// All planes of a working frame. Where depth is missing beyond repair the depth planes are neutral: no slope, no
 /// curvature, empty histograms.
-FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings);
+FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads);
 
 /// The 16 intensity planes before minimum and maximum, CV_8UC1 each.
 std::vector<cv::Mat> intensity_planes(const cv::Mat& colour_bgr);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -47,11 +48,13 @@ struct ObjectClass {
   float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres; scores are relative to it
 };
 
-/// A training view as the pose process needs it.
-struct ViewRotation {
+/// A training view as poses and boxes need it.
+struct TrainedView {
   std::uint32_t class_index = 0;
   /// Relative to the ray through the object's centre. Not aligned: its bytes go to the file without gaps.
   Eigen::Quaternion<float, Eigen::DontAlign> R_ray_object = Eigen::Quaternion<float, Eigen::DontAlign>::Identity();
+  /// Left, top, right and bottom of the mask as seen from the object's centre, metres at the centre's depth.
+  std::array<float, 4> box{};
 };
 
 /// A trained forest: flat arrays, trees one after another. Read-only once built.
@@ -60,7 +63,7 @@ struct Forest {
   PatchSettings patch;
   std::uint64_t seed = 0;
   std::vector<ObjectClass> classes;
-  std::vector<ViewRotation> views;
+  std::vector<TrainedView> views;
   std::vector<std::int32_t> roots;  ///< per tree: a node, or -1 - leaf
   std::vector<TreeNode> nodes;
   std::vector<std::uint32_t> leaves;  ///< number of leaves + 1

@@ -33,7 +33,7 @@ void archive_members(Archive& archive, ForestType& forest) {
 }
 
 // Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
-static_assert(sizeof(FeatureSettings) == 16 && sizeof(PatchSettings) == 8 && sizeof(ViewRotation) == 20);
+static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 && sizeof(TrainedView) == 36);
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
 
 struct Writer {
@@ -144,7 +144,7 @@ void check_indices(const Forest& forest, const std::string& source) {
 
 void check_settings(const Forest& forest, const std::string& source) {
   const FeatureSettings& f = forest.features;
-  require(f.image_scale > 0.05 && f.image_scale <= 4.0, "{}: image scale {}, expected 0.05 to 4", source,
+  require(f.image_scale > 0.05 && f.image_scale <= 2.0, "{}: image scale {}, expected 0.05 to 2", source,
           f.image_scale);
   require(f.depth_sobel_px >= 3 && f.depth_sobel_px <= 31 && f.min_max_px >= 1 && f.min_max_px <= 31,
           "{}: feature kernels {} and {}, expected up to 31 pixels", source, f.depth_sobel_px, f.min_max_px);

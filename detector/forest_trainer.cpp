@@ -4,6 +4,8 @@
 
 #include <mutex>
 
+#include "detector/calibration.hpp"
+#include "detector/hard_negatives.hpp"
 #include "detector/tree_trainer.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -41,9 +43,12 @@ void append_tree(const Forest& tree, Forest& forest) {
 
 Forest train_forest(const std::vector<TrainingView>& views, const FeatureSettings& features, const PatchSettings& patch,
                     const TrainingSettings& settings, const std::function<void(const std::string&)>& progress) {
-  const TrainingSet set = make_training_set(views, features, patch, settings);
+  TrainingSet set = make_training_set(views, features, patch, settings);
   progress(fmt::format("{} patches of {} pictures, {} classes", set.samples.size(), set.pictures.size(),
                        set.classes.size()));
+  const std::size_t before = set.samples.size();
+  add_hard_negatives(patch, settings, set);
+  progress(fmt::format("{} background patches added that scout trees mistook", set.samples.size() - before));
   std::vector<Forest> trees(static_cast<std::size_t>(settings.trees));
   std::mutex progress_mutex;
   int done = 0;
@@ -62,6 +67,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const FeatureSetting
   forest.views = set.views;
   forest.leaves.push_back(0);
   for (const Forest& tree : trees) append_tree(tree, forest);
+  calibrate_masses(set, settings, DetectionSettings{}.vote_sigma, forest);
   return forest;
 }
 

@@ -18,12 +18,15 @@ struct Hypothesis {
 };
 
 /// Maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D by mean shift (Comaniciu & Meer
-/// 2002), those that meet merged. Strongest first.
+/// 2002), those that meet merged. Those of at least `least_mass`, strongest first.
 std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
-                                    const Camera& working_camera, int stride, const DetectionSettings& settings);
+                                    const Camera& working_camera, float least_mass, const DetectionSettings& settings);
 
-/// Box by back-projection of all supporting patches (paper, Section 2), working pixels.
-cv::Rect2f backprojected_box(const Hypothesis& hypothesis, const PatchGrid& patches, int stride);
+/// Box by back-projection of all supporting patches (paper, Section 2), frame pixels. Patches at an object's rim see
+/// little of it and support it weakly, so each side moves out to where the training views that the votes
+/// remember have theirs, unless the patches end so far from it that the object must be hidden there.
+cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
+                             const Camera& camera);
 
 /// Strongest first; a weaker one whose box overlaps a stronger one's by more than `max_overlap` (IoU) is dropped.
 std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, float max_overlap);

@@ -1,7 +1,6 @@
 #include "detector/split_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,117 +29,140 @@ PixelTest SplitSearch::random_test(Random& random) const {
   return test;
 }
 
-/// Sample by sample, so that a patch is in the cache for all tests.
-void SplitSearch::evaluate_tests(const std::vector<std::uint32_t>& samples) {
+SplitSearch::Sums& SplitSearch::Sums::operator+=(const Sums& other) {
+  weight += other.weight;
+  x += other.x;
+  y += other.y;
+  z += other.z;
+  return *this;
+}
+
+void SplitSearch::load_items(const std::vector<std::uint32_t>& samples) {
+  items_.clear();
+  std::fill(all_.begin(), all_.end(), Sums{});
+  for (const std::uint32_t s : samples) {
+    const TrainingSample& sample = set_.samples[s];
+    const float w = label_weights_[sample.label];
+    items_.push_back({{w, w * sample.offset.x(), w * sample.offset.y(), w * sample.offset.z()}, sample.label});
+    all_[sample.label] += items_.back().sums;
+  }
+}
+
+/// Sample by sample, so that a patch is in the cache for all tests; in blocks, so that the values, which are read test
+/// by test, are not written one cache line each.
+void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples) {
+  constexpr std::size_t kBlock = 32;
   const std::size_t count = samples.size();
-  values_.resize(tests_.size() * count);
-  for (std::size_t s = 0; s < count; ++s) {
-    const TrainingSample& sample = set_.samples[samples[s]];
-    const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
-    const std::uint8_t* centre = picture.at(sample.x, sample.y);
-    const int stride = picture.row_stride();
-    for (std::size_t t = 0; t < tests_.size(); ++t) {
-      values_[t * count + s] = static_cast<std::int16_t>(test_value(tests_[t], centre, sample.scale, stride));
+  values_.resize(test_count * count);
+  block_.resize(test_count * kBlock);
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    const std::size_t size = std::min(kBlock, count - begin);
+    for (std::size_t s = 0; s < size; ++s) {
+      const TrainingSample& sample = set_.samples[samples[begin + s]];
+      const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
+      const std::uint8_t* centre = picture.at(sample.x, sample.y);
+      const int stride = picture.row_stride();
+      for (std::size_t t = 0; t < test_count; ++t) {
+        block_[s * test_count + t] = static_cast<std::int16_t>(test_value(tests_[t], centre, sample.scale, stride));
+      }
+    }
+    for (std::size_t t = 0; t < test_count; ++t) {
+      std::int16_t* out = values_.data() + t * count + begin;
+      for (std::size_t s = 0; s < size; ++s) out[s] = block_[s * test_count + t];
     }
   }
 }
 
 /// Information gain up to a constant: minus the weighted entropy of both sides.
-float SplitSearch::class_gain(const std::vector<BinSums>& left, const std::vector<BinSums>& all) const {
+float SplitSearch::class_gain() const {
   float left_sum = 0.0F;
   float right_sum = 0.0F;
   float gain = 0.0F;
   const auto term = [](float w) { return w > 0.0F ? w * std::log2(w) : 0.0F; };
-  for (std::size_t l = 0; l < left.size(); ++l) {
-    const float right = all[l].weight - left[l].weight;
-    gain += term(left[l].weight) + term(right);
-    left_sum += left[l].weight;
+  for (std::size_t l = 0; l < left_.size(); ++l) {
+    const float right = all_[l].weight - left_[l].weight;
+    gain += term(left_[l].weight) + term(right);
+    left_sum += left_[l].weight;
     right_sum += right;
   }
   return gain - term(left_sum) - term(right_sum);
 }
 
 /// Reduction of the offsets' variance up to a constant, per class, background left out.
-float SplitSearch::offset_gain(const std::vector<BinSums>& left, const std::vector<BinSums>& all) const {
+float SplitSearch::offset_gain() const {
   const auto term = [](float w, float x, float y, float z) { return w > 0.0F ? (x * x + y * y + z * z) / w : 0.0F; };
   float gain = 0.0F;
-  for (std::size_t l = 1; l < left.size(); ++l) {
-    const BinSums& a = left[l];
+  for (std::size_t l = 1; l < left_.size(); ++l) {
+    const Sums& a = left_[l];
     gain += term(a.weight, a.x, a.y, a.z);
-    gain += term(all[l].weight - a.weight, all[l].x - a.x, all[l].y - a.y, all[l].z - a.z);
+    gain += term(all_[l].weight - a.weight, all_[l].x - a.x, all_[l].y - a.y, all_[l].z - a.z);
   }
   return gain;
 }
 
-void SplitSearch::search_thresholds(std::size_t t, const std::vector<std::uint32_t>& samples, Objective objective,
-                                    float& gain, int& threshold) {
-  const std::size_t count = samples.size();
+bool SplitSearch::fill_bins(std::size_t t, Objective objective, int& first, int& range) {
+  const std::size_t count = items_.size();
   const std::size_t labels = label_weights_.size();
   const std::int16_t* values = values_.data() + t * count;
   const auto [low, high] = std::minmax_element(values, values + count);
-  const int first = *low;
-  const int range = *high - first + 1;
-  if (range < 2) return;
-  std::fill(bins_.begin(), bins_.end(), BinSums{});
-  std::array<int, kBins> bin_counts{};
+  first = *low;
+  range = *high - first + 1;
+  if (range < 2) return false;
+  std::fill(bins_.begin(), bins_.end(), Sums{});
+  bin_counts_.fill(0);
+  const std::uint32_t scale = (static_cast<std::uint32_t>(kBins) << 16U) / static_cast<std::uint32_t>(range);
   for (std::size_t s = 0; s < count; ++s) {
-    const auto bin = static_cast<std::size_t>((values[s] - first) * kBins / range);
-    const TrainingSample& sample = set_.samples[samples[s]];
-    BinSums& sums = bins_[bin * labels + sample.label];
-    const float w = label_weights_[sample.label];
-    sums.weight += w;
-    sums.x += w * sample.offset.x();
-    sums.y += w * sample.offset.y();
-    sums.z += w * sample.offset.z();
-    ++bin_counts[bin];
+    const std::size_t bin = (static_cast<std::uint32_t>(values[s] - first) * scale) >> 16U;
+    const Item& item = items_[s];
+    Sums& sums = bins_[bin * labels + item.label];
+    if (objective == Objective::kClass) {
+      sums.weight += item.sums.weight;
+    } else {
+      sums += item.sums;
+    }
+    ++bin_counts_[bin];
   }
-  std::fill(left_.begin(), left_.end(), BinSums{});
+  return true;
+}
+
+std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, Objective objective, float least_gain) {
+  int first = 0;
+  int range = 0;
+  if (!fill_bins(t, objective, first, range)) return std::nullopt;
+  const std::size_t labels = label_weights_.size();
+  const std::uint32_t scale = (static_cast<std::uint32_t>(kBins) << 16U) / static_cast<std::uint32_t>(range);
+  std::optional<Split> best;
+  std::fill(left_.begin(), left_.end(), Sums{});
   int left_count = 0;
   for (std::size_t bin = 0; bin + 1 < kBins; ++bin) {
-    for (std::size_t l = 0; l < labels; ++l) {
-      const BinSums& sums = bins_[bin * labels + l];
-      left_[l].weight += sums.weight;
-      left_[l].x += sums.x;
-      left_[l].y += sums.y;
-      left_[l].z += sums.z;
-    }
-    left_count += bin_counts[bin];
-    const int right_count = static_cast<int>(count) - left_count;
-    if (bin_counts[bin] == 0 || left_count < kMinSide || right_count < kMinSide) continue;
-    const float g = objective == Objective::kClass ? class_gain(left_, all_) : offset_gain(left_, all_);
-    if (g > gain) {
-      gain = g;
-      // smallest value of the next bin: (value - first) * kBins / range >= bin + 1
-      threshold = first + ((static_cast<int>(bin) + 1) * range + kBins - 1) / kBins;
-    }
+    if (bin_counts_[bin] == 0) continue;
+    for (std::size_t l = 0; l < labels; ++l) left_[l] += bins_[bin * labels + l];
+    left_count += bin_counts_[bin];
+    if (left_count < kMinSide || static_cast<int>(items_.size()) - left_count < kMinSide) continue;
+    const float gain = objective == Objective::kClass ? class_gain() : offset_gain();
+    if (gain <= (best ? best->gain : least_gain)) continue;
+    // the smallest value of the next bin: value * scale >> 16 > bin
+    const std::uint32_t next = ((static_cast<std::uint32_t>(bin) + 1) << 16U) + scale - 1;
+    best = Split{gain, first + static_cast<int>(next / scale)};
   }
+  return best;
 }
 
 std::optional<PixelTest> SplitSearch::best_test(const std::vector<std::uint32_t>& samples, Objective objective,
                                                 Random& random) {
-  for (PixelTest& test : tests_) test = random_test(random);
-  evaluate_tests(samples);
-  std::fill(all_.begin(), all_.end(), BinSums{});
-  for (const std::uint32_t s : samples) {
-    const TrainingSample& sample = set_.samples[s];
-    const float w = label_weights_[sample.label];
-    BinSums& sums = all_[sample.label];
-    sums.weight += w;
-    sums.x += w * sample.offset.x();
-    sums.y += w * sample.offset.y();
-    sums.z += w * sample.offset.z();
-  }
+  // Few samples are told apart by few tests; trying more would only fit their noise.
+  const std::size_t test_count = std::min(tests_.size(), std::max<std::size_t>(64, samples.size()));
+  for (std::size_t t = 0; t < test_count; ++t) tests_[t] = random_test(random);
+  load_items(samples);
+  evaluate_tests(test_count, samples);
   float best_gain = -std::numeric_limits<float>::infinity();
   std::optional<PixelTest> best;
-  for (std::size_t t = 0; t < tests_.size(); ++t) {
-    float gain = best_gain;
-    int threshold = 0;
-    search_thresholds(t, samples, objective, gain, threshold);
-    if (gain > best_gain) {
-      best_gain = gain;
-      best = tests_[t];
-      best->threshold = static_cast<std::int16_t>(threshold);
-    }
+  for (std::size_t t = 0; t < test_count; ++t) {
+    const std::optional<Split> split = search_thresholds(t, objective, best_gain);
+    if (!split) continue;
+    best_gain = split->gain;
+    best = tests_[t];
+    best->threshold = static_cast<std::int16_t>(split->threshold);
   }
   return best;
 }

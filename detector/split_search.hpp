@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -25,20 +26,33 @@ class SplitSearch {
   static constexpr int kBins = 16;
 
  private:
-  struct BinSums {
+  /// Weighted sums of some samples of one label: of 1 and of the offset's coordinates.
+  struct Sums {
     float weight = 0.0F;
     float x = 0.0F;
     float y = 0.0F;
     float z = 0.0F;
+    Sums& operator+=(const Sums& other);
+  };
+  /// A sample as the thresholds see it, laid out in order.
+  struct Item {
+    Sums sums;
+    std::uint32_t label = 0;
+  };
+  struct Split {
+    float gain = 0.0F;
+    int threshold = 0;
   };
 
   PixelTest random_test(Random& random) const;
-  void evaluate_tests(const std::vector<std::uint32_t>& samples);
-  /// Best threshold of test t; `gain` is left at -infinity where no threshold is allowed.
-  void search_thresholds(std::size_t t, const std::vector<std::uint32_t>& samples, Objective objective, float& gain,
-                         int& threshold);
-  float class_gain(const std::vector<BinSums>& left, const std::vector<BinSums>& all) const;
-  float offset_gain(const std::vector<BinSums>& left, const std::vector<BinSums>& all) const;
+  void load_items(const std::vector<std::uint32_t>& samples);
+  void evaluate_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples);
+  /// Sorts the samples into kBins bins by the value of test t; false where all values are equal.
+  bool fill_bins(std::size_t t, Objective objective, int& first, int& range);
+  /// Best threshold of test t if it is better than `least_gain`.
+  std::optional<Split> search_thresholds(std::size_t t, Objective objective, float least_gain);
+  float class_gain() const;
+  float offset_gain() const;
 
   const TrainingSet& set_;
   const PatchSettings& patch_;
@@ -46,9 +60,12 @@ class SplitSearch {
   std::vector<float> label_weights_;
   std::vector<PixelTest> tests_;
   std::vector<std::int16_t> values_;  // tests x samples
-  std::vector<BinSums> bins_;         // kBins x labels
-  std::vector<BinSums> left_;
-  std::vector<BinSums> all_;
+  std::vector<std::int16_t> block_;   // some samples x tests
+  std::vector<Item> items_;           // per sample
+  std::array<int, kBins> bin_counts_{};
+  std::vector<Sums> bins_;  // kBins x labels
+  std::vector<Sums> left_;  // per label
+  std::vector<Sums> all_;   // per label
 };
 
 }  // namespace houghstream

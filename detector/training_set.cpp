@@ -17,14 +17,28 @@ namespace {
 struct Picture {
   FeatureImage features;
   std::vector<TrainingSample> samples;
+  std::vector<TrainingSample> spare_background;
   float visible_area = 0.0F;  // of the object, square metres
 };
+
+constexpr int kBackgroundPictures = 4;  // per background frame, half of them at each level
 
 struct Recipe {
   const FeatureSettings& features;
   const PatchSettings& patch;
   const TrainingSettings& settings;
 };
+
+/// Depth that a level is taught: a little beyond what it holds, since detection decides by noisy depth.
+bool nearly_holds(const FeatureLevel& level, float depth) {
+  return depth > 0.85F * level.min_distance && depth <= 1.15F * level.max_distance;
+}
+
+/// The level that sees an object at this distance; either one near the limit between them.
+FeatureLevel level_for(double distance, const FeatureSettings& features, Random& random) {
+  const auto levels = feature_levels(features);
+  return distance * random.uniform(0.9, 1.1) > features.far_distance ? levels[1] : levels[0];
+}
 
 /// Random pixels of the working frame that `wanted` accepts, at most `count`.
 template <typename Wanted>
@@ -70,13 +84,19 @@ Picture object_picture(const TrainingView& view, int label, std::uint32_t view_i
     composite = make_composite(view, background, view.T_camera_object.translation().z(), settings, random);
   if (!composite) return picture;
 
-  const WorkingFrame frame = make_working_frame(composite->frame, recipe.features);
-  picture.features = compute_features(frame, recipe.features);
+  const FeatureLevel level = level_for(distance, recipe.features, random);
+  const WorkingFrame frame = make_working_frame(composite->frame, level.scale, recipe.features);
+  picture.features = compute_features(frame, recipe.features, 1);
   cv::Mat mask;
   cv::resize(composite->mask, mask, frame.colour.size(), 0, 0, cv::INTER_NEAREST);
   const double to_frame = static_cast<double>(composite->mask.cols) / mask.cols;
-  const auto known = [&](int x, int y) { return std::isfinite(frame.filled_depth.at<float>(y, x)); };
-  const auto on_object = [&](int x, int y) { return mask.at<std::uint8_t>(y, x) != 0 && known(x, y); };
+  const auto known = [&](int x, int y) { return nearly_holds(level, frame.filled_depth.at<float>(y, x)); };
+  // A hole's borrowed depth may be the background's: good enough to look at a patch, not to learn where the centre is.
+  cv::Mat measured;
+  cv::resize(composite->frame.depth, measured, mask.size(), 0, 0, cv::INTER_NEAREST);
+  const auto on_object = [&](int x, int y) {
+    return mask.at<std::uint8_t>(y, x) != 0 && known(x, y) && std::isfinite(measured.at<float>(y, x));
+  };
   const auto beside = [&](int x, int y) { return mask.at<std::uint8_t>(y, x) == 0 && known(x, y); };
 
   const int count = settings.patches_per_view / settings.composites_per_view;
@@ -96,32 +116,62 @@ Picture object_picture(const TrainingView& view, int label, std::uint32_t view_i
   return picture;
 }
 
-Picture background_picture(const RgbdFrame& background, const Recipe& recipe, Random& random) {
-  const cv::Size half(background.colour.cols / 2, background.colour.rows / 2);
-  const cv::Rect place(random.between(0, background.colour.cols - half.width),
-                       random.between(0, background.colour.rows - half.height), half.width, half.height);
+/// A part of the background that the level sees something in, or any part where there is none.
+cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& level, Random& random) {
+  constexpr int kTries = 12;
+  const cv::Size size(static_cast<int>(static_cast<float>(background.colour.cols) / (4.0F * level.scale)),
+                      static_cast<int>(static_cast<float>(background.colour.rows) / (4.0F * level.scale)));
+  cv::Rect place;
+  for (int i = 0; i < kTries; ++i) {
+    place = cv::Rect(random.between(0, background.colour.cols - size.width),
+                     random.between(0, background.colour.rows - size.height), size.width, size.height);
+    int held = 0;
+    for (int y = 0; y < size.height; y += 8) {
+      for (int x = 0; x < size.width; x += 8) {
+        held += nearly_holds(level, background.depth.at<float>(place.y + y, place.x + x)) ? 1 : 0;
+      }
+    }
+    if (held * 64 * 3 > size.area()) break;
+  }
+  return place;
+}
+
+Picture background_picture(const RgbdFrame& background, const FeatureLevel& level, const Recipe& recipe,
+                           Random& random) {
+  const cv::Rect place = background_window(background, level, random);
   RgbdFrame part;
   part.colour = background.colour(place).clone();
   part.depth = background.depth(place);
   part.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
-  vary_light(part.colour, 0.6 * recipe.settings.light_variation, random);
+  vary_exposure(part.colour, recipe.settings.light_variation, random);
 
-  const WorkingFrame frame = make_working_frame(part, recipe.features);
+  const WorkingFrame frame = make_working_frame(part, level.scale, recipe.features);
   Picture picture;
-  picture.features = compute_features(frame, recipe.features);
-  const auto known = [&](int x, int y) { return std::isfinite(frame.filled_depth.at<float>(y, x)); };
-  const int count = recipe.settings.patches_per_view / 2;
-  for (const cv::Point at : draw_pixels(frame.colour.size(), count, random, known)) {
-    picture.samples.push_back(sample_at(at, frame, recipe));
+  picture.features = compute_features(frame, recipe.features, 1);
+  const auto known = [&](int x, int y) { return nearly_holds(level, frame.filled_depth.at<float>(y, x)); };
+  const std::size_t count = static_cast<std::size_t>(recipe.settings.patches_per_view / kBackgroundPictures);
+  const int drawn = static_cast<int>(count) * (1 + recipe.settings.spare_background);
+  for (const cv::Point at : draw_pixels(frame.colour.size(), drawn, random, known)) {
+    auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;
+    list.push_back(sample_at(at, frame, recipe));
   }
   return picture;
 }
 
-/// Rotation of the view relative to the ray through the object's centre.
-ViewRotation view_rotation(const TrainingView& view, std::uint32_t class_index) {
-  const Eigen::Vector3f centre = view.T_camera_object.translation().cast<float>();
+/// What the pose process and the boxes need to remember of a view.
+TrainedView trained_view(const TrainingView& view, std::uint32_t class_index) {
+  const Eigen::Vector3d centre = view.T_camera_object.translation();
   const Eigen::Matrix3f R_camera_object = view.T_camera_object.rotation().cast<float>();
-  return {class_index, Eigen::Quaternionf(ray_rotation(centre).transpose() * R_camera_object).normalized()};
+  const Eigen::Vector2d centre_px = view.frame.camera.project(centre);
+  const cv::Rect box = cv::boundingRect(view.mask);
+  const auto metres = static_cast<float>(view.frame.camera.metres_per_px(centre.z()));
+  TrainedView out;
+  out.class_index = class_index;
+  out.R_ray_object = Eigen::Quaternionf(ray_rotation(centre.cast<float>()).transpose() * R_camera_object).normalized();
+  const auto side = [&](int px, double origin_px) { return static_cast<float>(px - 0.5 - origin_px) * metres; };
+  out.box = {side(box.x, centre_px.x()), side(box.y, centre_px.y()), side(box.br().x, centre_px.x()),
+             side(box.br().y, centre_px.y())};
+  return out;
 }
 
 std::vector<ObjectClass> list_classes(const std::vector<TrainingView>& views) {
@@ -158,7 +208,7 @@ void measure_classes(const std::vector<Picture>& pictures, TrainingSet& set) {
     const std::size_t rank = distances.size() * 98 / 100;
     std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(rank), distances.end());
     set.classes[c].radius = distances[rank];
-    set.classes[c].expected_mass = static_cast<float>(area / count);
+    set.visible_areas.push_back(static_cast<float>(area / count));
   }
 }
 
@@ -179,11 +229,11 @@ TrainingSet make_training_set(const std::vector<TrainingView>& views, const Feat
     const auto same = [&](const ObjectClass& c) { return c.class_id == view->class_id; };
     const auto index = std::find_if(set.classes.begin(), set.classes.end(), same) - set.classes.begin();
     labels.push_back(static_cast<int>(index) + 1);
-    set.views.push_back(view_rotation(*view, static_cast<std::uint32_t>(index)));
+    set.views.push_back(trained_view(*view, static_cast<std::uint32_t>(index)));
   }
   const int copies = settings.composites_per_view;
   const int object_count = static_cast<int>(objects.size()) * copies;
-  const int total = object_count + static_cast<int>(backgrounds.size()) * 2;
+  const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundPictures;
   std::vector<Picture> pictures(static_cast<std::size_t>(total));
   parallel_for(settings.threads, total, [&](int i) {
     Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(i));
@@ -194,8 +244,10 @@ TrainingSet make_training_set(const std::vector<TrainingView>& views, const Feat
       picture =
           object_picture(*objects[v], labels[v], static_cast<std::uint32_t>(v), backgrounds[b]->frame, recipe, random);
     } else {
-      picture =
-          background_picture(backgrounds[static_cast<std::size_t>((i - object_count) / 2)]->frame, recipe, random);
+      const int b = i - object_count;
+      const FeatureLevel level = feature_levels(features)[static_cast<std::size_t>(b % 2)];
+      picture = background_picture(backgrounds[static_cast<std::size_t>(b / kBackgroundPictures)]->frame, level, recipe,
+                                   random);
     }
   });
   measure_classes(pictures, set);
@@ -203,6 +255,10 @@ TrainingSet make_training_set(const std::vector<TrainingView>& views, const Feat
     for (TrainingSample& sample : pictures[i].samples) {
       sample.picture = static_cast<std::int32_t>(i);
       set.samples.push_back(sample);
+    }
+    for (TrainingSample& sample : pictures[i].spare_background) {
+      sample.picture = static_cast<std::int32_t>(i);
+      set.spare_background.push_back(sample);
     }
     set.pictures.push_back(std::move(pictures[i].features));
   }

@@ -26,9 +26,11 @@ struct TrainingSample {
 /// Everything the trees see.
 struct TrainingSet {
   std::vector<FeatureImage> pictures;
-  std::vector<TrainingSample> samples;  ///< grouped by picture
-  std::vector<ObjectClass> classes;     ///< by class id
-  std::vector<ViewRotation> views;
+  std::vector<TrainingSample> samples;           ///< grouped by picture
+  std::vector<TrainingSample> spare_background;  ///< more background patches, from which the hard ones are chosen
+  std::vector<ObjectClass> classes;              ///< by class id
+  std::vector<TrainedView> views;
+  std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
 };
 
 /// Puts every view into several backgrounds, computes features and draws patches (paper, Section 4: 250 an image).

@@ -18,25 +18,22 @@ class TreeGrower {
       : set_(set),
         settings_(settings),
         random_(Random::for_item(settings.seed ^ 0x7265655F74ULL, static_cast<std::uint64_t>(tree))) {
-    in_bag_ = draw_bag();
+    bag_ = draw_bag(tree);
     label_weights_ = weigh_labels();
     search_.emplace(set, patch, settings, label_weights_);
   }
 
   Forest grow() {
     forest_.leaves.push_back(0);
-    forest_.roots.push_back(grow_node(in_bag_, 0));
+    forest_.roots.push_back(grow_node(bag_, 0));
     return std::move(forest_);
   }
 
  private:
-  /// Whole pictures are in or out, since patches of one picture are not independent.
-  Samples draw_bag() {
-    std::vector<bool> chosen(set_.pictures.size());
-    for (std::size_t p = 0; p < chosen.size(); ++p) chosen[p] = random_.uniform() < settings_.in_bag;
+  Samples draw_bag(int tree) const {
     Samples bag;
     for (std::uint32_t s = 0; s < set_.samples.size(); ++s) {
-      if (chosen[static_cast<std::size_t>(set_.samples[s].picture)]) bag.push_back(s);
+      if (in_bag(settings_, tree, set_.samples[s].picture)) bag.push_back(s);
     }
     return bag;
   }
@@ -44,10 +41,10 @@ class TreeGrower {
   /// Every object weighs the same, and the background as much as all objects together.
   std::vector<float> weigh_labels() const {
     std::vector<float> counts(set_.classes.size() + 1, 0.0F);
-    for (const std::uint32_t s : in_bag_) counts[set_.samples[s].label] += 1.0F;
+    for (const std::uint32_t s : bag_) counts[set_.samples[s].label] += 1.0F;
     std::vector<float> weights(counts.size(), 0.0F);
     const auto objects = static_cast<float>(set_.classes.size());
-    const auto scale = static_cast<float>(in_bag_.size());
+    const auto scale = static_cast<float>(bag_.size());
     for (std::size_t l = 0; l < counts.size(); ++l) {
       if (counts[l] > 0.0F) weights[l] = scale * (l == 0 ? 0.5F : 0.5F / objects) / counts[l];
     }
@@ -113,13 +110,19 @@ class TreeGrower {
   const TrainingSet& set_;
   const TrainingSettings& settings_;
   Random random_;
-  Samples in_bag_;
+  Samples bag_;
   std::vector<float> label_weights_;
   std::optional<SplitSearch> search_;
   Forest forest_;
 };
 
 }  // namespace
+
+bool in_bag(const TrainingSettings& settings, int tree, std::int32_t picture) {
+  Random random =
+      Random::for_item(settings.seed + static_cast<std::uint64_t>(tree), static_cast<std::uint64_t>(picture));
+  return random.uniform() < settings.in_bag;
+}
 
 Forest grow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree) {
   return TreeGrower(set, patch, settings, tree).grow();

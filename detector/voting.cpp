@@ -1,25 +1,24 @@
 #include "detector/voting.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+
+#include "pipeline/parallel.hpp"
 
 namespace houghstream {
 namespace {
 
-/// The class's entry in each tree's leaf for this patch; -1 where the leaf does not know it. Returns p(class | patch).
-float find_entries(const Forest& forest, int class_index, const std::int32_t* leaves,
-                   std::vector<std::int64_t>& entries) {
-  float probability = 0.0F;
+/// The class's entry in each tree's leaf for this patch; -1 where the leaf does not know it.
+void find_entries(const Forest& forest, int class_index, const std::int32_t* leaves,
+                  std::vector<std::int64_t>& entries) {
   for (std::size_t tree = 0; tree < entries.size(); ++tree) {
     entries[tree] = -1;
     const auto leaf = static_cast<std::size_t>(leaves[tree]);
     for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      if (forest.leaf_classes[e].class_index != class_index) continue;
-      entries[tree] = e;
-      probability += forest.leaf_classes[e].probability;
+      if (forest.leaf_classes[e].class_index == class_index) entries[tree] = e;
     }
   }
-  return probability / static_cast<float>(entries.size());
 }
 
 /// Appends the patch's votes whose centre is seen inside the image; `cells` gets the cell of each.
@@ -68,9 +67,30 @@ void fill_image(double sigma_px, HoughSpace& space) {
 
 }  // namespace
 
-HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches,
-                      const std::vector<std::int32_t>& leaves, const Camera& working_camera,
-                      const DetectionSettings& settings) {
+std::vector<float> class_probabilities(const Forest& forest, const std::vector<std::int32_t>& leaves, int threads) {
+  const std::size_t trees = forest.roots.size();
+  const std::size_t classes = forest.classes.size();
+  const std::size_t patches = leaves.size() / trees;
+  std::vector<float> probabilities(patches * classes, 0.0F);
+  constexpr std::size_t kBand = 1024;
+  parallel_for(threads, static_cast<int>((patches + kBand - 1) / kBand), [&](int band) {
+    const std::size_t begin = static_cast<std::size_t>(band) * kBand;
+    for (std::size_t p = begin; p < std::min(begin + kBand, patches); ++p) {
+      float* sums = probabilities.data() + p * classes;
+      for (std::size_t tree = 0; tree < trees; ++tree) {
+        const auto leaf = static_cast<std::size_t>(leaves[p * trees + tree]);
+        for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
+          sums[forest.leaf_classes[e].class_index] += forest.leaf_classes[e].probability;
+        }
+      }
+      for (std::size_t c = 0; c < classes; ++c) sums[c] /= static_cast<float>(trees);
+    }
+  });
+  return probabilities;
+}
+
+HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchLeaves& leaves,
+                      const Camera& working_camera, const DetectionSettings& settings) {
   HoughSpace space;
   space.cell_px = 2;
   space.width = (working_camera.width + space.cell_px - 1) / space.cell_px;
@@ -79,8 +99,9 @@ HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& pa
   std::vector<std::uint32_t> cells;
   std::vector<std::int64_t> entries(forest.roots.size());
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    const float probability = find_entries(forest, class_index, leaves.data() + p * entries.size(), entries);
-    if (probability < settings.min_class_share) continue;
+    const std::size_t belief = p * forest.classes.size() + static_cast<std::size_t>(class_index);
+    if (leaves.probabilities[belief] < settings.min_class_share) continue;
+    find_entries(forest, class_index, leaves.leaves.data() + p * entries.size(), entries);
     cast_from_patch(forest, patches.point_camera[p], p, entries, working_camera, space, votes, cells);
   }
   sort_by_cell(votes, cells, space);

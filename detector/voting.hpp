@@ -9,6 +9,16 @@
 
 namespace houghstream {
 
+constexpr float kVoteReach = 2.5F;  ///< of vote_kernel, in sigmas
+
+/// How much a vote this far from a maximum supports it: (1 - d^2 / reach^2)^2 with a reach of 2.5 sigma, close to a
+/// Gaussian, but it needs no exponential and ends at the reach.
+inline float vote_kernel(float distance_sq, float vote_sigma) {
+  const float reach = kVoteReach * vote_sigma;
+  const float q = 1.0F - distance_sq / (reach * reach);
+  return q > 0.0F ? q * q : 0.0F;
+}
+
 /// One vote for an object's centre in the camera frame.
 struct Vote {
   Eigen::Vector3f centre_camera;  ///< metres
@@ -28,9 +38,17 @@ struct HoughSpace {
                                           ///< a patch's footprint and the spread of its votes shrink with it
 };
 
-/// Votes of all patches for one class, from classes that hold at least `min_class_share` of a patch's leaves.
-HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches,
-                      const std::vector<std::int32_t>& leaves, const Camera& working_camera,
-                      const DetectionSettings& settings);
+/// Where the patches of a frame ended up.
+struct PatchLeaves {
+  std::vector<std::int32_t> leaves;  ///< see assign_leaves
+  std::vector<float> probabilities;  ///< see class_probabilities
+};
+
+/// p(class | patch), the mean over the trees: element [patch * classes + class].
+std::vector<float> class_probabilities(const Forest& forest, const std::vector<std::int32_t>& leaves, int threads);
+
+/// Votes of all patches for one class, from those that believe in it by at least `min_class_share`.
+HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchLeaves& leaves,
+                      const Camera& working_camera, const DetectionSettings& settings);
 
 }  // namespace houghstream

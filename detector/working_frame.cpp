@@ -84,9 +84,14 @@ void fill_holes(cv::Mat& depth, float max_distance_px) {
 
 }  // namespace
 
-WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureSettings& settings) {
+std::array<FeatureLevel, 2> feature_levels(const FeatureSettings& settings) {
+  return {{{settings.image_scale, 0.0F, settings.far_distance},
+           {2.0F * settings.image_scale, settings.far_distance, settings.max_distance}}};
+}
+
+WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
   WorkingFrame out;
-  out.camera = frame.camera.scaled(settings.image_scale);
+  out.camera = frame.camera.scaled(scale);
   const cv::Size size(out.camera.width, out.camera.height);
   if (size == frame.colour.size()) {
     out.colour = frame.colour;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <opencv2/core.hpp>
 
 #include "detector/detector_settings.hpp"
@@ -14,8 +15,20 @@ struct WorkingFrame {
   Camera camera;         ///< of these images
 };
 
+/// A size at which features are computed, and the surfaces that are looked at in it. The support of a feature is fixed
+/// in pixels, which the paper leaves as it is (Section 5.1.2); two sizes an octave apart keep it within a factor of two
+/// in metres too, and give far objects enough pixels.
+struct FeatureLevel {
+  float scale = 1.0F;         ///< working size over frame size
+  float min_distance = 0.0F;  ///< metres
+  float max_distance = 0.0F;  ///< metres
+
+  bool holds(float depth) const { return depth > min_distance && depth <= max_distance; }  // false for NaN
+};
+std::array<FeatureLevel, 2> feature_levels(const FeatureSettings& settings);
+
 /// Resizes (paper, Section 5.1.1) and closes small holes. Of each 2x2 block the nearest surface counts, so that
 /// foreground and background are never averaged into a surface that is not there.
-WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureSettings& settings);
+WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings);
 
 }  // namespace houghstream
