@@ -78,10 +78,12 @@ Picture object_picture(const TrainingView& view, int label, std::uint32_t view_i
                        const Recipe& recipe, Random& random) {
   const TrainingSettings& settings = recipe.settings;
   Picture picture;
-  const double distance = std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
+  double distance = std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
   std::optional<Composite> composite = make_composite(view, background, distance, settings, random);
-  if (!composite)
-    composite = make_composite(view, background, view.T_camera_object.translation().z(), settings, random);
+  if (!composite) {
+    distance = view.T_camera_object.translation().z();
+    composite = make_composite(view, background, distance, settings, random);
+  }
   if (!composite) return picture;
 
   const FeatureLevel level = level_for(distance, recipe.features, random);

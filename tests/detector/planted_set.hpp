@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "detector/training_set.hpp"
+#include "pipeline/random.hpp"
+
+namespace houghstream::toy {
+
+constexpr int kClassPlane = 7;   ///< rises across every picture of the object and is flat elsewhere
+constexpr int kOffsetPlane = 8;  ///< rises where the offset is +0.05 m and is flat where it is -0.05 m
+constexpr int kNoisePlane = 20;  ///< tells nothing
+
+/// A set whose answer is known: 16 pictures, every other one background, and 50 samples of each.
+inline TrainingSet planted_set() {
+  TrainingSet set;
+  set.classes = {{1, "object"}};
+  set.views.resize(1);
+  Random random(3);
+  for (int i = 0; i < 16; ++i) {
+    FeatureImage picture(32, 32);
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) {
+        const auto ramp = static_cast<std::uint8_t>(4 * x);
+        picture.at(x, y)[kClassPlane] = i % 2 == 1 ? ramp : std::uint8_t{60};
+        picture.at(x, y)[kOffsetPlane] = i % 4 == 3 ? ramp : std::uint8_t{60};
+        picture.at(x, y)[kNoisePlane] = static_cast<std::uint8_t>(random.below(256));
+      }
+    }
+    picture.replicate_border();
+    set.pictures.push_back(picture);
+    for (int s = 0; s < 50; ++s) {
+      TrainingSample sample;
+      sample.picture = i;
+      sample.x = static_cast<std::int16_t>(random.between(12, 19));
+      sample.y = static_cast<std::int16_t>(random.between(12, 19));
+      sample.scale = 256;
+      sample.label = static_cast<std::uint16_t>(i % 2);
+      if (sample.label != 0) sample.offset = {i % 4 == 3 ? 0.05F : -0.05F, 0.0F, 0.0F};
+      set.samples.push_back(sample);
+    }
+  }
+  return set;
+}
+
+}  // namespace houghstream::toy
