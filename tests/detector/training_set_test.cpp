@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
@@ -81,9 +82,10 @@ TEST(TrainingSet, HolesTeachNoCentre) {
 TEST(TrainingSet, EachLevelLearnsBackgroundOfItsOwnDistances) {
   std::vector<TrainingView> views = flat_tile();
   cv::Mat& depth = views[1].frame.depth;
-  depth.setTo(6.0F);  // beyond both levels
-  depth.colRange(0, depth.cols / 3).setTo(0.8F);
-  depth.colRange(depth.cols / 3, 2 * depth.cols / 3).setTo(2.0F);
+  for (int x = 0; x < depth.cols; ++x) {  // stripes: near, far, beyond both levels
+    constexpr std::array<float, 3> kDepths = {0.8F, 2.0F, 6.0F};
+    depth.col(x).setTo(kDepths[static_cast<std::size_t>(x / 20 % 3)]);
+  }
   const TrainingSet set = teach(views, 0.7F);
   const TrainingSettings settings = toy::quick_training();
   std::array<int, 2> counts{};
