@@ -42,6 +42,11 @@ function(houghstream_compile_options target)
   endif()
 endfunction()
 
+# Mains and tests hold no hot code of their own; optimising CLI11 and GoogleTest takes a quarter of their build time.
+function(houghstream_compile_quickly target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # houghstream_library(NAME SOURCES a.cpp ... LINK x ...)
 function(houghstream_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
@@ -57,6 +62,7 @@ function(houghstream_executable name)
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
   target_compile_definitions(${name} PRIVATE HOUGHSTREAM_VERSION="${PROJECT_VERSION}")
   houghstream_compile_options(${name})
+  houghstream_compile_quickly(${name})
 endfunction()
 
 # houghstream_test(FOO_TEST SOURCES foo_test.cpp ... LINK x ...): one GoogleTest binary, one CTest entry.
@@ -65,6 +71,7 @@ function(houghstream_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest_main)
   houghstream_compile_options(${name})
+  houghstream_compile_quickly(${name})
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES TIMEOUT 300)
 endfunction()

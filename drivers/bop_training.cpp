@@ -82,7 +82,8 @@ std::vector<TrainingView> read_bop_training_views(const fs::path& folder) {
   for (const fs::path& scene_folder : scene_folders(folder)) {
     skipped += append_views(BopScene(scene_folder), find_bop_names(scene_folder), views);
   }
-  require(!views.empty(), "{}: all {} views have an empty mask or no depth on the object, expected at least one usable view",
+  require(!views.empty(),
+          "{}: all {} views have an empty mask or no depth on the object, expected at least one usable view",
           folder.string(), skipped);
   return views;
 }

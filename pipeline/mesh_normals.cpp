@@ -1,6 +1,6 @@
-#include "pipeline/mesh.hpp"
-
 #include <Eigen/Geometry>
+
+#include "pipeline/mesh.hpp"
 
 namespace houghstream {
 
