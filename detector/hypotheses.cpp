@@ -200,8 +200,9 @@ Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const
       values.emplace_back(forest.views[view].box[i], weight);
       total += weight;
     }
-    sides[i] =
-        static_cast<float>(centre_px[static_cast<Eigen::Index>(i % 2)]) + px_per_metre * weighted_median(values, total);
+    // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
+    const auto origin_px = static_cast<float>(centre_px[static_cast<Eigen::Index>(i % 2)]) + 0.5F;
+    sides[i] = origin_px + px_per_metre * weighted_median(values, total);
   }
   return sides;
 }

@@ -1,0 +1,138 @@
+#include "detector/hypotheses.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
+
+/// A forest of one leaf that takes every patch for the centre of the only class.
+Forest centre_forest() {
+  Forest forest;
+  forest.classes.push_back({1, "thing"});
+  forest.views.resize(2);
+  forest.roots = {-1};
+  forest.leaves = {0, 1};
+  LeafClass entry;
+  entry.probability = 1.0F;
+  entry.vote_count = 1;
+  entry.view_count = 2;
+  forest.leaf_classes.push_back(entry);
+  forest.votes.push_back({Eigen::Vector3f::Zero(), 1.0F});
+  forest.leaf_views = {{0, 0.25F}, {1, 0.75F}};
+  return forest;
+}
+
+/// Patches in a small cross around a point.
+void add_cluster(const Eigen::Vector3f& centre, float area, PatchGrid& patches) {
+  constexpr float kArm = 0.004F;
+  for (const Eigen::Vector3f& d : {Eigen::Vector3f(kArm, 0, 0), Eigen::Vector3f(-kArm, 0, 0),
+                                   Eigen::Vector3f(0, kArm, 0), Eigen::Vector3f(0, -kArm, 0)}) {
+    patches.x.push_back(0);
+    patches.point_camera.emplace_back(centre + d);
+    patches.area.push_back(area);
+  }
+}
+
+std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
+  const Forest forest = centre_forest();
+  PatchLeaves leaves;
+  leaves.leaves.assign(patches.size(), 0);
+  leaves.probabilities.assign(patches.size(), 1.0F);
+  const HoughSpace space = cast_votes(forest, 0, patches, leaves, kCamera, {});
+  return find_maxima(forest, space, patches, kCamera, least_mass, {});
+}
+
+TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
+  const Eigen::Vector3f left(-0.15F, 0.05F, 1.0F);
+  const Eigen::Vector3f right(0.15F, 0.05F, 1.02F);
+  PatchGrid patches;
+  add_cluster(left, 0.0001F, patches);
+  add_cluster(right, 0.0002F, patches);  // more of it is seen
+  const std::vector<Hypothesis> found = find(patches, 0.0F);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_LT((found[0].centre_camera - right).norm(), 0.001F) << found[0].centre_camera.transpose();
+  EXPECT_LT((found[1].centre_camera - left).norm(), 0.001F) << found[1].centre_camera.transpose();
+  EXPECT_EQ(found[0].vote_count, 4);
+  const float kernel = vote_kernel(0.004F * 0.004F, DetectionSettings{}.vote_sigma);
+  EXPECT_NEAR(found[0].mass, 4 * 0.0002F * kernel, 1e-6F);
+  EXPECT_NEAR(found[0].weight, 4 * kernel, 0.01F);
+  ASSERT_EQ(found[0].patches.size(), 4U);
+  EXPECT_EQ(found[0].patches[0].first, 4U);
+  ASSERT_EQ(found[0].views.size(), 2U);
+  EXPECT_EQ(found[0].views[0].first, 1U);  // the heavier
+  EXPECT_NEAR(found[0].views[0].second, 0.75F * found[0].weight, 1e-4F);
+}
+
+TEST(Hypotheses, CentresBehindEachOtherAreNotMixed) {
+  PatchGrid patches;
+  add_cluster({0, 0, 0.8F}, 0.0001F, patches);
+  add_cluster({0, 0, 0.8F}, 0.0001F, patches);
+  add_cluster({0, 0, 1.1F}, 0.0001F, patches);
+  const std::vector<Hypothesis> found = find(patches, 0.0F);
+  ASSERT_FALSE(found.empty());
+  EXPECT_NEAR(found[0].centre_camera.z(), 0.8F, 0.001F);
+  EXPECT_EQ(found[0].vote_count, 8);
+}
+
+TEST(Hypotheses, WeakOnesAndEmptySpacesGiveNothing) {
+  PatchGrid patches;
+  EXPECT_TRUE(find(patches, 0.0F).empty());
+  add_cluster({0, 0, 1}, 0.0001F, patches);
+  EXPECT_EQ(find(patches, 0.0002F).size(), 1U);
+  EXPECT_TRUE(find(patches, 0.0005F).empty());
+}
+
+/// A supporter per 2-pixel cell of a rectangle of the frame.
+cv::Rect2f box_of(const cv::Rect& supported) {
+  Forest forest;
+  forest.views.resize(1);
+  forest.views[0].box = {-0.1F, -0.05F, 0.1F, 0.05F};
+  Hypothesis hypothesis;
+  hypothesis.centre_camera = {0, 0, 1};
+  hypothesis.views = {{0, 1.0F}};
+  PatchGrid patches;
+  for (int y = supported.y; y < supported.br().y; y += 2) {
+    for (int x = supported.x; x < supported.br().x; x += 2) {
+      hypothesis.patches.emplace_back(static_cast<std::uint32_t>(patches.cell_px.size()), 1.0F);
+      patches.cell_px.emplace_back(x, y, 2, 2);
+    }
+  }
+  return backprojected_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5});
+}
+
+TEST(Hypotheses, SidesMoveOutToTheRememberedOnesUnlessHidden) {
+  // Whole, the object is seen from 270 to 370 and from 215 to 265.
+  const cv::Rect2f whole = box_of({284, 222, 74, 38});
+  EXPECT_NEAR(whole.x, 270, 0.01);
+  EXPECT_NEAR(whole.y, 215, 0.01);
+  EXPECT_NEAR(whole.br().x, 370, 0.01);
+  EXPECT_NEAR(whole.br().y, 265, 0.01);
+  const cv::Rect2f half = box_of({284, 222, 36, 38});  // the right half is hidden
+  EXPECT_NEAR(half.x, 270, 0.01);
+  EXPECT_NEAR(half.br().x, 320, 0.01);
+  EXPECT_NEAR(half.br().y, 265, 0.01);
+}
+
+TEST(Hypotheses, WithoutSupportThereIsNoBox) {
+  EXPECT_EQ(backprojected_box({}, {}, {}, kCamera), cv::Rect2f());
+}
+
+Detection boxed(float score, float x) {
+  Detection detection;
+  detection.score = score;
+  detection.box_px = {x, 0, 100, 100};
+  return detection;
+}
+
+TEST(Hypotheses, OfOverlappingBoxesTheStrongerStays) {
+  // 0 and 20 overlap by IoU 0.67, 20 and 40 too, 0 and 40 by 0.43.
+  const std::vector<Detection> kept = suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, 0.5F);
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_EQ(kept[0].score, 0.9F);
+  EXPECT_EQ(kept[1].score, 0.4F);  // only the dropped one overlapped it
+}
+
+}  // namespace
+}  // namespace houghstream
