@@ -103,7 +103,7 @@ Detections Detector::detect(const RgbdFrame& frame) const {
   for (std::vector<Detection>& detections : by_class) {
     std::move(detections.begin(), detections.end(), std::back_inserter(out.detections));
   }
-  out.detections = suppress_overlaps(std::move(out.detections), settings.max_overlap);
+  out.detections = suppress_overlaps(std::move(out.detections), settings);
   clock.mark("detect.hypotheses");
   out.stages = frame.stages;
   out.stages.insert(out.stages.end(), clock.times().begin(), clock.times().end());

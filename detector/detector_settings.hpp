@@ -16,7 +16,7 @@ struct FeatureSettings {
 
 /// How patches are tested. Stored in the forest file.
 struct PatchSettings {
-  float unit = 0.004F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
+  float unit = 0.002F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
   int radius = 10;      ///< test offsets reach from -radius to +radius steps
 };
 
@@ -53,6 +53,7 @@ struct DetectionSettings {
   float hough_sigma_px = 3.0F;     ///< smoothing of the Hough image, working pixels
   float vote_sigma = 0.016F;       ///< bandwidth of the 3-D maximum, metres
   float max_overlap = 0.5F;        ///< a weaker box of another object may overlap a stronger one by this IoU
+  float dominance = 2.0F;          ///< ... unless that one is of another class and less than so many times stronger
   int max_rotations = 48;          ///< rotations handed to the pose process
 };
 

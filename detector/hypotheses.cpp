@@ -251,12 +251,15 @@ cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis,
   return box & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
 }
 
-std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, float max_overlap) {
+std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const DetectionSettings& settings) {
   std::stable_sort(detections.begin(), detections.end(),
                    [](const Detection& a, const Detection& b) { return a.score > b.score; });
   std::vector<Detection> kept;
   for (Detection& detection : detections) {
-    const auto overlaps = [&](const Detection& other) { return box_iou(other.box_px, detection.box_px) > max_overlap; };
+    const auto overlaps = [&](const Detection& other) {
+      const bool dominates = other.class_id == detection.class_id || other.score > settings.dominance * detection.score;
+      return dominates && box_iou(other.box_px, detection.box_px) > settings.max_overlap;
+    };
     if (std::none_of(kept.begin(), kept.end(), overlaps)) kept.push_back(std::move(detection));
   }
   return kept;

@@ -28,7 +28,8 @@ std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& spac
 cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
                              const Camera& camera);
 
-/// Strongest first; a weaker one whose box overlaps a stronger one's by more than `max_overlap` (IoU) is dropped.
-std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, float max_overlap);
+/// Strongest first; one whose box overlaps that of a stronger one of its class, or of a significantly stronger one of
+/// another class (paper, Section 2), by more than the settings allow is dropped.
+std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const DetectionSettings& settings);
 
 }  // namespace houghstream

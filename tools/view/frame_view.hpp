@@ -18,6 +18,7 @@ struct ViewedFrame {
 
 /// What the picture shows beside the overlay.
 struct FrameViewSettings {
+  float min_score = 0.3F;   ///< weaker detections and their poses are not drawn
   bool show_depth = true;   ///< depth, colour-mapped, to the right
   float depth_near = 0.4F;  ///< metres, red end of the colour map
   float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue
@@ -26,8 +27,11 @@ struct FrameViewSettings {
 /// Depth (CV_32FC1, metres) as BGR: near is warm, far is cold, no measurement is black.
 cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
 
+/// The frame without detections weaker than `min_score` and without their poses.
+ViewedFrame without_weak(ViewedFrame viewed, float min_score);
+
 /// The whole picture, CV_8UC3: overlay, depth beside it, and below them latency and stage times. Its size is even in
 /// both directions, as video encoders want. Throws InputError as draw_overlay does.
-cv::Mat draw_frame_view(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings);
+cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings);
 
 }  // namespace houghstream

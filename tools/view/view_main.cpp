@@ -19,6 +19,7 @@ void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
   app.add_option("--duration", settings.duration, "end after so many seconds (0: when stopped)")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--min-score", settings.picture.min_score, "weaker detections are not drawn")->capture_default_str();
   app.add_flag_callback(
       "--no-depth", [&] { settings.picture.show_depth = false; }, "show the colour image only");
   houghstream::add_lcm_url_option(app, settings.lcm_url);

@@ -40,6 +40,22 @@ TEST(FrameView, PictureHoldsOverlayDepthAndPanelAndIsEven) {
   EXPECT_EQ(draw_frame_view(small_frame(), {}, without).cols, 162);
 }
 
+TEST(FrameView, WeakDetectionsAreLeftOutWithTheirPoses) {
+  ViewedFrame viewed;
+  viewed.detections.detections.resize(3);
+  viewed.detections.detections[0].score = 0.9F;
+  viewed.detections.detections[1].score = 0.1F;
+  viewed.detections.detections[2].score = 0.4F;
+  viewed.poses.emplace();
+  viewed.poses->poses.resize(3);
+  for (int i = 0; i < 3; ++i) viewed.poses->poses[static_cast<std::size_t>(i)].detection_index = i;
+  const ViewedFrame strong = without_weak(viewed, 0.3F);
+  ASSERT_EQ(strong.detections.detections.size(), 2U);
+  EXPECT_EQ(strong.detections.detections[1].score, 0.4F);
+  ASSERT_EQ(strong.poses->poses.size(), 2U);
+  EXPECT_EQ(strong.poses->poses[1].detection_index, 1);
+}
+
 TEST(FrameView, StageTimesAndLatencyAreDrawn) {
   ViewedFrame viewed = small_frame();
   viewed.frame.colour = cv::Mat(121, 640, CV_8UC3, cv::Scalar(1, 2, 3));
