@@ -128,10 +128,18 @@ Detection boxed(float score, float x) {
 
 TEST(Hypotheses, OfOverlappingBoxesTheStrongerStays) {
   // 0 and 20 overlap by IoU 0.67, 20 and 40 too, 0 and 40 by 0.43.
-  const std::vector<Detection> kept = suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, 0.5F);
+  const std::vector<Detection> kept =
+      suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, DetectionSettings{});
   ASSERT_EQ(kept.size(), 2U);
   EXPECT_EQ(kept[0].score, 0.9F);
   EXPECT_EQ(kept[1].score, 0.4F);  // only the dropped one overlapped it
+}
+
+TEST(Hypotheses, AnotherClassMustBeSignificantlyStrongerToSuppress) {
+  Detection other = boxed(0.5F, 10);
+  other.class_id = 2;
+  EXPECT_EQ(suppress_overlaps({boxed(0.9F, 0), other}, DetectionSettings{}).size(), 2U);
+  EXPECT_EQ(suppress_overlaps({boxed(1.1F, 0), other}, DetectionSettings{}).size(), 1U);
 }
 
 }  // namespace
