@@ -82,6 +82,7 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("--latency", options.latency, "hs-observe's CSV");
   app.add_option("--out", options.out, "folder for summary.json, curves.csv and poses.csv");
   EvaluationRules& rules = options.rules;
+  rules.operating_score = DetectionSettings{}.threshold;  // what hs-detect publishes unless told otherwise
   app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection")->capture_default_str();
   app.add_option("--min-visible", rules.detection.min_visible, "less visible objects are ignored")
       ->capture_default_str();
