@@ -39,16 +39,6 @@ std::vector<std::string> listed_classes(const EvaluateOptions& options, const st
   return {names.begin(), names.end()};
 }
 
-std::map<std::string, Mesh> load_models(const std::string& folder) {
-  std::map<std::string, Mesh> meshes;
-  if (folder.empty()) return meshes;
-  const BopModels models = read_bop_models(folder);
-  for (const auto& entry : models.diameters) {
-    meshes[models.names.at(entry.first)] = load_mesh(models.mesh_file(entry.first));
-  }
-  return meshes;
-}
-
 void run(const EvaluateOptions& options) {
   require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
   const BopScene scene(options.scene);
@@ -56,7 +46,8 @@ void run(const EvaluateOptions& options) {
   std::optional<Forest> forest;
   if (!options.forest.empty()) forest = load_forest(options.forest);
   const std::vector<std::string> classes = listed_classes(options, forest, frames);
-  const std::map<std::string, Mesh> meshes = load_models(options.models);
+  const std::map<std::string, Mesh> meshes =
+      options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
   const PublishedResults results =
       options.log.empty() ? run_in_process(scene, *forest, options.detection, meshes) : read_result_log(options.log);
   const std::string source = options.log.empty() ? options.scene : options.log;

@@ -10,16 +10,11 @@ namespace {
 
 /// Meshes by class name, from a BOP models/ folder; without one every detection is answered with "no model".
 std::map<std::string, houghstream::Mesh> load_models(const std::string& folder) {
-  std::map<std::string, houghstream::Mesh> meshes;
   if (folder.empty()) {
     spdlog::warn("no --models: detections are answered without a pose");
-    return meshes;
+    return {};
   }
-  const houghstream::BopModels models = houghstream::read_bop_models(folder);
-  for (const auto& [id, diameter] : models.diameters) {
-    meshes.emplace(models.names.at(id), houghstream::load_mesh(models.mesh_file(id)));
-  }
-  return meshes;
+  return houghstream::load_class_models(folder);
 }
 
 }  // namespace
