@@ -26,6 +26,7 @@ struct TrainingSettings {
   int max_depth = 25;            ///< levels
   int min_samples = 20;          ///< a node with fewer becomes a leaf
   int tests_per_node = 400;      ///< random pixel tests tried
+  double alone_share = 0.3;      ///< of the tests on planes with a zero: one pixel against the threshold, without a second
   int node_samples = 1500;       ///< at most so many samples choose a node's test; all are then split by it
   int patches_per_view = 250;    ///< per training view, and per background frame
   int composites_per_view = 3;   ///< pictures made of one view: other background, distance and light

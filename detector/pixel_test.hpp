@@ -13,12 +13,16 @@ namespace houghstream {
 /// object: the pixel offset is the step times the patch's scale, so that an object is tested alike at every distance
 /// (depth normalisation, paper Section 5.1.2).
 struct PixelTest {
+  static constexpr std::uint8_t kDifference = 0;
+  static constexpr std::uint8_t kWrapping = 24;  ///< the difference is taken modulo 256: bits to shift out
+  static constexpr std::uint8_t kAlone = 128;    ///< p1 alone, where p2 counts as 0: which colour, which slope
+
   std::int8_t dx1 = 0;
   std::int8_t dy1 = 0;
   std::int8_t dx2 = 0;
   std::int8_t dy2 = 0;
   std::uint8_t plane = 0;
-  std::uint8_t wrap_shift = 0;  ///< 24 where the difference is taken modulo 256, else 0
+  std::uint8_t kind = kDifference;
   std::int16_t threshold = 0;
 };
 
@@ -37,8 +41,11 @@ inline int test_value(const PixelTest& test, const std::uint8_t* centre, std::in
     const int y_px = (dy * scale + 128) >> 8;
     return static_cast<std::ptrdiff_t>(y_px) * row_stride + x_px * FeatureImage::kChannels + test.plane;
   };
-  const int difference = centre[offset(test.dx1, test.dy1)] - centre[offset(test.dx2, test.dy2)];
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(difference) << test.wrap_shift) >> test.wrap_shift;
+  const int second_mask = (test.kind >> 7) - 1;
+  const int difference =
+      centre[offset(test.dx1, test.dy1)] - (centre[offset(test.dx2, test.dy2)] & second_mask);
+  const int shift = test.kind & 31;
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(difference) << shift) >> shift;
 }
 
 }  // namespace houghstream

@@ -25,7 +25,13 @@ PixelTest SplitSearch::random_test(Random& random) const {
   test.dx2 = coordinate();
   test.dy2 = coordinate();
   test.plane = static_cast<std::uint8_t>(random.below(FeatureLayout::kPlanes));
-  test.wrap_shift = FeatureLayout::wraps(test.plane) ? 24 : 0;
+  if (FeatureLayout::wraps(test.plane)) {
+    test.kind = PixelTest::kWrapping;
+  } else if (random.uniform() < settings_.alone_share) {
+    test.kind = PixelTest::kAlone;
+    test.dx2 = test.dx1;
+    test.dy2 = test.dy1;
+  }
   return test;
 }
 

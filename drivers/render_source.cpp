@@ -9,7 +9,7 @@ namespace {
 class RenderSource : public FrameSource {
  public:
   explicit RenderSource(const std::string& name)
-      : scene_(make_test_scene(name)), lit_world_(light_world(scene_.world)) {}
+      : scene_(make_named_scene(name)), lit_world_(light_world(scene_.world)) {}
 
   std::optional<RgbdFrame> next() override {
     if (index_ == kRenderSourceFrames) return std::nullopt;

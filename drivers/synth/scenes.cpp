@@ -80,21 +80,34 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
   return scene;
 }
 
-Scene make_test_scene(const std::string& name) {
+Scene make_named_scene(const std::string& name) {
   struct Plan {
+    const char* name;
     RoomStyle style;
     Clutter clutter;
   };
-  const std::array<Plan, kTestScenes.size()> plans = {{{RoomStyle::kTable, {true, 1, 14}},
-                                                       {RoomStyle::kTable, {true, 2, 16}},
-                                                       {RoomStyle::kDesk, {true, 1, 14}},
-                                                       {RoomStyle::kDesk, {true, 2, 18}},
-                                                       {RoomStyle::kKitchen, {true, 1, 20}},
-                                                       {RoomStyle::kMeeting, {true, 1, 16}}}};
-  const auto* const found = std::find(kTestScenes.begin(), kTestScenes.end(), name);
-  require(found != kTestScenes.end(), "scene \"{}\": expected one of {}", name, fmt::join(kTestScenes, ", "));
-  const auto index = static_cast<std::size_t>(found - kTestScenes.begin());
-  return make_scene(name, plans[index].style, plans[index].clutter, world_seed(WorldUse::kTest, index));
+  constexpr std::array<Plan, kTestScenes.size()> kTests = {{{kTestScenes[0], RoomStyle::kTable, {true, 1, 14}},
+                                                            {kTestScenes[1], RoomStyle::kTable, {true, 2, 16}},
+                                                            {kTestScenes[2], RoomStyle::kDesk, {true, 1, 14}},
+                                                            {kTestScenes[3], RoomStyle::kDesk, {true, 2, 18}},
+                                                            {kTestScenes[4], RoomStyle::kKitchen, {true, 1, 20}},
+                                                            {kTestScenes[5], RoomStyle::kMeeting, {true, 1, 16}}}};
+  constexpr std::array<Plan, kDevelopmentScenes.size()> kDevelopment = {
+      {{kDevelopmentScenes[0], RoomStyle::kTable, {true, 2, 16}},
+       {kDevelopmentScenes[1], RoomStyle::kDesk, {true, 1, 16}},
+       {kDevelopmentScenes[2], RoomStyle::kKitchen, {true, 1, 18}}}};
+  constexpr std::uint64_t kFirstDevelopmentWorld = 1ULL << 40U;  // far beyond the numbers of training data
+  const auto make = [](const Plan& plan, WorldUse use, std::uint64_t number) {
+    return make_scene(plan.name, plan.style, plan.clutter, world_seed(use, number));
+  };
+  for (std::size_t i = 0; i < kTests.size(); ++i) {
+    if (name == kTests[i].name) return make(kTests[i], WorldUse::kTest, i);
+  }
+  for (std::size_t i = 0; i < kDevelopment.size(); ++i) {
+    if (name == kDevelopment[i].name) return make(kDevelopment[i], WorldUse::kTraining, kFirstDevelopmentWorld + i);
+  }
+  fail("scene \"{}\": expected one of {}, or for choosing settings {}", name, fmt::join(kTestScenes, ", "),
+       fmt::join(kDevelopmentScenes, ", "));
 }
 
 Scene make_background_scene(int index, std::uint64_t seed) {

@@ -30,8 +30,13 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
 inline constexpr std::array<const char*, 6> kTestScenes = {"table_small_1", "table_small_2",   "desk_1",
                                                            "desk_2",        "kitchen_small_1", "meeting_small_1"};
 
-/// Throws InputError listing the known names.
-Scene make_test_scene(const std::string& name);
+/// Scenes to choose settings on, so that the test scenes stay unseen: worlds of training seeds that no training data
+/// use.
+inline constexpr std::array<const char*, 3> kDevelopmentScenes = {"development_table", "development_desk",
+                                                                  "development_kitchen"};
+
+/// One of the test or development scenes. Throws InputError listing the known names.
+Scene make_named_scene(const std::string& name);
 
 /// Training room number `index` with clutter of its own and none of the taught objects.
 Scene make_background_scene(int index, std::uint64_t seed);

@@ -35,7 +35,7 @@ TEST(PixelTest, ComparesOnePlaneAtTwoPlacesAndWrapsDepth) {
   PixelTest test{-2, 0, 2, 0, 3, 0, 0};
   EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), 170);
   test.plane = 32;
-  test.wrap_shift = 24;
+  test.kind = PixelTest::kWrapping;
   EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), -10);  // 250 - (256 + 4)
 }
 

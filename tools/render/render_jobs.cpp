@@ -78,7 +78,7 @@ void render_background(const RenderOptions& options, int count) {
 void render_scene(const RenderOptions& options, const std::string& name, int frames, int every) {
   require(frames >= 1 && frames <= kMostFrames, "scene: {} frames, expected 1 to {}", frames, kMostFrames);
   require(every >= 1, "scene: every {}th frame, expected at least 1", every);
-  const Scene scene = make_test_scene(name);
+  const Scene scene = make_named_scene(name);
   const LitWorld lit_world = light_world(scene.world);
   write_models(taught_objects({"all"}), options.out / "models");
   BopWriter writer(fresh_scene(options.out));

@@ -12,7 +12,7 @@ namespace {
 class SceneFrames : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scene_ = make_test_scene("table_small_2");
+    scene_ = make_named_scene("table_small_2");
     lit_world_ = light_world(scene_.world);
   }
   static std::array<SceneFrame, 3> render(int threads) {

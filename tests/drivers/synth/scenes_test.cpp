@@ -18,7 +18,7 @@ namespace {
 const Scene& test_scene(const std::string& name) {
   static std::map<std::string, Scene> scenes;
   const auto found = scenes.find(name);
-  return found != scenes.end() ? found->second : scenes.emplace(name, make_test_scene(name)).first->second;
+  return found != scenes.end() ? found->second : scenes.emplace(name, make_named_scene(name)).first->second;
 }
 
 double yaw_of(const Eigen::Isometry3d& T) {
@@ -102,7 +102,7 @@ TEST(Scenes, BackgroundsHoldNoTaughtObject) {
 }
 
 TEST(Scenes, UnknownNamesAreRefused) {
-  EXPECT_THROW(make_test_scene("cellar_1"), InputError);
+  EXPECT_THROW(make_named_scene("cellar_1"), InputError);
 }
 
 }  // namespace
