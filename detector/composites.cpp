@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/occluders.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -48,6 +50,28 @@ void paste(const Patchwork& part, cv::Point at, float depth_shift, double extra_
   }
 }
 
+/// A part of the room that could lie behind something at this distance: little of it is nearer.
+cv::Rect place_behind(const RgbdFrame& background, cv::Size size, double distance, Random& random) {
+  constexpr int kTries = 12;
+  constexpr int kStep = 8;
+  cv::Rect best;
+  int best_nearer = size.area();
+  for (int i = 0; i < kTries && best_nearer * kStep * kStep > size.area() / 20; ++i) {
+    const cv::Rect place(random.between(0, background.colour.cols - size.width),
+                         random.between(0, background.colour.rows - size.height), size.width, size.height);
+    int nearer = 0;
+    for (int y = place.y; y < place.br().y; y += kStep) {
+      for (int x = place.x; x < place.br().x; x += kStep) {
+        nearer += background.depth.at<float>(y, x) < distance - 0.02 ? 1 : 0;
+      }
+    }
+    if (nearer >= best_nearer) continue;
+    best = place;
+    best_nearer = nearer;
+  }
+  return best;
+}
+
 }  // namespace
 
 void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
@@ -89,8 +113,7 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   const cv::Size window(part.mask.cols + 2 * kMargin, part.mask.rows + 2 * kMargin);
   if (window.width > background.colour.cols || window.height > background.colour.rows) return std::nullopt;
 
-  const cv::Rect place(random.between(0, background.colour.cols - window.width),
-                       random.between(0, background.colour.rows - window.height), window.width, window.height);
+  const cv::Rect place = place_behind(background, window, distance, random);
   out.frame.colour = background.colour(place).clone();
   out.frame.depth = background.depth(place).clone();
   out.frame.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
@@ -102,6 +125,8 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   const double sigma_sq =
       axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
   paste(lit, cv::Point(kMargin, kMargin), out.depth_shift, sigma_sq > 0 ? std::sqrt(sigma_sq) : 0.0, out, random);
+  out.whole_px = cv::countNonZero(out.mask);
+  if (random.uniform() < settings.occluded_share) add_occluder(background, distance, out, random);
   vary_exposure(out.frame.colour, settings.light_variation, random);
   return out;
 }

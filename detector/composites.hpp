@@ -12,7 +12,8 @@ namespace houghstream {
 /// Made from training data only.
 struct Composite {
   RgbdFrame frame;           ///< part of the background frame around the object; its camera is the part's
-  cv::Mat mask;              ///< CV_8UC1, 255 on the object
+  cv::Mat mask;              ///< CV_8UC1, 255 where the object is seen
+  int whole_px = 0;          ///< pixels of the object, hidden ones included
   double scale = 1.0;        ///< size in the composite over size in the view
   cv::Point2d origin_px;     ///< pixel p of the composite shows pixel (p - origin_px) / scale of the view
   float depth_shift = 0.0F;  ///< metres added to the view's depth

@@ -18,7 +18,7 @@ struct Picture {
   FeatureImage features;
   std::vector<TrainingSample> samples;
   std::vector<TrainingSample> spare_background;
-  float visible_area = 0.0F;  // of the object, square metres
+  float whole_area = 0.0F;  // of the object, square metres
 };
 
 constexpr int kBackgroundPictures = 4;  // per background frame, half of them at each level
@@ -113,8 +113,8 @@ Picture object_picture(const TrainingView& view, int label, std::uint32_t view_i
   for (const cv::Point at : draw_pixels(mask.size(), count / 4, random, beside)) {
     picture.samples.push_back(sample_at(at, frame, recipe));
   }
-  const double px = frame.camera.metres_per_px(distance);
-  picture.visible_area = static_cast<float>(cv::countNonZero(mask) * px * px);
+  const double px = composite->frame.camera.metres_per_px(distance);
+  picture.whole_area = static_cast<float>(composite->whole_px * px * px);
   return picture;
 }
 
@@ -203,7 +203,7 @@ void measure_classes(const std::vector<Picture>& pictures, TrainingSet& set) {
         distances.push_back(sample.offset.norm());
         shows_class = true;
       }
-      area += shows_class ? picture.visible_area : 0.0F;
+      area += shows_class ? picture.whole_area : 0.0F;
       count += shows_class ? 1 : 0;
     }
     require(!distances.empty(), "class '{}': no patch with depth in any training view", set.classes[c].name);
