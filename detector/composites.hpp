@@ -13,6 +13,7 @@ namespace houghstream {
 struct Composite {
   RgbdFrame frame;           ///< part of the background frame around the object; its camera is the part's
   cv::Mat mask;              ///< CV_8UC1, 255 where the object is seen
+  cv::Mat occluder;          ///< CV_8UC1, 255 where something was put in front; empty where nothing was
   int whole_px = 0;          ///< pixels of the object, hidden ones included
   double scale = 1.0;        ///< size in the composite over size in the view
   cv::Point2d origin_px;     ///< pixel p of the composite shows pixel (p - origin_px) / scale of the view

@@ -39,6 +39,7 @@ struct TrainingSettings {
   int max_leaf_votes = 12;       ///< offsets kept per leaf and class after merging
   int max_leaf_views = 12;       ///< remembered training views per leaf and class
   float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres
+  int validation_frames = 120;   ///< composed pictures on which the score learns what it is worth
   std::uint64_t seed = 1;
   int threads = 2;
 };
@@ -47,7 +48,8 @@ struct TrainingSettings {
 struct DetectionSettings {
   int threads = 2;
   int stride = 2;                  ///< patch offset, working pixels (paper, Section 5.1.3)
-  float threshold = 0.3F;          ///< smallest score that is reported
+  float threshold = 0.5F;          ///< smallest score that is reported
+  float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
   float min_class_share = 0.15F;   ///< a patch votes for a class from this share of its leaves on
   int candidates_per_class = 24;   ///< maxima of the Hough image that are looked at in 3-D

@@ -48,6 +48,23 @@ struct ObjectClass {
   float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres; scores are relative to it
 };
 
+/// Depth of a training view over its box, relative to the object's centre.
+struct Relief {
+  static constexpr int kSide = 20;                  ///< cells per side
+  static constexpr std::int16_t kBeside = -32768;   ///< the cell does not show the object
+  static constexpr std::int16_t kNoDepth = -32767;  ///< it does, but no depth was measured
+  std::array<std::int16_t, kSide * kSide> mm{};     ///< row by row
+};
+
+constexpr std::size_t kScoreTerms = 5;
+using ScoreTerms = std::array<float, kScoreTerms>;
+
+/// How evidence becomes a probability, see score_terms(). The values here are what is believed before any
+/// example is seen: even odds at a third of the expected mass.
+struct ScoreModel {
+  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F};
+};
+
 /// A training view as poses and boxes need it.
 struct TrainedView {
   std::uint32_t class_index = 0;
@@ -55,6 +72,7 @@ struct TrainedView {
   Eigen::Quaternion<float, Eigen::DontAlign> R_ray_object = Eigen::Quaternion<float, Eigen::DontAlign>::Identity();
   /// Left, top, right and bottom of the mask as seen from the object's centre, metres at the centre's depth.
   std::array<float, 4> box{};
+  Relief relief;
 };
 
 /// A trained forest: flat arrays, trees one after another. Read-only once built.
@@ -62,6 +80,7 @@ struct Forest {
   FeatureSettings features;
   PatchSettings patch;
   std::uint64_t seed = 0;
+  ScoreModel score_model;
   std::vector<ObjectClass> classes;
   std::vector<TrainedView> views;
   std::vector<std::int32_t> roots;  ///< per tree: a node, or -1 - leaf

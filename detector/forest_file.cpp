@@ -22,6 +22,7 @@ void archive_members(Archive& archive, ForestType& forest) {
   archive(forest.features);
   archive(forest.patch);
   archive(forest.seed);
+  archive(forest.score_model);
   archive(forest.classes);
   archive(forest.views);
   archive(forest.roots);
@@ -33,7 +34,7 @@ void archive_members(Archive& archive, ForestType& forest) {
 }
 
 // Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
-static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 && sizeof(TrainedView) == 36);
+static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 && sizeof(TrainedView) == 36 + sizeof(Relief));
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
 
 struct Writer {
@@ -154,6 +155,9 @@ void check_settings(const Forest& forest, const std::string& source) {
       forest.patch.unit);
   require(!forest.classes.empty() && !forest.roots.empty(), "{}: {} classes and {} trees, expected at least one each",
           source, forest.classes.size(), forest.roots.size());
+  for (const float weight : forest.score_model.weights) {
+    require(std::isfinite(weight), "{}: score weight {}, expected a number", source, weight);
+  }
   for (const ObjectClass& c : forest.classes) {
     require(c.radius > 0.0F && c.radius < 10.0F && c.expected_mass > 0.0F && std::isfinite(c.expected_mass),
             "{}: class '{}' of radius {} m, expected 0 to 10 m", source, c.name, c.radius);

@@ -6,6 +6,7 @@
 
 #include "detector/calibration.hpp"
 #include "detector/hard_negatives.hpp"
+#include "detector/score_training.hpp"
 #include "detector/tree_trainer.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -39,11 +40,36 @@ void append_tree(const Forest& tree, Forest& forest) {
   forest.leaf_views.insert(forest.leaf_views.end(), tree.leaf_views.begin(), tree.leaf_views.end());
 }
 
+/// Who learns from which views: the score must not learn from rooms that the trees know by heart.
+struct Rooms {
+  std::vector<const TrainingView*> objects;
+  std::vector<const TrainingView*> for_trees;  ///< objects and rooms
+  std::vector<const TrainingView*> for_score;  ///< rooms
+};
+
+Rooms share_rooms(const std::vector<TrainingView>& views) {
+  constexpr std::size_t kForScore = 6;  // every so many-th
+  Rooms rooms;
+  std::size_t count = 0;
+  for (const TrainingView& view : views) {
+    const bool is_room = view.class_id == 0;
+    const bool for_score = is_room && ++count % kForScore == 0;
+    if (!is_room) rooms.objects.push_back(&view);
+    (for_score ? rooms.for_score : rooms.for_trees).push_back(&view);
+  }
+  if (!rooms.for_score.empty()) return rooms;
+  for (const TrainingView& view : views) {  // too few to share
+    if (view.class_id == 0) rooms.for_score.push_back(&view);
+  }
+  return rooms;
+}
+
 }  // namespace
 
 Forest train_forest(const std::vector<TrainingView>& views, const FeatureSettings& features, const PatchSettings& patch,
                     const TrainingSettings& settings, const std::function<void(const std::string&)>& progress) {
-  TrainingSet set = make_training_set(views, features, patch, settings);
+  const Rooms rooms = share_rooms(views);
+  TrainingSet set = make_training_set(rooms.for_trees, features, patch, settings);
   progress(fmt::format("{} patches of {} pictures, {} classes", set.samples.size(), set.pictures.size(),
                        set.classes.size()));
   const std::size_t before = set.samples.size();
@@ -68,6 +94,8 @@ Forest train_forest(const std::vector<TrainingView>& views, const FeatureSetting
   forest.leaves.push_back(0);
   for (const Forest& tree : trees) append_tree(tree, forest);
   calibrate_masses(set, settings, DetectionSettings{}.vote_sigma, forest);
+  train_score_model(rooms.objects, rooms.for_score, settings, forest);
+  progress(fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
   return forest;
 }
 

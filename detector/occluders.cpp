@@ -69,6 +69,7 @@ void add_occluder(const RgbdFrame& room, double object_distance, Composite& comp
   const double slope_x = random.uniform(-0.5, 0.5) * depth / composite.frame.camera.fx;
   const double sigma = 0.0012 + 0.0019 * (depth - 0.4) * (depth - 0.4);
   cast_shadow(shape, depth, composite.frame);
+  composite.occluder = shape;
   for (int y = 0; y < shape.rows; ++y) {
     for (int x = 0; x < shape.cols; ++x) {
       if (shape.at<std::uint8_t>(y, x) == 0) continue;

@@ -8,6 +8,7 @@
 
 #include "detector/composites.hpp"
 #include "detector/features.hpp"
+#include "detector/view_fit.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -173,12 +174,14 @@ TrainedView trained_view(const TrainingView& view, std::uint32_t class_index) {
   const auto side = [&](int px, double origin_px) { return static_cast<float>(px - 0.5 - origin_px) * metres; };
   out.box = {side(box.x, centre_px.x()), side(box.y, centre_px.y()), side(box.br().x, centre_px.x()),
              side(box.br().y, centre_px.y())};
+  out.relief = make_relief(view.frame.depth, view.mask, box, centre.z());
   return out;
 }
 
-std::vector<ObjectClass> list_classes(const std::vector<TrainingView>& views) {
+std::vector<ObjectClass> list_classes(const std::vector<const TrainingView*>& views) {
   std::map<int, std::string> names;
-  for (const TrainingView& view : views) {
+  for (const TrainingView* shown : views) {
+    const TrainingView& view = *shown;
     if (view.class_id == 0) continue;
     const auto [place, is_new] = names.emplace(view.class_id, view.class_name);
     require(is_new || place->second == view.class_name, "{}: class {} is called '{}' and '{}', expected one name",
@@ -216,14 +219,14 @@ void measure_classes(const std::vector<Picture>& pictures, TrainingSet& set) {
 
 }  // namespace
 
-TrainingSet make_training_set(const std::vector<TrainingView>& views, const FeatureSettings& features,
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const FeatureSettings& features,
                               const PatchSettings& patch, const TrainingSettings& settings) {
   const Recipe recipe{features, patch, settings};
   TrainingSet set;
   set.classes = list_classes(views);
   std::vector<const TrainingView*> objects;
   std::vector<const TrainingView*> backgrounds;
-  for (const TrainingView& view : views) (view.class_id == 0 ? backgrounds : objects).push_back(&view);
+  for (const TrainingView* view : views) (view->class_id == 0 ? backgrounds : objects).push_back(view);
   require(!backgrounds.empty(), "training data: no background frames, expected at least one");
 
   std::vector<int> labels;

@@ -35,7 +35,7 @@ struct TrainingSet {
 
 /// Puts every view into several backgrounds, computes features and draws patches (paper, Section 4: 250 an image).
 /// Throws InputError when a class or the background is missing or a mask is empty.
-TrainingSet make_training_set(const std::vector<TrainingView>& views, const FeatureSettings& features,
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const FeatureSettings& features,
                               const PatchSettings& patch, const TrainingSettings& settings);
 
 }  // namespace houghstream

@@ -1,0 +1,120 @@
+#include "detector/candidates.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "detector/features.hpp"
+#include "detector/hypotheses.hpp"
+#include "detector/traversal.hpp"
+#include "detector/voting.hpp"
+#include "detector/working_frame.hpp"
+#include "pipeline/parallel.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Patches of the frame at both levels with the leaves that they reach.
+struct SeenPatches {
+  PatchGrid grid;
+  PatchLeaves leaves;
+  Camera hough_camera;
+};
+
+SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
+                             StageClock& clock) {
+  const auto levels = feature_levels(forest.features);
+  std::vector<WorkingFrame> working;
+  for (const FeatureLevel& level : levels) {  // Section 5.1.1
+    working.push_back(make_working_frame(frame, level.scale, forest.features));
+  }
+  clock.mark("detect.resize");
+  std::vector<FeatureImage> features;
+  for (const WorkingFrame& view : working) {  // Section 3
+    features.push_back(compute_features(view, forest.features, settings.threads));
+  }
+  clock.mark("detect.features");
+  SeenPatches seen;
+  seen.hough_camera = working[0].camera;
+  for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
+    add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
+  }
+  seen.leaves.leaves = assign_leaves(forest, features, seen.grid, settings.threads);  // Section 5.1.2
+  seen.leaves.probabilities = class_probabilities(forest, seen.leaves.leaves, settings.threads);
+  clock.mark("detect.forest");
+  return seen;
+}
+
+/// The remembered view that agrees best with the frame, of those that most votes remember.
+ViewFit best_fit(const Forest& forest, const Hypothesis& hypothesis, const RgbdFrame& frame) {
+  constexpr std::size_t kViews = 8;
+  const auto value = [](const ViewFit& fit) { return fit.visible + 0.5F * fit.unknown - fit.seen_through; };
+  ViewFit best;
+  for (std::size_t i = 0; i < std::min(kViews, hypothesis.views.size()); ++i) {
+    const ViewFit fit = fit_view(forest.views[hypothesis.views[i].first], hypothesis.centre_camera, frame);
+    if (i == 0 || value(fit) > value(best)) best = fit;
+  }
+  return best;
+}
+
+/// Votes say which patches belong to the object, depth says where the remembered view is not hidden: their errors are
+/// different ones, so the sides are taken midway.
+cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const Camera& camera) {
+  const cv::Rect2f inside =
+      fitted & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
+  if (inside.empty()) return voted;
+  return {0.5F * (voted.x + inside.x), 0.5F * (voted.y + inside.y), 0.5F * (voted.width + inside.width),
+          0.5F * (voted.height + inside.height)};
+}
+
+Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hypothesis& hypothesis,
+                       const PatchGrid& patches, const RgbdFrame& frame, int max_rotations) {
+  Candidate candidate;
+  candidate.evidence = {hypothesis.mass / object.expected_mass, best_fit(forest, hypothesis, frame)};
+  Detection& detection = candidate.detection;
+  detection.class_id = object.class_id;
+  detection.class_name = object.name;
+  detection.score = score(forest.score_model, candidate.evidence);
+  detection.box_px = visible_box(backprojected_box(forest, hypothesis, patches, frame.camera),
+                                 candidate.evidence.fit.visible_box_px, frame.camera);
+  detection.centre_camera = hypothesis.centre_camera;
+  detection.vote_weight = hypothesis.weight;
+  detection.vote_count = hypothesis.vote_count;
+  const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis.centre_camera));
+  for (const auto& [view, weight] : hypothesis.views) {
+    if (detection.rotations.size() >= static_cast<std::size_t>(max_rotations)) break;
+    detection.rotations.push_back({R_camera_ray * Eigen::Quaternionf(forest.views[view].R_ray_object), weight});
+  }
+  return candidate;
+}
+
+std::vector<Candidate> class_candidates(const Forest& forest, int class_index, const SeenPatches& seen,
+                                        const RgbdFrame& frame, const DetectionSettings& settings) {
+  const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
+  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.leaves, seen.hough_camera, settings);
+  const float least_mass = settings.min_mass_share * object.expected_mass;
+  std::vector<Candidate> candidates;
+  for (const Hypothesis& hypothesis :
+       find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
+    candidates.push_back(to_candidate(forest, object, hypothesis, seen.grid, frame, settings.max_rotations));
+  }
+  return candidates;
+}
+
+}  // namespace
+
+std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
+                                       StageClock& clock) {
+  const SeenPatches seen = classify_patches(forest, frame, settings, clock);
+  std::vector<std::vector<Candidate>> by_class(forest.classes.size());
+  parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {  // Section 2
+    by_class[static_cast<std::size_t>(c)] = class_candidates(forest, c, seen, frame, settings);
+  });
+  std::vector<Candidate> all;
+  for (std::vector<Candidate>& candidates : by_class) {
+    std::move(candidates.begin(), candidates.end(), std::back_inserter(all));
+  }
+  clock.mark("detect.voting");
+  return all;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+#include "detector/score.hpp"
+#include "pipeline/detection.hpp"
+#include "pipeline/frame.hpp"
+
+namespace houghstream {
+
+/// A hypothesis that the Hough space offers, before it is decided whether to believe in it.
+struct Candidate {
+  Detection detection;  ///< complete but for its score, which is the model's for the evidence
+  Evidence evidence;
+};
+
+/// All hypotheses of all classes, class by class, each class's strongest vote mass first. Closes the stages "detect.*" on the clock.
+std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
+                                       StageClock& clock);
+
+}  // namespace houghstream

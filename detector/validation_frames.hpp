@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+#include "pipeline/random.hpp"
+#include "pipeline/training_view.hpp"
+
+namespace houghstream {
+
+/// A room into which training views were put, to see what the finished forest makes of it.
+struct ValidationFrame {
+  struct Object {
+    int class_id = 0;
+    cv::Rect box_visible_px;
+    double visible_fraction = 0.0;
+  };
+  RgbdFrame frame;
+  std::vector<Object> objects;  ///< those of which anything is seen
+};
+
+/// Up to four random views in one room, each as in a composite: other distance, light, half of them partly hidden.
+ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
+                                      const TrainingSettings& settings, Random& random);
+
+}  // namespace houghstream

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "detector/forest.hpp"
+#include "pipeline/frame.hpp"
+
+namespace houghstream {
+
+/// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
+/// surface, which sum to 1.
+struct ViewFit {
+  float visible = 0.0F;       ///< depth as remembered
+  float hidden = 0.0F;        ///< something is in front of it
+  float seen_through = 0.0F;  ///< what is there lies behind: the object cannot be there
+  float unknown = 0.0F;       ///< no depth
+  cv::Rect2f visible_box_px;  ///< of what is visible or unknown, frame pixels; empty where nothing is
+};
+
+/// The view's relief compared with the frame, pixel by pixel of the relief, after moving it along the ray by at most
+/// a few centimetres to where most of it agrees: a vote's depth is less exact than a surface's.
+ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const RgbdFrame& frame);
+
+/// What a training view must remember for that.
+Relief make_relief(const cv::Mat& depth, const cv::Mat& mask, const cv::Rect& box_px, double centre_depth);
+
+}  // namespace houghstream
