@@ -57,7 +57,7 @@ struct DetectionSettings {
   float hough_sigma_px = 3.0F;     ///< smoothing of the Hough image, working pixels
   float vote_sigma = 0.016F;       ///< bandwidth of the 3-D maximum, metres
   float max_overlap = 0.5F;        ///< a weaker box of another object may overlap a stronger one by this IoU
-  float dominance = 2.0F;          ///< ... unless that one is of another class and less than so many times stronger
+  float dominance = 2.0F;          ///< ... if that one is of its own class, or more likely than not and so many times as likely
   int max_rotations = 48;          ///< rotations handed to the pose process
 };
 

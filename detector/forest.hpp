@@ -48,21 +48,25 @@ struct ObjectClass {
   float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres; scores are relative to it
 };
 
-/// Depth of a training view over its box, relative to the object's centre.
+/// Depth of a training view relative to the object's centre, over its box and a rim around it.
 struct Relief {
-  static constexpr int kSide = 20;                  ///< cells per side
+  static constexpr int kBoxSide = 20;               ///< cells per side of the box
+  static constexpr int kRim = 2;                    ///< cells around it
+  static constexpr int kSide = kBoxSide + 2 * kRim;
   static constexpr std::int16_t kBeside = -32768;   ///< the cell does not show the object
   static constexpr std::int16_t kNoDepth = -32767;  ///< it does, but no depth was measured
-  std::array<std::int16_t, kSide * kSide> mm{};     ///< row by row
+  using Cells = std::array<std::int16_t, kSide * kSide>;
+  Cells mm{};       ///< row by row
+  Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
 };
 
-constexpr std::size_t kScoreTerms = 5;
+constexpr std::size_t kScoreTerms = 6;
 using ScoreTerms = std::array<float, kScoreTerms>;
 
 /// How evidence becomes a probability, see score_terms(). The values here are what is believed before any
 /// example is seen: even odds at a third of the expected mass.
 struct ScoreModel {
-  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F};
+  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F};
 };
 
 /// A training view as poses and boxes need it.

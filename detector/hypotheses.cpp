@@ -257,7 +257,8 @@ std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, cons
   std::vector<Detection> kept;
   for (Detection& detection : detections) {
     const auto overlaps = [&](const Detection& other) {
-      const bool dominates = other.class_id == detection.class_id || other.score > settings.dominance * detection.score;
+      const bool dominates = other.class_id == detection.class_id ||
+                             (other.score > 0.5F && other.score > settings.dominance * detection.score);
       return dominates && box_iou(other.box_px, detection.box_px) > settings.max_overlap;
     };
     if (std::none_of(kept.begin(), kept.end(), overlaps)) kept.push_back(std::move(detection));
