@@ -73,7 +73,7 @@ Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hy
   Detection& detection = candidate.detection;
   detection.class_id = object.class_id;
   detection.class_name = object.name;
-  detection.score = score(forest.score_model, candidate.evidence);
+  detection.score = score(object.score_model, candidate.evidence);
   detection.box_px = visible_box(backprojected_box(forest, hypothesis, patches, frame.camera),
                                  candidate.evidence.fit.visible_box_px, frame.camera);
   detection.centre_camera = hypothesis.centre_camera;

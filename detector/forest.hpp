@@ -11,6 +11,15 @@
 
 namespace houghstream {
 
+constexpr std::size_t kScoreTerms = 6;
+using ScoreTerms = std::array<float, kScoreTerms>;
+
+/// How evidence becomes a probability, see score_terms(). The values here are what is believed before any
+/// example is seen: even odds at a third of the expected mass.
+struct ScoreModel {
+  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F};
+};
+
 /// Inner node: left child at `child`, right child at `child` + 1. A child below 0 is leaf number -1 - child.
 struct TreeNode {
   PixelTest test;
@@ -45,7 +54,8 @@ struct ObjectClass {
   int class_id = 0;  ///< from 1
   std::string name;
   float radius = 0.0F;         ///< farthest seen surface point from the centre, metres
-  float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres; scores are relative to it
+  float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres
+  ScoreModel score_model;
 };
 
 /// Depth of a training view relative to the object's centre, over its box and a rim around it.
@@ -58,15 +68,6 @@ struct Relief {
   using Cells = std::array<std::int16_t, kSide * kSide>;
   Cells mm{};       ///< row by row
   Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
-};
-
-constexpr std::size_t kScoreTerms = 6;
-using ScoreTerms = std::array<float, kScoreTerms>;
-
-/// How evidence becomes a probability, see score_terms(). The values here are what is believed before any
-/// example is seen: even odds at a third of the expected mass.
-struct ScoreModel {
-  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F};
 };
 
 /// A training view as poses and boxes need it.
@@ -84,7 +85,6 @@ struct Forest {
   FeatureSettings features;
   PatchSettings patch;
   std::uint64_t seed = 0;
-  ScoreModel score_model;
   std::vector<ObjectClass> classes;
   std::vector<TrainedView> views;
   std::vector<std::int32_t> roots;  ///< per tree: a node, or -1 - leaf

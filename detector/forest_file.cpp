@@ -22,7 +22,6 @@ void archive_members(Archive& archive, ForestType& forest) {
   archive(forest.features);
   archive(forest.patch);
   archive(forest.seed);
-  archive(forest.score_model);
   archive(forest.classes);
   archive(forest.views);
   archive(forest.roots);
@@ -53,6 +52,7 @@ struct Writer {
       bytes.append(c.name);
       (*this)(c.radius);
       (*this)(c.expected_mass);
+      (*this)(c.score_model);
     }
   }
   template <typename T>
@@ -91,6 +91,7 @@ struct Reader {
       copy(c.name.data(), c.name.size());
       (*this)(c.radius);
       (*this)(c.expected_mass);
+      (*this)(c.score_model);
     }
   }
   template <typename T>
@@ -155,12 +156,12 @@ void check_settings(const Forest& forest, const std::string& source) {
       forest.patch.unit);
   require(!forest.classes.empty() && !forest.roots.empty(), "{}: {} classes and {} trees, expected at least one each",
           source, forest.classes.size(), forest.roots.size());
-  for (const float weight : forest.score_model.weights) {
-    require(std::isfinite(weight), "{}: score weight {}, expected a number", source, weight);
-  }
   for (const ObjectClass& c : forest.classes) {
     require(c.radius > 0.0F && c.radius < 10.0F && c.expected_mass > 0.0F && std::isfinite(c.expected_mass),
             "{}: class '{}' of radius {} m, expected 0 to 10 m", source, c.name, c.radius);
+    for (const float weight : c.score_model.weights) {
+      require(std::isfinite(weight), "{}: class '{}' has score weight {}, expected a number", source, c.name, weight);
+    }
   }
 }
 

@@ -33,12 +33,12 @@ float score(const ScoreModel& model, const Evidence& evidence) {
   return static_cast<float>(logistic(to_vector(model.weights).dot(to_vector(score_terms(evidence)))));
 }
 
-ScoreModel fit_score_model(const std::vector<ScoreExample>& examples) {
+ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
   constexpr int kSteps = 30;  // of Newton's method, which needs about eight
-  const Vector prior = to_vector(ScoreModel{}.weights);
-  Vector weights = prior;
+  const Vector believed = to_vector(prior.weights);
+  Vector weights = believed;
   for (int step = 0; step < kSteps; ++step) {
-    Vector gradient = prior - weights;
+    Vector gradient = believed - weights;
     Matrix curvature = Matrix::Identity();
     for (const ScoreExample& example : examples) {
       const Vector x = to_vector(example.terms);

@@ -24,7 +24,7 @@ struct ScoreExample {
   bool is_object = false;
 };
 
-/// The weights that explain the examples best; few examples move them little from ScoreModel's own.
-ScoreModel fit_score_model(const std::vector<ScoreExample>& examples);
+/// The weights that explain the examples best; few examples move them little from those of `prior`.
+ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior);
 
 }  // namespace houghstream

@@ -1,6 +1,7 @@
 #include "detector/score_training.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "detector/candidates.hpp"
 #include "detector/validation_frames.hpp"
@@ -13,9 +14,11 @@ namespace {
 constexpr float kMinIou = 0.5F;
 constexpr double kMinVisible = 0.1;
 
+using Examples = std::map<int, std::vector<ScoreExample>>;  // by class id
+
 /// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
-std::vector<ScoreExample> judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
-  std::vector<ScoreExample> examples;
+Examples judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
+  Examples examples;
   std::vector<const Detection*> kept;
   for (const Candidate& candidate : candidates) {
     const Detection& found = candidate.detection;
@@ -32,7 +35,7 @@ std::vector<ScoreExample> judge(const std::vector<Candidate>& candidates, const 
       is_object = is_object || (meets && object.visible_fraction >= kMinVisible);
       is_hidden = is_hidden || (meets && object.visible_fraction < kMinVisible);
     }
-    if (is_object || !is_hidden) examples.push_back({score_terms(candidate.evidence), is_object});
+    if (is_object || !is_hidden) examples[found.class_id].push_back({score_terms(candidate.evidence), is_object});
   }
   return examples;
 }
@@ -43,7 +46,7 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
                        const TrainingSettings& settings, Forest& forest) {
   DetectionSettings detection;
   detection.threads = 1;
-  std::vector<std::vector<ScoreExample>> by_frame(static_cast<std::size_t>(settings.validation_frames));
+  std::vector<Examples> by_frame(static_cast<std::size_t>(settings.validation_frames));
   parallel_for(settings.threads, settings.validation_frames, [&](int f) {
     Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(f));
     const TrainingView& room = *rooms[static_cast<std::size_t>(f) % rooms.size()];
@@ -52,9 +55,17 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
     by_frame[static_cast<std::size_t>(f)] =
         judge(find_candidates(forest, validation.frame, detection, clock), validation);
   });
-  std::vector<ScoreExample> examples;
-  for (const auto& part : by_frame) examples.insert(examples.end(), part.begin(), part.end());
-  forest.score_model = fit_score_model(examples);
+  Examples by_class;
+  std::vector<ScoreExample> all;
+  for (const Examples& part : by_frame) {
+    for (const auto& [class_id, examples] : part) {
+      std::vector<ScoreExample>& own = by_class[class_id];
+      own.insert(own.end(), examples.begin(), examples.end());
+      all.insert(all.end(), examples.begin(), examples.end());
+    }
+  }
+  const ScoreModel common = fit_score_model(all, ScoreModel{});
+  for (ObjectClass& object : forest.classes) object.score_model = fit_score_model(by_class[object.class_id], common);
 }
 
 }  // namespace houghstream

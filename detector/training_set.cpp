@@ -190,7 +190,12 @@ std::vector<ObjectClass> list_classes(const std::vector<const TrainingView*>& vi
   }
   require(!names.empty(), "training data: no object views, expected at least one class");
   std::vector<ObjectClass> classes;
-  for (const auto& [id, name] : names) classes.push_back({id, name});
+  for (const auto& [id, name] : names) {
+    ObjectClass object;
+    object.class_id = id;
+    object.name = name;
+    classes.push_back(std::move(object));
+  }
   return classes;
 }
 
