@@ -1,6 +1,7 @@
 #include "detector/candidates.hpp"
 
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "detector/features.hpp"
@@ -18,6 +19,7 @@ struct SeenPatches {
   PatchGrid grid;
   PatchLeaves leaves;
   Camera hough_camera;
+  cv::Mat lab;  // of the working frame for near surfaces
 };
 
 SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
@@ -35,6 +37,7 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
   clock.mark("detect.features");
   SeenPatches seen;
   seen.hough_camera = working[0].camera;
+  cv::cvtColor(working[0].colour, seen.lab, cv::COLOR_BGR2Lab);
   for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
     add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
   }
@@ -45,13 +48,19 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
 }
 
 /// The remembered view that agrees best with the frame, of those that most votes remember.
-ViewFit best_fit(const Forest& forest, const Hypothesis& hypothesis, const RgbdFrame& frame) {
-  constexpr std::size_t kViews = 8;
-  const auto value = [](const ViewFit& fit) { return fit.visible + 0.5F * fit.unknown - fit.seen_through; };
+ViewFit best_fit(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame,
+                 const std::vector<std::uint32_t>& forgotten) {
+  constexpr int kViews = 8;
+  const auto value = [](const ViewFit& fit) {
+    return fit.visible + 0.5F * fit.unknown - fit.seen_through + 0.5F * fit.likeness;
+  };
   ViewFit best;
-  for (std::size_t i = 0; i < std::min(kViews, hypothesis.views.size()); ++i) {
-    const ViewFit fit = fit_view(forest.views[hypothesis.views[i].first], hypothesis.centre_camera, frame);
-    if (i == 0 || value(fit) > value(best)) best = fit;
+  int compared = 0;
+  for (const auto& [view, weight] : hypothesis.views) {
+    if (compared == kViews) break;
+    if (std::find(forgotten.begin(), forgotten.end(), view) != forgotten.end()) continue;
+    const ViewFit fit = fit_view(forest.views[view], hypothesis.centre_camera, frame);
+    if (compared++ == 0 || value(fit) > value(best)) best = fit;
   }
   return best;
 }
@@ -67,14 +76,15 @@ cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const 
 }
 
 Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hypothesis& hypothesis,
-                       const PatchGrid& patches, const RgbdFrame& frame, int max_rotations) {
+                       const SeenPatches& seen, const RgbdFrame& frame, int max_rotations,
+                       const std::vector<std::uint32_t>& forgotten) {
   Candidate candidate;
-  candidate.evidence = {hypothesis.mass / object.expected_mass, best_fit(forest, hypothesis, frame)};
+  candidate.evidence = {hypothesis.mass / object.expected_mass, best_fit(forest, hypothesis, {frame, seen.lab, forest.features.image_scale}, forgotten)};
   Detection& detection = candidate.detection;
   detection.class_id = object.class_id;
   detection.class_name = object.name;
   detection.score = score(object.score_model, candidate.evidence);
-  detection.box_px = visible_box(backprojected_box(forest, hypothesis, patches, frame.camera),
+  detection.box_px = visible_box(backprojected_box(forest, hypothesis, seen.grid, frame.camera),
                                  candidate.evidence.fit.visible_box_px, frame.camera);
   detection.centre_camera = hypothesis.centre_camera;
   detection.vote_weight = hypothesis.weight;
@@ -88,14 +98,15 @@ Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hy
 }
 
 std::vector<Candidate> class_candidates(const Forest& forest, int class_index, const SeenPatches& seen,
-                                        const RgbdFrame& frame, const DetectionSettings& settings) {
+                                        const RgbdFrame& frame, const DetectionSettings& settings,
+                                        const std::vector<std::uint32_t>& forgotten) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
   const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.leaves, seen.hough_camera, settings);
   const float least_mass = settings.min_mass_share * object.expected_mass;
   std::vector<Candidate> candidates;
   for (const Hypothesis& hypothesis :
        find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
-    candidates.push_back(to_candidate(forest, object, hypothesis, seen.grid, frame, settings.max_rotations));
+    candidates.push_back(to_candidate(forest, object, hypothesis, seen, frame, settings.max_rotations, forgotten));
   }
   return candidates;
 }
@@ -103,11 +114,11 @@ std::vector<Candidate> class_candidates(const Forest& forest, int class_index, c
 }  // namespace
 
 std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
-                                       StageClock& clock) {
+                                       StageClock& clock, const std::vector<std::uint32_t>& forgotten) {
   const SeenPatches seen = classify_patches(forest, frame, settings, clock);
   std::vector<std::vector<Candidate>> by_class(forest.classes.size());
   parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {  // Section 2
-    by_class[static_cast<std::size_t>(c)] = class_candidates(forest, c, seen, frame, settings);
+    by_class[static_cast<std::size_t>(c)] = class_candidates(forest, c, seen, frame, settings, forgotten);
   });
   std::vector<Candidate> all;
   for (std::vector<Candidate>& candidates : by_class) {

@@ -11,13 +11,13 @@
 
 namespace houghstream {
 
-constexpr std::size_t kScoreTerms = 6;
+constexpr std::size_t kScoreTerms = 7;
 using ScoreTerms = std::array<float, kScoreTerms>;
 
 /// How evidence becomes a probability, see score_terms(). The values here are what is believed before any
 /// example is seen: even odds at a third of the expected mass.
 struct ScoreModel {
-  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F};
+  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F, 2.0F};
 };
 
 /// Inner node: left child at `child`, right child at `child` + 1. A child below 0 is leaf number -1 - child.
@@ -58,8 +58,8 @@ struct ObjectClass {
   ScoreModel score_model;
 };
 
-/// Depth of a training view relative to the object's centre, over its box and a rim around it.
-struct Relief {
+/// What a training view shows, over its box and a rim around it: depth relative to the object's centre, and colour.
+struct Appearance {
   static constexpr int kBoxSide = 20;               ///< cells per side of the box
   static constexpr int kRim = 2;                    ///< cells around it
   static constexpr int kSide = kBoxSide + 2 * kRim;
@@ -68,6 +68,7 @@ struct Relief {
   using Cells = std::array<std::int16_t, kSide * kSide>;
   Cells mm{};       ///< row by row
   Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
+  std::array<std::array<std::uint8_t, 3>, kSide * kSide> lab{};  ///< colour, 8-bit CIE L*a*b*; of the object only
 };
 
 /// A training view as poses and boxes need it.
@@ -77,7 +78,7 @@ struct TrainedView {
   Eigen::Quaternion<float, Eigen::DontAlign> R_ray_object = Eigen::Quaternion<float, Eigen::DontAlign>::Identity();
   /// Left, top, right and bottom of the mask as seen from the object's centre, metres at the centre's depth.
   std::array<float, 4> box{};
-  Relief relief;
+  Appearance appearance;
 };
 
 /// A trained forest: flat arrays, trees one after another. Read-only once built.

@@ -33,7 +33,7 @@ void archive_members(Archive& archive, ForestType& forest) {
 }
 
 // Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
-static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 && sizeof(TrainedView) == 36 + sizeof(Relief));
+static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 && sizeof(TrainedView) == 36 + sizeof(Appearance));
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
 
 struct Writer {

@@ -26,7 +26,7 @@ Vector to_vector(const Values& values) {
 ScoreTerms score_terms(const Evidence& evidence) {
   return {1.0F, std::log(std::max(evidence.mass_share, 1e-4F)), std::log(1.02F - evidence.fit.hidden),
           evidence.fit.seen_through, evidence.fit.unknown,
-          evidence.fit.continued};
+          evidence.fit.continued, evidence.fit.likeness};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {

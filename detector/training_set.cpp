@@ -174,7 +174,7 @@ TrainedView trained_view(const TrainingView& view, std::uint32_t class_index) {
   const auto side = [&](int px, double origin_px) { return static_cast<float>(px - 0.5 - origin_px) * metres; };
   out.box = {side(box.x, centre_px.x()), side(box.y, centre_px.y()), side(box.br().x, centre_px.x()),
              side(box.br().y, centre_px.y())};
-  out.relief = make_relief(view.frame.depth, view.mask, box, centre.z());
+  out.appearance = remember_appearance(view.frame, view.mask, box, centre.z());
   return out;
 }
 

@@ -34,10 +34,11 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   cv::Mat labels = cv::Mat::zeros(room.colour.size(), CV_8UC1);
   std::vector<int> whole_px;
   for (std::uint8_t label = 1; label <= kObjects; ++label) {
-    const TrainingView& view = *objects[static_cast<std::size_t>(random.below(static_cast<int>(objects.size())))];
+    const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
+    const TrainingView& view = *objects[index];
     const double distance = std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
     const std::optional<Composite> composite = make_composite(view, out.frame, distance, even_light, random);
-    out.objects.push_back({view.class_id, {}, 0.0});
+    out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
     whole_px.push_back(composite ? composite->whole_px : 1);
     if (composite) put_back(*composite, label, out.frame, labels);
   }

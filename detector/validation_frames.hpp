@@ -12,6 +12,7 @@ namespace houghstream {
 struct ValidationFrame {
   struct Object {
     int class_id = 0;
+    std::uint32_t view = 0;  ///< which of the training views it is
     cv::Rect box_visible_px;
     double visible_fraction = 0.0;
   };
