@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "detector/candidates.hpp"
+#include "detector/detection_candidates.hpp"
 #include "detector/hypotheses.hpp"
 
 namespace houghstream {

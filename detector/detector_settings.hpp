@@ -26,7 +26,7 @@ struct TrainingSettings {
   int max_depth = 25;            ///< levels
   int min_samples = 20;          ///< a node with fewer becomes a leaf
   int tests_per_node = 400;      ///< random pixel tests tried
-  double alone_share = 0.3;      ///< of the tests on planes with a zero: one pixel against the threshold, without a second
+  double alone_share = 0.3;      ///< of the tests look at one pixel alone, see PixelTest::kAlone
   int node_samples = 1500;       ///< at most so many samples choose a node's test; all are then split by it
   int patches_per_view = 250;    ///< per training view, and per background frame
   int composites_per_view = 3;   ///< pictures made of one view: other background, distance and light
@@ -51,14 +51,15 @@ struct DetectionSettings {
   float threshold = 0.5F;          ///< smallest score that is reported
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
-  float min_class_share = 0.15F;   ///< a patch votes for a class from this share of its leaves on
+  float min_class_share = 0.1F;    ///< a patch votes for a class from this share of its leaves on
   int candidates_per_class = 24;   ///< maxima of the Hough image that are looked at in 3-D
   float min_relative_peak = 0.1F;  ///< of the Hough image's highest value, for a maximum to be looked at
   float hough_sigma_px = 3.0F;     ///< smoothing of the Hough image, working pixels
   float vote_sigma = 0.016F;       ///< bandwidth of the 3-D maximum, metres
   float max_overlap = 0.5F;        ///< a weaker box of another object may overlap a stronger one by this IoU
-  float dominance = 2.0F;          ///< ... if that one is of its own class, or more likely than not and so many times as likely
-  int max_rotations = 48;          ///< rotations handed to the pose process
+  float dominance =
+      2.0F;  ///< ... if that one is more likely than not and so many times as likely; of its own class always
+  int max_rotations = 48;  ///< rotations handed to the pose process
 };
 
 }  // namespace houghstream

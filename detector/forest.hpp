@@ -14,8 +14,8 @@ namespace houghstream {
 constexpr std::size_t kScoreTerms = 7;
 using ScoreTerms = std::array<float, kScoreTerms>;
 
-/// How evidence becomes a probability, see score_terms(). The values here are what is believed before any
-/// example is seen: even odds at a third of the expected mass.
+/// How evidence becomes a probability, see score_terms(). The values here are what is believed before any example is
+/// seen: even odds at about a third of the expected mass.
 struct ScoreModel {
   ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F, 2.0F};
 };
@@ -60,13 +60,13 @@ struct ObjectClass {
 
 /// What a training view shows, over its box and a rim around it: depth relative to the object's centre, and colour.
 struct Appearance {
-  static constexpr int kBoxSide = 20;               ///< cells per side of the box
-  static constexpr int kRim = 2;                    ///< cells around it
+  static constexpr int kBoxSide = 20;  ///< cells per side of the box
+  static constexpr int kRim = 2;       ///< cells around it
   static constexpr int kSide = kBoxSide + 2 * kRim;
   static constexpr std::int16_t kBeside = -32768;   ///< the cell does not show the object
   static constexpr std::int16_t kNoDepth = -32767;  ///< it does, but no depth was measured
   using Cells = std::array<std::int16_t, kSide * kSide>;
-  Cells mm{};       ///< row by row
+  Cells mm{};      ///< row by row
   Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
   std::array<std::array<std::uint8_t, 3>, kSide * kSide> lab{};  ///< colour, 8-bit CIE L*a*b*; of the object only
 };

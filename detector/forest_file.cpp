@@ -33,7 +33,8 @@ void archive_members(Archive& archive, ForestType& forest) {
 }
 
 // Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
-static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 && sizeof(TrainedView) == 36 + sizeof(Appearance));
+static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 &&
+              sizeof(TrainedView) == 36 + sizeof(Appearance));
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
 
 struct Writer {
@@ -124,7 +125,8 @@ void check_indices(const Forest& forest, const std::string& source) {
     const int reach = forest.patch.radius;
     const PixelTest& t = node.test;
     const bool inside = std::max({std::abs(t.dx1), std::abs(t.dy1), std::abs(t.dx2), std::abs(t.dy2)}) <= reach;
-    require(inside && t.plane < FeatureLayout::kPlanes && (t.kind == PixelTest::kDifference || t.kind == PixelTest::kWrapping || t.kind == PixelTest::kAlone),
+    require(inside && t.plane < FeatureLayout::kPlanes &&
+                (t.kind == PixelTest::kDifference || t.kind == PixelTest::kWrapping || t.kind == PixelTest::kAlone),
             "{}: node {} tests plane {}, expected one of {} planes within {} steps", source, n, t.plane,
             FeatureLayout::kPlanes, reach);
   }

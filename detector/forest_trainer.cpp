@@ -95,7 +95,8 @@ Forest train_forest(const std::vector<TrainingView>& views, const FeatureSetting
   for (const Forest& tree : trees) append_tree(tree, forest);
   calibrate_masses(set, settings, DetectionSettings{}.vote_sigma, forest);
   train_score_model(rooms.objects, rooms.for_score, settings, forest);
-  progress(fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
+  progress(
+      fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
   return forest;
 }
 

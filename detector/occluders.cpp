@@ -64,7 +64,8 @@ void add_occluder(const RgbdFrame& room, double object_distance, Composite& comp
   }
   if (shape.empty()) return;
 
-  const cv::Point from(random.between(0, room.colour.cols - shape.cols), random.between(0, room.colour.rows - shape.rows));
+  const cv::Point from(random.between(0, room.colour.cols - shape.cols),
+                       random.between(0, room.colour.rows - shape.rows));
   const double depth = std::max(0.3, object_distance - random.uniform(0.04, 0.35));
   const double slope_x = random.uniform(-0.5, 0.5) * depth / composite.frame.camera.fx;
   const double sigma = 0.0012 + 0.0019 * (depth - 0.4) * (depth - 0.4);

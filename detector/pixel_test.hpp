@@ -42,8 +42,7 @@ inline int test_value(const PixelTest& test, const std::uint8_t* centre, std::in
     return static_cast<std::ptrdiff_t>(y_px) * row_stride + x_px * FeatureImage::kChannels + test.plane;
   };
   const int second_mask = (test.kind >> 7) - 1;
-  const int difference =
-      centre[offset(test.dx1, test.dy1)] - (centre[offset(test.dx2, test.dy2)] & second_mask);
+  const int difference = centre[offset(test.dx1, test.dy1)] - (centre[offset(test.dx2, test.dy2)] & second_mask);
   const int shift = test.kind & 31;
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(difference) << shift) >> shift;
 }

@@ -24,9 +24,13 @@ Vector to_vector(const Values& values) {
 }  // namespace
 
 ScoreTerms score_terms(const Evidence& evidence) {
-  return {1.0F, std::log(std::max(evidence.mass_share, 1e-4F)), std::log(1.02F - evidence.fit.hidden),
-          evidence.fit.seen_through, evidence.fit.unknown,
-          evidence.fit.continued, evidence.fit.likeness};
+  return {1.0F,
+          std::log(std::max(evidence.mass_share, 1e-4F)),
+          std::log(1.02F - evidence.fit.hidden),
+          evidence.fit.seen_through,
+          evidence.fit.unknown,
+          evidence.fit.continued,
+          evidence.fit.likeness};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {
@@ -49,7 +53,8 @@ ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const Scor
     weights += curvature.ldlt().solve(gradient);
   }
   ScoreModel model;
-  for (std::size_t i = 0; i < kScoreTerms; ++i) model.weights[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));
+  for (std::size_t i = 0; i < kScoreTerms; ++i)
+    model.weights[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));
   return model;
 }
 

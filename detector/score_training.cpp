@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "detector/candidates.hpp"
+#include "detector/detection_candidates.hpp"
 #include "detector/validation_frames.hpp"
 #include "pipeline/parallel.hpp"
 

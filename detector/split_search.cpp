@@ -9,8 +9,12 @@
 namespace houghstream {
 
 SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings,
-                         std::vector<float> label_weights)
-    : set_(set), patch_(patch), settings_(settings), label_weights_(std::move(label_weights)) {
+                         std::vector<float> label_weights, bool trusts_light)
+    : set_(set),
+      patch_(patch),
+      settings_(settings),
+      label_weights_(std::move(label_weights)),
+      trusts_light_(trusts_light) {
   tests_.resize(static_cast<std::size_t>(settings.tests_per_node));
   bins_.resize(kBins * label_weights_.size());
   left_.resize(label_weights_.size());
@@ -27,7 +31,7 @@ PixelTest SplitSearch::random_test(Random& random) const {
   test.plane = static_cast<std::uint8_t>(random.below(FeatureLayout::kPlanes));
   if (FeatureLayout::wraps(test.plane)) {
     test.kind = PixelTest::kWrapping;
-  } else if (random.uniform() < settings_.alone_share) {
+  } else if ((trusts_light_ || test.plane >= FeatureLayout::kDepthMax) && random.uniform() < settings_.alone_share) {
     test.kind = PixelTest::kAlone;
     test.dx2 = test.dx1;
     test.dy2 = test.dy1;

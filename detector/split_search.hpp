@@ -17,7 +17,7 @@ enum class Objective { kClass, kOffset };
 class SplitSearch {
  public:
   SplitSearch(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings,
-              std::vector<float> label_weights);
+              std::vector<float> label_weights, bool trusts_light);
 
   /// The best test for these samples, or nothing where none leaves at least kMinSide samples on both sides.
   std::optional<PixelTest> best_test(const std::vector<std::uint32_t>& samples, Objective objective, Random& random);
@@ -58,6 +58,7 @@ class SplitSearch {
   const PatchSettings& patch_;
   const TrainingSettings& settings_;
   std::vector<float> label_weights_;
+  bool trusts_light_;  // whether a single pixel's lightness and colour may decide
   std::vector<PixelTest> tests_;
   std::vector<std::int16_t> values_;  // tests x samples
   std::vector<std::int16_t> block_;   // some samples x tests

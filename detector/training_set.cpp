@@ -94,11 +94,13 @@ Picture object_picture(const TrainingView& view, int label, std::uint32_t view_i
   cv::resize(composite->mask, mask, frame.colour.size(), 0, 0, cv::INTER_NEAREST);
   const double to_frame = static_cast<double>(composite->mask.cols) / mask.cols;
   const auto known = [&](int x, int y) { return nearly_holds(level, frame.filled_depth.at<float>(y, x)); };
-  // A hole's borrowed depth may be the background's: good enough to look at a patch, not to learn where the centre is.
+  // A hole's borrowed depth may be the background's and a rim's may be an occluder's: good enough to look at a patch,
+  // not to learn where the centre is.
   cv::Mat measured;
   cv::resize(composite->frame.depth, measured, mask.size(), 0, 0, cv::INTER_NEAREST);
   const auto on_object = [&](int x, int y) {
-    return mask.at<std::uint8_t>(y, x) != 0 && known(x, y) && std::isfinite(measured.at<float>(y, x));
+    const float difference = measured.at<float>(y, x) - frame.filled_depth.at<float>(y, x);
+    return mask.at<std::uint8_t>(y, x) != 0 && known(x, y) && std::abs(difference) < 0.02F;
   };
   const auto beside = [&](int x, int y) { return mask.at<std::uint8_t>(y, x) == 0 && known(x, y); };
 

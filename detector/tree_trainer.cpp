@@ -20,7 +20,9 @@ class TreeGrower {
         random_(Random::for_item(settings.seed ^ 0x7265655F74ULL, static_cast<std::uint64_t>(tree))) {
     bag_ = draw_bag(tree);
     label_weights_ = weigh_labels();
-    search_.emplace(set, patch, settings, label_weights_);
+    // Single pixels' colours tell objects apart, until the light is another one: only every other tree relies on them.
+    const bool trusts_light = tree % 2 == 0;
+    search_.emplace(set, patch, settings, label_weights_, trusts_light);
   }
 
   Forest grow() {

@@ -12,8 +12,8 @@ namespace {
 /// Copies the composite into the whole frame it was cut from; `labels` says which object each pixel shows.
 void put_back(const Composite& composite, std::uint8_t label, RgbdFrame& frame, cv::Mat& labels) {
   const cv::Rect place(static_cast<int>(std::lround(frame.camera.cx - composite.frame.camera.cx)),
-                       static_cast<int>(std::lround(frame.camera.cy - composite.frame.camera.cy)),
-                       composite.mask.cols, composite.mask.rows);
+                       static_cast<int>(std::lround(frame.camera.cy - composite.frame.camera.cy)), composite.mask.cols,
+                       composite.mask.rows);
   composite.frame.colour.copyTo(frame.colour(place));
   composite.frame.depth.copyTo(frame.depth(place));
   if (!composite.occluder.empty()) labels(place).setTo(0, composite.occluder);

@@ -13,7 +13,8 @@ constexpr int kSide = Appearance::kSide;
 
 /// Where the cells of a relief are seen, and how much farther than remembered the frame's surface is there.
 struct Comparison {
-  std::array<float, kSide * kSide> excess{};         // on the object, metres; NaN where depth is not measured or not remembered
+  std::array<float, kSide * kSide>
+      excess{};  // on the object, metres; NaN where depth is not measured or not remembered
   std::array<float, kSide * kSide> excess_beside{};  // beside its outline
   std::array<bool, kSide * kSide> on_object{};
   std::array<bool, kSide * kSide> beside{};
@@ -86,9 +87,8 @@ class Likeness {
 
  private:
   int count_ = 0;
-  std::array<Eigen::Matrix<double, 5, 1>, 3> sums_ = {Eigen::Matrix<double, 5, 1>::Zero(),
-                                                      Eigen::Matrix<double, 5, 1>::Zero(),
-                                                      Eigen::Matrix<double, 5, 1>::Zero()};
+  std::array<Eigen::Matrix<double, 5, 1>, 3> sums_ = {
+      Eigen::Matrix<double, 5, 1>::Zero(), Eigen::Matrix<double, 5, 1>::Zero(), Eigen::Matrix<double, 5, 1>::Zero()};
 };
 
 /// Median of what lies within reach of the expected depth.
@@ -200,7 +200,8 @@ void mark_rim(Appearance& appearance) {
 
 }  // namespace
 
-Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px, double centre_depth) {
+Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
+                               double centre_depth) {
   Appearance appearance;
   appearance.mm.fill(Appearance::kBeside);
   cv::Mat lab;
@@ -215,7 +216,8 @@ Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const
       const auto cell = static_cast<std::size_t>((j + Appearance::kRim) * kSide + i + Appearance::kRim);
       const auto& colour = lab.at<cv::Vec3b>(j, i);
       appearance.lab[cell] = {colour[0], colour[1], colour[2]};
-      appearance.mm[cell] = std::abs(offset_mm) < 30000.0 ? static_cast<std::int16_t>(std::lround(offset_mm)) : Appearance::kNoDepth;
+      appearance.mm[cell] =
+          std::abs(offset_mm) < 30000.0 ? static_cast<std::int16_t>(std::lround(offset_mm)) : Appearance::kNoDepth;
     }
   }
   mark_rim(appearance);

@@ -21,7 +21,7 @@ struct RotationVote {
 struct Detection {
   int class_id = 0;  ///< from 1; 0 is no class
   std::string class_name;
-  float score = 0.0F;                                       ///< confidence, comparable between classes
+  float score = 0.0F;                                       ///< probability that the object is there, 0 to 1
   cv::Rect2f box_px;                                        ///< visible box, pixels of the full-size frame
   Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< origin of the object frame, metres
   float vote_weight = 0.0F;                                 ///< sum of the supporting votes' weights

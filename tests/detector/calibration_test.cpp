@@ -14,7 +14,7 @@ constexpr float kSigma = 0.016F;
 /// Two classes; the samples of class 0 see their centre at (0.05, 0, 0). Class 1 has no sample.
 TrainingSet set_of(int pictures) {
   TrainingSet set;
-  set.classes = {{1, "a"}, {2, "b"}};
+  set.classes.resize(2);
   set.visible_areas = {kArea, 0.5F};
   for (int i = 0; i < pictures; ++i) {
     set.pictures.emplace_back(2, 2);
@@ -32,7 +32,7 @@ TrainingSet set_of(int pictures) {
 /// Trees of one leaf each that believe in class 0 by 0.6 and cast half their votes `miss` beside its centre.
 Forest forest_of(int trees, float miss) {
   Forest forest;
-  forest.classes = {{1, "a"}, {2, "b"}};
+  forest.classes.resize(2);
   forest.roots.assign(static_cast<std::size_t>(trees), -1);
   forest.leaves = {0, 1};
   LeafClass entry;

@@ -11,9 +11,10 @@
 namespace houghstream {
 namespace {
 
-TrainingSettings same_light() {
+TrainingSettings plain() {
   TrainingSettings settings;
   settings.light_variation = 0.0;
+  settings.occluded_share = 0.0;
   return settings;
 }
 
@@ -35,7 +36,7 @@ bool same_values(const cv::Mat& a, const cv::Mat& b) {
 TEST(Composites, SizeAndDepthChangeButReliefStaysInMetres) {
   const TrainingView view = tile_view();
   for (const double distance : {0.5, 1.4}) {
-    const auto composite = compose(view, distance, 3, same_light());
+    const auto composite = compose(view, distance, 3, plain());
     ASSERT_TRUE(composite);
     EXPECT_DOUBLE_EQ(composite->scale, 0.7 / distance);
     EXPECT_NEAR(composite->depth_shift, distance - 0.7, 1e-6);
@@ -50,7 +51,7 @@ TEST(Composites, SizeAndDepthChangeButReliefStaysInMetres) {
 }
 
 TEST(Composites, TheOriginLeadsBackToTheView) {
-  const auto composite = compose(tile_view(), 1.0, 3, same_light());
+  const auto composite = compose(tile_view(), 1.0, 3, plain());
   ASSERT_TRUE(composite);
   const cv::Rect box = cv::boundingRect(composite->mask);
   const cv::Point2d middle(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
@@ -62,7 +63,7 @@ TEST(Composites, TheOriginLeadsBackToTheView) {
 TEST(Composites, AtTheViewsDistanceTheObjectIsPastedAsItIs) {
   TrainingView view = tile_view();
   view.frame.depth.at<float>(120, 160) = std::numeric_limits<float>::quiet_NaN();
-  const auto composite = compose(view, 0.7, 3, same_light());
+  const auto composite = compose(view, 0.7, 3, plain());
   ASSERT_TRUE(composite);
   const cv::Rect from = cv::boundingRect(view.mask);
   const cv::Rect to = cv::boundingRect(composite->mask);
@@ -71,7 +72,7 @@ TEST(Composites, AtTheViewsDistanceTheObjectIsPastedAsItIs) {
 }
 
 TEST(Composites, AroundTheObjectTheRoomIsUntouched) {
-  const auto composite = compose(tile_view(), 1.0, 3, same_light());
+  const auto composite = compose(tile_view(), 1.0, 3, plain());
   ASSERT_TRUE(composite);
   const RgbdFrame room = toy::room(5);
   const cv::Rect place(static_cast<int>(std::lround(room.camera.cx - composite->frame.camera.cx)),
@@ -85,8 +86,20 @@ TEST(Composites, AroundTheObjectTheRoomIsUntouched) {
   EXPECT_TRUE(same_values(colour, composite->frame.colour));
 }
 
+TEST(Composites, TheRoomBehindTheObjectIsNotInFrontOfIt) {
+  const TrainingView view = tile_view();
+  RgbdFrame room = toy::room(5);
+  room.depth.colRange(0, room.depth.cols / 4).setTo(0.4F);  // too near to stand behind
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Random random(seed);
+    const auto composite = make_composite(view, room, 1.2, plain(), random);
+    ASSERT_TRUE(composite);
+    EXPECT_LE(cv::countNonZero(composite->frame.depth < 0.5F), composite->mask.total() / 15) << "seed " << seed;
+  }
+}
+
 TEST(Composites, WhatDoesNotFitGivesNothing) {
-  EXPECT_FALSE(compose(tile_view(), 0.15, 3, same_light()));
+  EXPECT_FALSE(compose(tile_view(), 0.15, 3, plain()));
 }
 
 TEST(Composites, TheSameSeedGivesTheSamePicture) {

@@ -39,6 +39,14 @@ TEST(PixelTest, ComparesOnePlaneAtTwoPlacesAndWrapsDepth) {
   EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), -10);  // 250 - (256 + 4)
 }
 
+TEST(PixelTest, AloneItComparesOnePixelOnly) {
+  FeatureImage image(20, 20);
+  image.at(8, 10)[3] = 200;
+  image.at(12, 10)[3] = 30;
+  const PixelTest test{-2, 0, 2, 0, 3, PixelTest::kAlone, 0};
+  EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), 200);
+}
+
 TEST(FindLeaf, WalksRightFromTheThresholdOn) {
   Forest forest;
   forest.roots = {0};

@@ -10,7 +10,7 @@ const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
 /// A forest of one leaf that takes every patch for the centre of the only class.
 Forest centre_forest() {
   Forest forest;
-  forest.classes.push_back({1, "thing"});
+  forest.classes.emplace_back();
   forest.views.resize(2);
   forest.roots = {-1};
   forest.leaves = {0, 1};
@@ -136,10 +136,12 @@ TEST(Hypotheses, OfOverlappingBoxesTheStrongerStays) {
 }
 
 TEST(Hypotheses, AnotherClassMustBeSignificantlyStrongerToSuppress) {
-  Detection other = boxed(0.5F, 10);
+  Detection other = boxed(0.3F, 10);
   other.class_id = 2;
-  EXPECT_EQ(suppress_overlaps({boxed(0.9F, 0), other}, DetectionSettings{}).size(), 2U);
-  EXPECT_EQ(suppress_overlaps({boxed(1.1F, 0), other}, DetectionSettings{}).size(), 1U);
+  EXPECT_EQ(suppress_overlaps({boxed(0.55F, 0), other}, DetectionSettings{}).size(), 2U);
+  EXPECT_EQ(suppress_overlaps({boxed(0.7F, 0), other}, DetectionSettings{}).size(), 1U);
+  other.score = 0.1F;  // five times weaker, but than something that nobody would report
+  EXPECT_EQ(suppress_overlaps({boxed(0.45F, 0), other}, DetectionSettings{}).size(), 2U);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr int kNoisePlane = 20;  ///< tells nothing
 /// A set whose answer is known: 16 pictures, every other one background, and 50 samples of each.
 inline TrainingSet planted_set() {
   TrainingSet set;
-  set.classes = {{1, "object"}};
+  set.classes.resize(1);
   set.views.resize(1);
   Random random(3);
   for (int i = 0; i < 16; ++i) {

@@ -26,7 +26,7 @@ std::optional<PixelTest> search(const TrainingSet& set, const std::vector<std::u
   TrainingSettings settings;
   settings.tests_per_node = 800;
   Random random(seed);
-  return SplitSearch(set, patch, settings, {1.0F, 1.0F}).best_test(samples, objective, random);
+  return SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(samples, objective, random);
 }
 
 TEST(SplitSearch, FindsThePlaneThatSeparatesTheLabels) {
@@ -71,13 +71,33 @@ TEST(SplitSearch, BothSidesKeepEnoughSamples) {
   EXPECT_LE(right, static_cast<std::ptrdiff_t>(few.size()) - SplitSearch::kMinSide);
 }
 
+TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
+  const TrainingSet set = toy::planted_set();
+  TrainingSettings settings;
+  settings.tests_per_node = 800;
+  settings.alone_share = 1.0;
+  const PatchSettings patch;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Random random(seed);
+    const auto wary =
+        SplitSearch(set, patch, settings, {1.0F, 1.0F}, false).best_test(every_sample(set), Objective::kClass, random);
+    ASSERT_TRUE(wary);
+    EXPECT_EQ(wary->plane, toy::kClassPlane);
+    EXPECT_EQ(wary->kind, PixelTest::kDifference);
+    const auto trusting =
+        SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
+    ASSERT_TRUE(trusting);
+    EXPECT_EQ(trusting->kind, PixelTest::kAlone);
+  }
+}
+
 TEST(SplitSearch, TestsStayInsideThePatchAndWrapDepthOnly) {
   TrainingSet set = toy::planted_set();
   for (const std::uint64_t seed : {5, 6, 7, 8}) {
     const auto test = search(set, every_sample(set), Objective::kOffset, seed);
     ASSERT_TRUE(test);
     for (const int step : {test->dx1, test->dy1, test->dx2, test->dy2}) EXPECT_LE(std::abs(step), 10);
-    EXPECT_EQ(test->kind, PixelTest::kDifference);
+    EXPECT_NE(test->kind, PixelTest::kWrapping);
   }
 }
 

@@ -87,6 +87,7 @@ TrainingSettings quick_training() {
   settings.patches_per_view = 150;
   settings.min_distance = 0.5F;
   settings.max_distance = 1.2F;
+  settings.validation_frames = 24;
   return settings;
 }
 

@@ -27,7 +27,9 @@ TrainingSet teach(const std::vector<TrainingView>& views, float distance, int th
   settings.min_distance = distance;
   settings.max_distance = distance;
   settings.threads = threads;
-  return make_training_set(views, {}, {}, settings);
+  std::vector<const TrainingView*> pointers;
+  for (const TrainingView& view : views) pointers.push_back(&view);
+  return make_training_set(pointers, {}, {}, settings);
 }
 
 TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {

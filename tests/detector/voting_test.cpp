@@ -12,7 +12,7 @@ const Camera kCamera{100, 80, 100.0, 100.0, 49.5, 39.5};
 /// One tree that is one leaf, certain by `probability` of the only class, with one vote.
 Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
   Forest forest;
-  forest.classes.push_back({1, "thing"});
+  forest.classes.emplace_back();
   forest.roots = {-1};
   forest.leaves = {0, 1};
   LeafClass entry;

@@ -18,7 +18,7 @@ struct ViewedFrame {
 
 /// What the picture shows beside the overlay.
 struct FrameViewSettings {
-  float min_score = 0.3F;   ///< weaker detections and their poses are not drawn
+  float min_score = 0.5F;   ///< weaker detections and their poses are not drawn
   bool show_depth = true;   ///< depth, colour-mapped, to the right
   float depth_near = 0.4F;  ///< metres, red end of the colour map
   float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue

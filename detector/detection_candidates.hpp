@@ -15,8 +15,9 @@ struct Candidate {
   Evidence evidence;
 };
 
-/// All hypotheses of all classes, class by class, each class's strongest vote mass first. Closes the stages "detect.*" on the clock.
-/// Views in `forgotten` are not compared with the frame: validation must not recognise the very picture it shows.
+/// All hypotheses of all classes, class by class, each class's strongest vote mass first. Closes the stages "detect.*"
+/// on the clock. Views in `forgotten` are not compared with the frame: validation must not recognise the very picture
+/// it shows.
 std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
                                        StageClock& clock, const std::vector<std::uint32_t>& forgotten = {});
 

@@ -1,4 +1,4 @@
-#include "detector/candidates.hpp"
+#include "detector/detection_candidates.hpp"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
@@ -79,7 +79,8 @@ Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hy
                        const SeenPatches& seen, const RgbdFrame& frame, int max_rotations,
                        const std::vector<std::uint32_t>& forgotten) {
   Candidate candidate;
-  candidate.evidence = {hypothesis.mass / object.expected_mass, best_fit(forest, hypothesis, {frame, seen.lab, forest.features.image_scale}, forgotten)};
+  candidate.evidence = {hypothesis.mass / object.expected_mass,
+                        best_fit(forest, hypothesis, {frame, seen.lab, forest.features.image_scale}, forgotten)};
   Detection& detection = candidate.detection;
   detection.class_id = object.class_id;
   detection.class_name = object.name;
@@ -104,8 +105,7 @@ std::vector<Candidate> class_candidates(const Forest& forest, int class_index, c
   const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.leaves, seen.hough_camera, settings);
   const float least_mass = settings.min_mass_share * object.expected_mass;
   std::vector<Candidate> candidates;
-  for (const Hypothesis& hypothesis :
-       find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
+  for (const Hypothesis& hypothesis : find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
     candidates.push_back(to_candidate(forest, object, hypothesis, seen, frame, settings.max_rotations, forgotten));
   }
   return candidates;
