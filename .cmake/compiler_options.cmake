@@ -73,5 +73,6 @@ function(houghstream_test name)
   houghstream_compile_options(${name})
   houghstream_compile_quickly(${name})
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 300
+    ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/.cmake/leak_suppressions.txt:print_suppressions=0")
 endfunction()
