@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "detector/appearance.hpp"
 #include "detector/detector_settings.hpp"
 #include "detector/pixel_test.hpp"
 
@@ -56,19 +57,6 @@ struct ObjectClass {
   float radius = 0.0F;         ///< farthest seen surface point from the centre, metres
   float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres
   ScoreModel score_model;
-};
-
-/// What a training view shows, over its box and a rim around it: depth relative to the object's centre, and colour.
-struct Appearance {
-  static constexpr int kBoxSide = 20;  ///< cells per side of the box
-  static constexpr int kRim = 2;       ///< cells around it
-  static constexpr int kSide = kBoxSide + 2 * kRim;
-  static constexpr std::int16_t kBeside = -32768;   ///< the cell does not show the object
-  static constexpr std::int16_t kNoDepth = -32767;  ///< it does, but no depth was measured
-  using Cells = std::array<std::int16_t, kSide * kSide>;
-  Cells mm{};      ///< row by row
-  Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
-  std::array<std::array<std::uint8_t, 3>, kSide * kSide> lab{};  ///< colour, 8-bit CIE L*a*b*; of the object only
 };
 
 /// A training view as poses and boxes need it.

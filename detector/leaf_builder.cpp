@@ -42,6 +42,7 @@ std::vector<LeafView> counted_views(const TrainingSet& set, const std::vector<st
   std::map<std::uint32_t, int> counts;
   for (const std::uint32_t s : samples) ++counts[set.samples[s].view];
   std::vector<LeafView> views;
+  views.reserve(counts.size());
   for (const auto& [view, count] : counts) {
     views.push_back({view, static_cast<float>(count) / static_cast<float>(samples.size())});
   }

@@ -8,7 +8,6 @@
 
 #include "detector/composites.hpp"
 #include "detector/features.hpp"
-#include "detector/view_fit.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/parallel.hpp"
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
+
+#include "detector/likeness.hpp"
 
 namespace houghstream {
 namespace {
@@ -25,9 +27,10 @@ struct Comparison {
 
   /// Frame pixels from the left upper edge of the first pixel.
   cv::Point2f cell_centre(std::size_t cell) const {
-    const auto i = static_cast<float>(cell % kSide);
-    const auto j = static_cast<float>(cell / kSide);
-    return {left + (i + 0.5F) * cell_width, top + (j + 0.5F) * cell_height};
+    const std::size_t column = cell % kSide;
+    const std::size_t row = cell / kSide;
+    return {left + (static_cast<float>(column) + 0.5F) * cell_width,
+            top + (static_cast<float>(row) + 0.5F) * cell_height};
   }
 };
 
@@ -57,40 +60,6 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
   return out;
 }
 
-/// Correlation of the remembered colours with the frame's over the visible cells, all three channels together, each
-/// about its own mean.
-class Likeness {
- public:
-  void add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3b& seen) {
-    ++count_;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double a = remembered[c];
-      const double b = seen[static_cast<int>(c)];
-      sums_[c] += Eigen::Matrix<double, 5, 1>(a, b, a * a, b * b, a * b);
-    }
-  }
-
-  float correlation() const {
-    constexpr int kFewest = 12;
-    constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
-    if (count_ < kFewest) return 0.0F;
-    double covariance = 0.0;
-    double remembered = 3.0 * kNoise;
-    double seen = 3.0 * kNoise;
-    for (const auto& s : sums_) {
-      covariance += s(4) / count_ - s(0) / count_ * s(1) / count_;
-      remembered += s(2) / count_ - s(0) / count_ * s(0) / count_;
-      seen += s(3) / count_ - s(1) / count_ * s(1) / count_;
-    }
-    return static_cast<float>(covariance / std::sqrt(remembered * seen));
-  }
-
- private:
-  int count_ = 0;
-  std::array<Eigen::Matrix<double, 5, 1>, 3> sums_ = {
-      Eigen::Matrix<double, 5, 1>::Zero(), Eigen::Matrix<double, 5, 1>::Zero(), Eigen::Matrix<double, 5, 1>::Zero()};
-};
-
 /// Median of what lies within reach of the expected depth.
 float common_shift(const Comparison& comparison) {
   constexpr float kReach = 0.03F;
@@ -104,18 +73,51 @@ float common_shift(const Comparison& comparison) {
   return *middle;
 }
 
-/// First and one past the last line in which enough of the object's cells are seen.
-std::pair<int, int> seen_range(const std::array<int, kSide>& seen, const std::array<int, kSide>& whole) {
-  constexpr int kOneIn = 5;
-  int first = kSide;
-  int last = 0;
-  for (int i = 0; i < kSide; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (seen[at] == 0 || seen[at] * kOneIn < whole[at]) continue;
-    first = std::min(first, i);
-    last = i + 1;
+/// Rows or columns of cells: how many show the object, and how many of them are visible or unknown.
+struct Lines {
+  std::array<int, kSide> whole{};
+  std::array<int, kSide> seen{};
+
+  /// First and one past the last line in which enough of the object's cells are seen.
+  std::pair<int, int> range() const {
+    constexpr int kOneIn = 5;
+    int first = kSide;
+    int last = 0;
+    for (int i = 0; i < kSide; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (seen[at] == 0 || seen[at] * kOneIn < whole[at]) continue;
+      first = std::min(first, i);
+      last = i + 1;
+    }
+    return {first, last};
   }
-  return {first, last};
+};
+
+cv::Rect2f visible_box(const Comparison& comparison, const Lines& columns, const Lines& rows) {
+  const auto [left, right] = columns.range();
+  const auto [top, bottom] = rows.range();
+  if (left >= right || top >= bottom) return {};
+  return {comparison.left + static_cast<float>(left) * comparison.cell_width,
+          comparison.top + static_cast<float>(top) * comparison.cell_height,
+          static_cast<float>(right - left) * comparison.cell_width,
+          static_cast<float>(bottom - top) * comparison.cell_height};
+}
+
+/// Share of the cells beside the outline whose depth is the object's.
+float continued_share(const Comparison& comparison, float shift, float tolerance) {
+  int beside = 0;
+  int continued = 0;
+  for (std::size_t cell = 0; cell < comparison.beside.size(); ++cell) {
+    if (!comparison.beside[cell]) continue;
+    ++beside;
+    continued += std::abs(comparison.excess_beside[cell] - shift) <= tolerance ? 1 : 0;
+  }
+  return static_cast<float>(continued) / static_cast<float>(std::max(beside, 1));
+}
+
+cv::Vec3b colour_at(const LabFrame& frame, const cv::Point2f& frame_px) {
+  return frame.lab.at<cv::Vec3b>(std::min(static_cast<int>(frame_px.y * frame.scale), frame.lab.rows - 1),
+                                 std::min(static_cast<int>(frame_px.x * frame.scale), frame.lab.cols - 1));
 }
 
 }  // namespace
@@ -126,102 +128,33 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   const float z = centre_camera.z();
   const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
   ViewFit fit;
-  std::array<int, kSide> rows{};
-  std::array<int, kSide> columns{};
-  std::array<int, kSide> whole_rows{};
-  std::array<int, kSide> whole_columns{};
+  Lines rows;
+  Lines columns;
   Likeness likeness;
   int cells = 0;
-  int beside = 0;
   for (std::size_t cell = 0; cell < comparison.excess.size(); ++cell) {
-    if (comparison.beside[cell]) {
-      ++beside;
-      fit.continued += std::abs(comparison.excess_beside[cell] - shift) <= tolerance ? 1.0F : 0.0F;
-    }
     if (!comparison.on_object[cell]) continue;
-    ++cells;
     const float e = comparison.excess[cell] - shift;
     const bool unknown = std::isnan(e);
     const bool visible = std::abs(e) <= tolerance;
-    if (visible) {
-      const cv::Point2f px = comparison.cell_centre(cell) * frame.scale;
-      const int x = std::min(static_cast<int>(px.x), frame.lab.cols - 1);
-      const int y = std::min(static_cast<int>(px.y), frame.lab.rows - 1);
-      likeness.add(view.appearance.lab[cell], frame.lab.at<cv::Vec3b>(y, x));
-    }
+    if (visible) likeness.add(view.appearance.lab[cell], colour_at(frame, comparison.cell_centre(cell)));
+    ++cells;
     fit.unknown += unknown ? 1.0F : 0.0F;
     fit.visible += visible ? 1.0F : 0.0F;
     fit.hidden += e < -tolerance ? 1.0F : 0.0F;
     fit.seen_through += e > tolerance ? 1.0F : 0.0F;
-    ++whole_rows[cell / kSide];
-    ++whole_columns[cell % kSide];
-    rows[cell / kSide] += unknown || visible ? 1 : 0;
-    columns[cell % kSide] += unknown || visible ? 1 : 0;
+    ++rows.whole[cell / kSide];
+    ++columns.whole[cell % kSide];
+    rows.seen[cell / kSide] += unknown || visible ? 1 : 0;
+    columns.seen[cell % kSide] += unknown || visible ? 1 : 0;
   }
-  fit.continued /= static_cast<float>(std::max(beside, 1));
+  for (float* share : {&fit.visible, &fit.hidden, &fit.seen_through, &fit.unknown}) {
+    *share /= static_cast<float>(std::max(cells, 1));
+  }
+  fit.continued = continued_share(comparison, shift, tolerance);
   fit.likeness = likeness.correlation();
-  if (cells == 0) return fit;
-  for (float* share : {&fit.visible, &fit.hidden, &fit.seen_through, &fit.unknown}) *share /= static_cast<float>(cells);
-  const auto [left, right] = seen_range(columns, whole_columns);
-  const auto [top, bottom] = seen_range(rows, whole_rows);
-  if (left < right && top < bottom) {
-    fit.visible_box_px = {comparison.left + static_cast<float>(left) * comparison.cell_width,
-                          comparison.top + static_cast<float>(top) * comparison.cell_height,
-                          static_cast<float>(right - left) * comparison.cell_width,
-                          static_cast<float>(bottom - top) * comparison.cell_height};
-  }
+  fit.visible_box_px = visible_box(comparison, columns, rows);
   return fit;
-}
-
-namespace {
-
-/// The cells beside the outline, each with the depth of the nearest cell of the object. Not below the object's upper
-/// part: what it stands on may touch it there.
-void mark_rim(Appearance& appearance) {
-  constexpr int kUpper = Appearance::kRim + (Appearance::kBoxSide * 3) / 5;
-  appearance.beside.fill(Appearance::kBeside);
-  for (int j = 0; j < kUpper; ++j) {
-    for (int i = 0; i < kSide; ++i) {
-      const auto cell = static_cast<std::size_t>(j * kSide + i);
-      if (appearance.mm[cell] != Appearance::kBeside) continue;
-      int nearest_sq = 2 * Appearance::kRim * Appearance::kRim + 1;
-      for (int y = std::max(0, j - Appearance::kRim); y <= std::min(kUpper - 1, j + Appearance::kRim); ++y) {
-        for (int x = std::max(0, i - Appearance::kRim); x <= std::min(kSide - 1, i + Appearance::kRim); ++x) {
-          const std::int16_t other = appearance.mm[static_cast<std::size_t>(y * kSide + x)];
-          const int distance_sq = (x - i) * (x - i) + (y - j) * (y - j);
-          if (other <= Appearance::kNoDepth || distance_sq >= nearest_sq) continue;
-          nearest_sq = distance_sq;
-          appearance.beside[cell] = other;
-        }
-      }
-    }
-  }
-}
-
-}  // namespace
-
-Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
-                               double centre_depth) {
-  Appearance appearance;
-  appearance.mm.fill(Appearance::kBeside);
-  cv::Mat lab;
-  cv::resize(view.colour(box_px), lab, cv::Size(Appearance::kBoxSide, Appearance::kBoxSide), 0, 0, cv::INTER_AREA);
-  cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
-  for (int j = 0; j < Appearance::kBoxSide; ++j) {
-    for (int i = 0; i < Appearance::kBoxSide; ++i) {
-      const int x = box_px.x + static_cast<int>((i + 0.5) * box_px.width / Appearance::kBoxSide);
-      const int y = box_px.y + static_cast<int>((j + 0.5) * box_px.height / Appearance::kBoxSide);
-      if (mask.at<std::uint8_t>(y, x) == 0) continue;
-      const double offset_mm = 1000.0 * (view.depth.at<float>(y, x) - centre_depth);
-      const auto cell = static_cast<std::size_t>((j + Appearance::kRim) * kSide + i + Appearance::kRim);
-      const auto& colour = lab.at<cv::Vec3b>(j, i);
-      appearance.lab[cell] = {colour[0], colour[1], colour[2]};
-      appearance.mm[cell] =
-          std::abs(offset_mm) < 30000.0 ? static_cast<std::int16_t>(std::lround(offset_mm)) : Appearance::kNoDepth;
-    }
-  }
-  mark_rim(appearance);
-  return appearance;
 }
 
 }  // namespace houghstream

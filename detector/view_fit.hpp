@@ -31,7 +31,4 @@ struct ViewFit {
 /// The likeness is blind to brightness, contrast and colour cast, which the light decides.
 ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame);
 
-/// What a training view must remember for that.
-Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px, double centre_depth);
-
 }  // namespace houghstream
