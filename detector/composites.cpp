@@ -10,11 +10,6 @@
 namespace houghstream {
 namespace {
 
-/// Standard deviation of a structured-light camera's depth, metres (Nguyen, Izadi & Lovell 2012, axial noise).
-double axial_noise(double z) {
-  return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
-}
-
 std::uint8_t to_byte(double value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
 }
@@ -73,6 +68,10 @@ cv::Rect place_behind(const RgbdFrame& background, cv::Size size, double distanc
 }
 
 }  // namespace
+
+double axial_noise(double z) {
+  return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+}
 
 void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
   const double gain = std::exp2(strength * random.uniform(darkest_stops, brightest_stops));

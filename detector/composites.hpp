@@ -24,6 +24,10 @@ struct Composite {
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
                                         const TrainingSettings& settings, Random& random);
 
+/// Standard deviation of a structured-light camera's depth at depth z, metres (Nguyen, Izadi & Lovell 2012, axial
+/// noise).
+double axial_noise(double z);
+
 /// Changes a picture's light in place: gain between two limits in stops (powers of two), contrast, colour cast, haze,
 /// noise.
 void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);

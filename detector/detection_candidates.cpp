@@ -106,6 +106,7 @@ std::vector<Candidate> class_candidates(const Forest& forest, int class_index, c
   const float least_mass = settings.min_mass_share * object.expected_mass;
   std::vector<Candidate> candidates;
   for (const Hypothesis& hypothesis : find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
+    if (candidates.size() >= static_cast<std::size_t>(settings.max_per_class)) break;
     candidates.push_back(to_candidate(forest, object, hypothesis, seen, frame, settings.max_rotations, forgotten));
   }
   return candidates;

@@ -32,7 +32,7 @@ cv::Mat random_shape(const cv::Rect& object_px, cv::Size size, Random& random) {
   return mask;
 }
 
-/// 255 where the projector, to the right of the camera, is hidden by the occluder: to the left of each occluded run.
+/// Depth is lost where the occluder hides the projector, to the right of the camera: to the left of each occluded run.
 void cast_shadow(const cv::Mat& occluder, double occluder_depth, RgbdFrame& frame) {
   for (int y = 0; y < occluder.rows; ++y) {
     auto* depth = frame.depth.ptr<float>(y);
@@ -68,7 +68,7 @@ void add_occluder(const RgbdFrame& room, double object_distance, Composite& comp
                        random.between(0, room.colour.rows - shape.rows));
   const double depth = std::max(0.3, object_distance - random.uniform(0.04, 0.35));
   const double slope_x = random.uniform(-0.5, 0.5) * depth / composite.frame.camera.fx;
-  const double sigma = 0.0012 + 0.0019 * (depth - 0.4) * (depth - 0.4);
+  const double sigma = axial_noise(depth);
   cast_shadow(shape, depth, composite.frame);
   composite.occluder = shape;
   for (int y = 0; y < shape.rows; ++y) {

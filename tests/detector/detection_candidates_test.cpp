@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "detector/forest_trainer.hpp"
@@ -42,6 +43,21 @@ TEST(DetectionCandidates, ForgottenViewsAreNotCompared) {
   const std::vector<Candidate> found = candidates(frame, all);
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().evidence.fit.visible, 0.0F);
+}
+
+TEST(DetectionCandidates, NoClassOffersMoreThanItMay) {
+  RgbdFrame frame = toy::room(77);
+  toy::put_tile(0, 80, 119.5, 0.7, frame);
+  toy::put_tile(0, 240, 119.5, 0.7, frame);
+  const auto stripes = [&](int max_per_class) {
+    DetectionSettings settings;
+    settings.max_per_class = max_per_class;
+    StageClock clock;
+    const std::vector<Candidate> found = find_candidates(toy_forest(), frame, settings, clock);
+    return std::count_if(found.begin(), found.end(), [](const Candidate& c) { return c.detection.class_id == 1; });
+  };
+  EXPECT_GE(stripes(250), 2);
+  EXPECT_EQ(stripes(1), 1);
 }
 
 TEST(DetectionCandidates, StagesAreTimed) {
