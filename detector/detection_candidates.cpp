@@ -4,11 +4,11 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "detector/features.hpp"
+#include "detector/features/features.hpp"
+#include "detector/features/working_frame.hpp"
+#include "detector/forest/traversal.hpp"
 #include "detector/hypotheses.hpp"
-#include "detector/traversal.hpp"
 #include "detector/voting.hpp"
-#include "detector/working_frame.hpp"
 #include "pipeline/parallel.hpp"
 
 namespace houghstream {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "detector/detector_settings.hpp"
-#include "detector/score.hpp"
+#include "detector/evidence/score.hpp"
 #include "pipeline/detection.hpp"
 #include "pipeline/frame.hpp"
 

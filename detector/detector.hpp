@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "detector/detector_settings.hpp"
-#include "detector/forest.hpp"
+#include "detector/forest/forest.hpp"
 #include "pipeline/detection.hpp"
 #include "pipeline/frame.hpp"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "detector/forest.hpp"
-#include "detector/traversal.hpp"
+#include "detector/forest/forest.hpp"
+#include "detector/forest/traversal.hpp"
 
 namespace houghstream {
 

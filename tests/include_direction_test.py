@@ -14,7 +14,7 @@ GOOD = {
     "pipeline/messages.hpp": '#include <houghstream/images_t.hpp>\n#include "pipeline/frame.hpp"\n',
     "pipeline/messages.cpp": '#include "pipeline/messages.hpp"\n#include <lcm/lcm-cpp.hpp>\n',
     "drivers/camera.cpp": '#include <OpenNI.h>\n#include "pipeline/frame.hpp"\n',
-    "detector/surface_normals.cpp": "#include <pcl/features/normal_3d.h>\n",
+    "detector/features/surface_normals.cpp": "#include <pcl/features/normal_3d.h>\n",
     "pose/icp.cpp": "#include <pcl/registration/icp.h>\n",
     "tools/view/main.cpp": '#include <lcm/lcm-cpp.hpp>\n#include "detector/surface.hpp"\n',
     "tests/pose/icp_test.cpp": '#include "pose/icp.hpp"\n#include "tools/view/overlay.hpp"\n',

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/forest_trainer.hpp"
+#include "detector/training/forest_trainer.hpp"
 #include "toy_data.hpp"
 
 namespace houghstream {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/forest_trainer.hpp"
+#include "detector/training/forest_trainer.hpp"
 #include "pipeline/checks.hpp"
 #include "toy_data.hpp"
 

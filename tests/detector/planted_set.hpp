@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "detector/training_set.hpp"
+#include "detector/training/training_set.hpp"
 #include "pipeline/random.hpp"
 
 namespace houghstream::toy {

@@ -1,7 +1,7 @@
 #include <spdlog/spdlog.h>
 
 #include "detector/detector.hpp"
-#include "detector/forest_file.hpp"
+#include "detector/forest/forest_file.hpp"
 #include "pipeline/detect_process.hpp"
 #include "pipeline/stop_signal.hpp"
 #include "tools/common/tool_main.hpp"

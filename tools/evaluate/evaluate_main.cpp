@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "detector/forest_file.hpp"
+#include "detector/forest/forest_file.hpp"
 #include "pipeline/checks.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/in_process.hpp"

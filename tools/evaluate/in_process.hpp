@@ -5,7 +5,7 @@
 #include <string>
 
 #include "detector/detector_settings.hpp"
-#include "detector/forest.hpp"
+#include "detector/forest/forest.hpp"
 #include "drivers/bop_dataset.hpp"
 #include "pipeline/mesh.hpp"
 #include "tools/evaluate/result_log.hpp"

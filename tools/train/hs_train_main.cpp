@@ -2,8 +2,8 @@
 #include <chrono>
 #include <cstdio>
 
-#include "detector/forest_file.hpp"
-#include "detector/forest_trainer.hpp"
+#include "detector/forest/forest_file.hpp"
+#include "detector/training/forest_trainer.hpp"
 #include "pipeline/checks.hpp"
 #include "tools/train/training_sources.hpp"
 

@@ -1,0 +1,38 @@
+#include "detector/evidence/likeness.hpp"
+
+#include <cmath>
+
+namespace houghstream {
+
+void Likeness::add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3b& seen) {
+  ++count_;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const double a = remembered[c];
+    const double b = seen[static_cast<int>(c)];
+    Sums& sums = channels_[c];
+    sums[0] += a;
+    sums[1] += b;
+    sums[2] += a * a;
+    sums[3] += b * b;
+    sums[4] += a * b;
+  }
+}
+
+float Likeness::correlation() const {
+  constexpr int kFewest = 12;
+  constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
+  if (count_ < kFewest) return 0.0F;
+  double covariance = 0.0;
+  double remembered = 3.0 * kNoise;
+  double seen = 3.0 * kNoise;
+  for (const Sums& sums : channels_) {
+    const double mean_a = sums[0] / count_;
+    const double mean_b = sums[1] / count_;
+    covariance += sums[4] / count_ - mean_a * mean_b;
+    remembered += sums[2] / count_ - mean_a * mean_a;
+    seen += sums[3] / count_ - mean_b * mean_b;
+  }
+  return static_cast<float>(covariance / std::sqrt(remembered * seen));
+}
+
+}  // namespace houghstream

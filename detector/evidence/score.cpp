@@ -1,0 +1,61 @@
+#include "detector/evidence/score.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace houghstream {
+namespace {
+
+using Vector = Eigen::Matrix<double, kScoreTerms, 1>;
+using Matrix = Eigen::Matrix<double, kScoreTerms, kScoreTerms>;
+
+double logistic(double x) {
+  return 1.0 / (1.0 + std::exp(-x));
+}
+
+template <typename Values>
+Vector to_vector(const Values& values) {
+  Vector out;
+  for (std::size_t i = 0; i < kScoreTerms; ++i) out(static_cast<Eigen::Index>(i)) = values[i];
+  return out;
+}
+
+}  // namespace
+
+ScoreTerms score_terms(const Evidence& evidence) {
+  return {1.0F,
+          std::log(std::max(evidence.mass_share, 1e-4F)),
+          std::log(1.02F - evidence.fit.hidden),
+          evidence.fit.seen_through,
+          evidence.fit.unknown,
+          evidence.fit.continued,
+          evidence.fit.likeness};
+}
+
+float score(const ScoreModel& model, const Evidence& evidence) {
+  return static_cast<float>(logistic(to_vector(model.weights).dot(to_vector(score_terms(evidence)))));
+}
+
+ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
+  constexpr int kSteps = 30;  // of Newton's method, which needs about eight
+  const Vector believed = to_vector(prior.weights);
+  Vector weights = believed;
+  for (int step = 0; step < kSteps; ++step) {
+    Vector gradient = believed - weights;
+    Matrix curvature = Matrix::Identity();
+    for (const ScoreExample& example : examples) {
+      const Vector x = to_vector(example.terms);
+      const double p = logistic(weights.dot(x));
+      gradient += ((example.is_object ? 1.0 : 0.0) - p) * x;
+      curvature += p * (1.0 - p) * x * x.transpose();
+    }
+    weights += curvature.ldlt().solve(gradient);
+  }
+  ScoreModel model;
+  for (std::size_t i = 0; i < kScoreTerms; ++i)
+    model.weights[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));
+  return model;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "detector/evidence/view_fit.hpp"
+#include "detector/forest/forest.hpp"
+
+namespace houghstream {
+
+/// What speaks for and against a hypothesis.
+struct Evidence {
+  float mass_share = 0.0F;  ///< vote mass over the class's expected_mass
+  ViewFit fit;              ///< of the remembered view that fits best
+};
+
+/// The evidence as the terms that ScoreModel::weights multiply: 1, the logarithms of the mass and of what is not
+/// hidden (half an object has half the mass), and the shares that are seen through and unknown.
+ScoreTerms score_terms(const Evidence& evidence);
+
+/// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
+float score(const ScoreModel& model, const Evidence& evidence);
+
+/// A judged hypothesis.
+struct ScoreExample {
+  ScoreTerms terms{};
+  bool is_object = false;
+};
+
+/// The weights that explain the examples best; few examples move them little from those of `prior`.
+ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior);
+
+}  // namespace houghstream

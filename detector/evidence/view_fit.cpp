@@ -1,0 +1,160 @@
+#include "detector/evidence/view_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "detector/evidence/likeness.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr int kSide = Appearance::kSide;
+
+/// Where the cells of a relief are seen, and how much farther than remembered the frame's surface is there.
+struct Comparison {
+  std::array<float, kSide * kSide>
+      excess{};  // on the object, metres; NaN where depth is not measured or not remembered
+  std::array<float, kSide * kSide> excess_beside{};  // beside its outline
+  std::array<bool, kSide * kSide> on_object{};
+  std::array<bool, kSide * kSide> beside{};
+  float left = 0.0F;  // of the first cell, frame pixels
+  float top = 0.0F;
+  float cell_width = 0.0F;
+  float cell_height = 0.0F;
+
+  /// Frame pixels from the left upper edge of the first pixel.
+  cv::Point2f cell_centre(std::size_t cell) const {
+    const std::size_t column = cell % kSide;
+    const std::size_t row = cell / kSide;
+    return {left + (static_cast<float>(column) + 0.5F) * cell_width,
+            top + (static_cast<float>(row) + 0.5F) * cell_height};
+  }
+};
+
+Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  Comparison out;
+  const Eigen::Vector2d centre_px = frame.camera.project(centre.cast<double>());
+  const auto px_per_metre = static_cast<float>(1.0 / frame.camera.metres_per_px(centre.z()));
+  out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / Appearance::kBoxSide;
+  out.cell_height = px_per_metre * (view.box[3] - view.box[1]) / Appearance::kBoxSide;
+  // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
+  out.left = static_cast<float>(centre_px.x()) + 0.5F + px_per_metre * view.box[0] - Appearance::kRim * out.cell_width;
+  out.top = static_cast<float>(centre_px.y()) + 0.5F + px_per_metre * view.box[1] - Appearance::kRim * out.cell_height;
+  for (std::size_t cell = 0; cell < out.excess.size(); ++cell) {
+    const cv::Point2f px = out.cell_centre(cell);
+    const int x = static_cast<int>(std::floor(px.x));
+    const int y = static_cast<int>(std::floor(px.y));
+    if (x < 0 || y < 0 || x >= frame.depth.cols || y >= frame.depth.rows) continue;
+    const float beyond_centre = frame.depth.at<float>(y, x) - centre.z();
+    const std::int16_t remembered = view.appearance.mm[cell];
+    const std::int16_t neighbour = view.appearance.beside[cell];
+    out.on_object[cell] = remembered != Appearance::kBeside;
+    out.beside[cell] = neighbour != Appearance::kBeside;
+    out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - 0.001F * remembered : kNone;
+    out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - 0.001F * neighbour : kNone;
+  }
+  return out;
+}
+
+/// Median of what lies within reach of the expected depth.
+float common_shift(const Comparison& comparison) {
+  constexpr float kReach = 0.03F;
+  std::vector<float> near;
+  for (const float e : comparison.excess) {
+    if (std::abs(e) < kReach) near.push_back(e);
+  }
+  if (near.empty()) return 0.0F;
+  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+  std::nth_element(near.begin(), middle, near.end());
+  return *middle;
+}
+
+/// Rows or columns of cells: how many show the object, and how many of them are visible or unknown.
+struct Lines {
+  std::array<int, kSide> whole{};
+  std::array<int, kSide> seen{};
+
+  /// First and one past the last line in which enough of the object's cells are seen.
+  std::pair<int, int> range() const {
+    constexpr int kOneIn = 5;
+    int first = kSide;
+    int last = 0;
+    for (int i = 0; i < kSide; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (seen[at] == 0 || seen[at] * kOneIn < whole[at]) continue;
+      first = std::min(first, i);
+      last = i + 1;
+    }
+    return {first, last};
+  }
+};
+
+cv::Rect2f visible_box(const Comparison& comparison, const Lines& columns, const Lines& rows) {
+  const auto [left, right] = columns.range();
+  const auto [top, bottom] = rows.range();
+  if (left >= right || top >= bottom) return {};
+  return {comparison.left + static_cast<float>(left) * comparison.cell_width,
+          comparison.top + static_cast<float>(top) * comparison.cell_height,
+          static_cast<float>(right - left) * comparison.cell_width,
+          static_cast<float>(bottom - top) * comparison.cell_height};
+}
+
+/// Share of the cells beside the outline whose depth is the object's.
+float continued_share(const Comparison& comparison, float shift, float tolerance) {
+  int beside = 0;
+  int continued = 0;
+  for (std::size_t cell = 0; cell < comparison.beside.size(); ++cell) {
+    if (!comparison.beside[cell]) continue;
+    ++beside;
+    continued += std::abs(comparison.excess_beside[cell] - shift) <= tolerance ? 1 : 0;
+  }
+  return static_cast<float>(continued) / static_cast<float>(std::max(beside, 1));
+}
+
+cv::Vec3b colour_at(const LabFrame& frame, const cv::Point2f& frame_px) {
+  return frame.lab.at<cv::Vec3b>(std::min(static_cast<int>(frame_px.y * frame.scale), frame.lab.rows - 1),
+                                 std::min(static_cast<int>(frame_px.x * frame.scale), frame.lab.cols - 1));
+}
+
+}  // namespace
+
+ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
+  const Comparison comparison = compare(view, centre_camera, frame.frame);
+  const float shift = common_shift(comparison);
+  const float z = centre_camera.z();
+  const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
+  ViewFit fit;
+  Lines rows;
+  Lines columns;
+  Likeness likeness;
+  int cells = 0;
+  for (std::size_t cell = 0; cell < comparison.excess.size(); ++cell) {
+    if (!comparison.on_object[cell]) continue;
+    const float e = comparison.excess[cell] - shift;
+    const bool unknown = std::isnan(e);
+    const bool visible = std::abs(e) <= tolerance;
+    if (visible) likeness.add(view.appearance.lab[cell], colour_at(frame, comparison.cell_centre(cell)));
+    ++cells;
+    fit.unknown += unknown ? 1.0F : 0.0F;
+    fit.visible += visible ? 1.0F : 0.0F;
+    fit.hidden += e < -tolerance ? 1.0F : 0.0F;
+    fit.seen_through += e > tolerance ? 1.0F : 0.0F;
+    ++rows.whole[cell / kSide];
+    ++columns.whole[cell % kSide];
+    rows.seen[cell / kSide] += unknown || visible ? 1 : 0;
+    columns.seen[cell % kSide] += unknown || visible ? 1 : 0;
+  }
+  for (float* share : {&fit.visible, &fit.hidden, &fit.seen_through, &fit.unknown}) {
+    *share /= static_cast<float>(std::max(cells, 1));
+  }
+  fit.continued = continued_share(comparison, shift, tolerance);
+  fit.likeness = likeness.correlation();
+  fit.visible_box_px = visible_box(comparison, columns, rows);
+  return fit;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "detector/forest/forest.hpp"
+#include "pipeline/frame.hpp"
+
+namespace houghstream {
+
+/// A frame with its colours as views remember them.
+struct LabFrame {
+  const RgbdFrame& frame;
+  cv::Mat lab;         ///< CV_8UC3, smaller than the frame
+  float scale = 1.0F;  ///< its size over the frame's
+};
+
+/// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
+/// surface, the first four of which sum to 1.
+struct ViewFit {
+  float visible = 0.0F;       ///< depth as remembered
+  float hidden = 0.0F;        ///< something is in front of it
+  float seen_through = 0.0F;  ///< what is there lies behind: the object cannot be there
+  float unknown = 0.0F;       ///< no depth
+  float continued = 0.0F;     ///< of the rim beside the outline: the surface goes on where the object ends
+  float likeness = 0.0F;      ///< correlation of the visible surface's colours with the remembered ones, -1 to 1
+  cv::Rect2f visible_box_px;  ///< of what is visible or unknown, frame pixels; empty where nothing is
+};
+
+/// The view's relief compared with the frame, pixel by pixel of the relief, after moving it along the ray by at most
+/// a few centimetres to where most of it agrees: a vote's depth is less exact than a surface's.
+/// The likeness is blind to brightness, contrast and colour cast, which the light decides.
+ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame);
+
+}  // namespace houghstream

@@ -1,0 +1,26 @@
+#include "detector/forest/forest.hpp"
+
+namespace houghstream {
+
+Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray) {
+  const Eigen::Vector3f d = ray / ray.norm();
+  // Rodrigues' formula for the axis z x d, simplified: the rotation angle's cosine is d.z, and rays point forwards.
+  const float k = 1.0F / (1.0F + d.z());
+  Eigen::Matrix3f rotation;
+  rotation << 1.0F - k * d.x() * d.x(), -k * d.x() * d.y(), d.x(),  //
+      -k * d.x() * d.y(), 1.0F - k * d.y() * d.y(), d.y(),          //
+      -d.x(), -d.y(), d.z();
+  return rotation;
+}
+
+std::int32_t find_leaf(const Forest& forest, int tree, const std::uint8_t* centre, std::int32_t scale, int row_stride) {
+  std::int32_t at = forest.roots[static_cast<std::size_t>(tree)];
+  while (at >= 0) {
+    const TreeNode& node = forest.nodes[static_cast<std::size_t>(at)];
+    const bool right = test_value(node.test, centre, scale, row_stride) >= node.test.threshold;
+    at = right ? node.right : node.left;
+  }
+  return -1 - at;
+}
+
+}  // namespace houghstream

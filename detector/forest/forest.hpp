@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+#include "detector/evidence/appearance.hpp"
+#include "detector/forest/pixel_test.hpp"
+
+namespace houghstream {
+
+constexpr std::size_t kScoreTerms = 7;
+using ScoreTerms = std::array<float, kScoreTerms>;
+
+/// How evidence becomes a probability, see score_terms(). The values here are what is believed before any example is
+/// seen: even odds at about a third of the expected mass.
+struct ScoreModel {
+  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F, 2.0F};
+};
+
+/// Inner node: left child at `child`, right child at `child` + 1. A child below 0 is leaf number -1 - child.
+struct TreeNode {
+  PixelTest test;
+  std::int32_t left = 0;
+  std::int32_t right = 0;
+};
+
+/// Where a patch of this leaf saw the object's centre, in the frame of its own viewing ray (see ray_rotation), metres.
+struct LeafVote {
+  Eigen::Vector3f offset;
+  float weight = 0.0F;  ///< share of the leaf's probability for the class; a class's votes sum to 1
+};
+
+/// A training view that a patch of this leaf came from.
+struct LeafView {
+  std::uint32_t view = 0;  ///< index into Forest::views
+  float weight = 0.0F;
+};
+
+/// What a leaf knows of one class.
+struct LeafClass {
+  std::uint32_t first_vote = 0;   ///< into Forest::votes
+  std::uint32_t first_view = 0;   ///< into Forest::leaf_views
+  float probability = 0.0F;       ///< p(class | leaf)
+  std::uint16_t class_index = 0;  ///< into Forest::classes
+  std::uint8_t vote_count = 0;
+  std::uint8_t view_count = 0;
+};
+
+/// Classes of leaf i are leaf_classes[leaves[i] .. leaves[i + 1]).
+struct ObjectClass {
+  int class_id = 0;  ///< from 1
+  std::string name;
+  float radius = 0.0F;         ///< farthest seen surface point from the centre, metres
+  float expected_mass = 1.0F;  ///< vote mass of a wholly visible object, square metres
+  ScoreModel score_model;
+};
+
+/// A training view as poses and boxes need it.
+struct TrainedView {
+  std::uint32_t class_index = 0;
+  /// Relative to the ray through the object's centre. Not aligned: its bytes go to the file without gaps.
+  Eigen::Quaternion<float, Eigen::DontAlign> R_ray_object = Eigen::Quaternion<float, Eigen::DontAlign>::Identity();
+  /// Left, top, right and bottom of the mask as seen from the object's centre, metres at the centre's depth.
+  std::array<float, 4> box{};
+  Appearance appearance;
+};
+
+/// A trained forest: flat arrays, trees one after another. Read-only once built.
+struct Forest {
+  FeatureSettings features;
+  PatchSettings patch;
+  std::uint64_t seed = 0;
+  std::vector<ObjectClass> classes;
+  std::vector<TrainedView> views;
+  std::vector<std::int32_t> roots;  ///< per tree: a node, or -1 - leaf
+  std::vector<TreeNode> nodes;
+  std::vector<std::uint32_t> leaves;  ///< number of leaves + 1
+  std::vector<LeafClass> leaf_classes;
+  std::vector<LeafVote> votes;
+  std::vector<LeafView> leaf_views;
+};
+
+/// Smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
+Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);
+
+/// Walks one patch down one tree. The readable way; the fast one (traversal.hpp) gives the same leaves.
+std::int32_t find_leaf(const Forest& forest, int tree, const std::uint8_t* centre, std::int32_t scale, int row_stride);
+
+}  // namespace houghstream

@@ -1,0 +1,223 @@
+#include "detector/forest/forest_file.hpp"
+
+#include <zlib.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <type_traits>
+
+#include "detector/features/features.hpp"
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr char kName[] = "HOUGHSTREAM FOREST ";
+
+/// One list of members for writing and reading, so that the two cannot drift apart.
+template <typename Archive, typename ForestType>
+void archive_members(Archive& archive, ForestType& forest) {
+  archive(forest.features);
+  archive(forest.patch);
+  archive(forest.seed);
+  archive(forest.classes);
+  archive(forest.views);
+  archive(forest.roots);
+  archive(forest.nodes);
+  archive(forest.leaves);
+  archive(forest.leaf_classes);
+  archive(forest.votes);
+  archive(forest.leaf_views);
+}
+
+// Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
+static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 &&
+              sizeof(TrainedView) == 36 + sizeof(Appearance));
+static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
+
+struct Writer {
+  std::string bytes;
+
+  template <typename T>
+  void operator()(const T& value) {
+    static_assert(std::is_standard_layout_v<T>);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void operator()(const std::vector<ObjectClass>& classes) {
+    (*this)(static_cast<std::uint64_t>(classes.size()));
+    for (const ObjectClass& c : classes) {
+      (*this)(c.class_id);
+      (*this)(static_cast<std::uint64_t>(c.name.size()));
+      bytes.append(c.name);
+      (*this)(c.radius);
+      (*this)(c.expected_mass);
+      (*this)(c.score_model);
+    }
+  }
+  template <typename T>
+  void operator()(const std::vector<T>& values) {
+    (*this)(static_cast<std::uint64_t>(values.size()));
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  }
+};
+
+struct Reader {
+  const std::string& bytes;
+  std::string source;
+  std::size_t at = 0;
+
+  void copy(void* to, std::size_t size) {
+    require(size <= bytes.size() - at, "{}: forest payload ends {} bytes early", source, size - (bytes.size() - at));
+    std::memcpy(to, bytes.data() + at, size);
+    at += size;
+  }
+  std::size_t count(std::size_t item_size) {
+    std::uint64_t n = 0;
+    copy(&n, sizeof n);
+    require(n <= (bytes.size() - at) / item_size, "{}: a list of {} items, expected at most what the file holds",
+            source, n);
+    return static_cast<std::size_t>(n);
+  }
+  template <typename T>
+  void operator()(T& value) {
+    copy(&value, sizeof value);
+  }
+  void operator()(std::vector<ObjectClass>& classes) {
+    classes.resize(count(1));
+    for (ObjectClass& c : classes) {
+      (*this)(c.class_id);
+      c.name.resize(count(1));
+      copy(c.name.data(), c.name.size());
+      (*this)(c.radius);
+      (*this)(c.expected_mass);
+      (*this)(c.score_model);
+    }
+  }
+  template <typename T>
+  void operator()(std::vector<T>& values) {
+    values.resize(count(sizeof(T)));
+    copy(values.data(), values.size() * sizeof(T));
+  }
+};
+
+std::uint32_t checksum(const std::string& bytes) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+/// A checksum says that the file is what was written; this says that what was written makes sense.
+void check_indices(const Forest& forest, const std::string& source) {
+  const auto nodes = static_cast<std::int64_t>(forest.nodes.size());
+  const auto leaves = static_cast<std::int64_t>(forest.leaves.size()) - 1;
+  const auto check_child = [&](std::int64_t child, std::int64_t parent) {
+    const bool good = child >= 0 ? child > parent && child < nodes : -1 - child < leaves;
+    require(good, "{}: a tree points to node {}, expected a later one of {} nodes or one of {} leaves", source, child,
+            nodes, leaves);
+  };
+  require(leaves >= 1 && forest.leaves.back() == forest.leaf_classes.size(), "{}: {} leaves, expected at least one",
+          source, leaves);
+  for (const std::int32_t root : forest.roots) check_child(root, -1);
+  for (std::int64_t n = 0; n < nodes; ++n) {
+    const TreeNode& node = forest.nodes[static_cast<std::size_t>(n)];
+    check_child(node.left, n);
+    check_child(node.right, n);
+    const int reach = forest.patch.radius;
+    const PixelTest& t = node.test;
+    const bool inside = std::max({std::abs(t.dx1), std::abs(t.dy1), std::abs(t.dx2), std::abs(t.dy2)}) <= reach;
+    require(inside && t.plane < FeatureLayout::kPlanes &&
+                (t.kind == PixelTest::kDifference || t.kind == PixelTest::kWrapping || t.kind == PixelTest::kAlone),
+            "{}: node {} tests plane {}, expected one of {} planes within {} steps", source, n, t.plane,
+            FeatureLayout::kPlanes, reach);
+  }
+  for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
+    require(forest.leaves[l - 1] <= forest.leaves[l], "{}: leaf {} ends before it begins", source, l - 1);
+  }
+  for (const LeafClass& entry : forest.leaf_classes) {
+    const bool good = entry.class_index < forest.classes.size() &&
+                      entry.first_vote + std::uint64_t{entry.vote_count} <= forest.votes.size() &&
+                      entry.first_view + std::uint64_t{entry.view_count} <= forest.leaf_views.size() &&
+                      entry.probability >= 0.0F && entry.probability <= 1.0F;
+    require(good, "{}: a leaf points outside the forest's lists", source);
+  }
+  for (const LeafView& view : forest.leaf_views) {
+    require(view.view < forest.views.size(), "{}: a leaf remembers view {} of {}", source, view.view,
+            forest.views.size());
+  }
+}
+
+void check_settings(const Forest& forest, const std::string& source) {
+  const FeatureSettings& f = forest.features;
+  require(f.image_scale > 0.05 && f.image_scale <= 2.0, "{}: image scale {}, expected 0.05 to 2", source,
+          f.image_scale);
+  require(f.depth_sobel_px >= 3 && f.depth_sobel_px <= 31 && f.min_max_px >= 1 && f.min_max_px <= 31,
+          "{}: feature kernels {} and {}, expected up to 31 pixels", source, f.depth_sobel_px, f.min_max_px);
+  require(
+      forest.patch.radius >= 1 && forest.patch.radius <= 127 && forest.patch.unit > 0.0F && forest.patch.unit < 1.0F,
+      "{}: patch of {} steps of {} m, expected 1 to 127 steps below 1 m", source, forest.patch.radius,
+      forest.patch.unit);
+  require(!forest.classes.empty() && !forest.roots.empty(), "{}: {} classes and {} trees, expected at least one each",
+          source, forest.classes.size(), forest.roots.size());
+  for (const ObjectClass& c : forest.classes) {
+    require(c.radius > 0.0F && c.radius < 10.0F && c.expected_mass > 0.0F && std::isfinite(c.expected_mass),
+            "{}: class '{}' of radius {} m, expected 0 to 10 m", source, c.name, c.radius);
+    for (const float weight : c.score_model.weights) {
+      require(std::isfinite(weight), "{}: class '{}' has score weight {}, expected a number", source, c.name, weight);
+    }
+  }
+}
+
+}  // namespace
+
+void save_forest(const Forest& forest, const std::filesystem::path& file) {
+  Writer payload;
+  archive_members(payload, forest);
+  Writer header;
+  header(static_cast<std::uint64_t>(payload.bytes.size()));
+  header(checksum(payload.bytes));
+  std::filesystem::path partial = file;
+  partial += ".partial";
+  {
+    std::ofstream out(partial, std::ios::binary);
+    out << kName << kForestFileVersion << '\n' << header.bytes << payload.bytes;
+    require(out.flush().good(), "{}: cannot be written", partial.string());
+  }
+  std::error_code error;
+  std::filesystem::rename(partial, file, error);
+  require(!error, "{}: cannot be written: {}", file.string(), error.message());
+}
+
+Forest load_forest(const std::filesystem::path& file) {
+  const std::string source = file.string();
+  std::ifstream in(file, std::ios::binary);
+  require(in.good(), "{}: forest file cannot be opened", source);
+  std::string line;
+  std::getline(in, line);
+  require(line.rfind(kName, 0) == 0, "{}: not a forest file, expected it to begin with '{}{}'", source, kName,
+          kForestFileVersion);
+  const std::string version = line.substr(sizeof kName - 1);
+  require(version == std::to_string(kForestFileVersion), "{}: forest file of version '{}', expected {}: train it anew",
+          source, version, kForestFileVersion);
+
+  std::uint64_t size = 0;
+  std::uint32_t crc = 0;
+  in.read(reinterpret_cast<char*>(&size), sizeof size);
+  in.read(reinterpret_cast<char*>(&crc), sizeof crc);
+  std::ostringstream rest;
+  rest << in.rdbuf();
+  const std::string payload = rest.str();
+  require(payload.size() == size, "{}: payload of {} bytes, expected {}: the file is truncated or damaged", source,
+          payload.size(), size);
+  require(checksum(payload) == crc, "{}: checksum {:08x}, expected {:08x}: the file is damaged", source,
+          checksum(payload), crc);
+
+  Forest forest;
+  Reader reader{payload, source};
+  archive_members(reader, forest);
+  require(reader.at == payload.size(), "{}: {} bytes left over after the forest", source, payload.size() - reader.at);
+  check_settings(forest, source);
+  check_indices(forest, source);
+  return forest;
+}
+
+}  // namespace houghstream

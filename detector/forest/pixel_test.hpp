@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "detector/detector_settings.hpp"
+#include "detector/features/feature_image.hpp"
+
+namespace houghstream {
+
+/// p1 - p2 >= threshold on one feature plane (Gall et al. 2011). Offsets are in steps of PatchSettings::unit on the
+/// object: the pixel offset is the step times the patch's scale, so that an object is tested alike at every distance
+/// (depth normalisation, paper Section 5.1.2).
+struct PixelTest {
+  static constexpr std::uint8_t kDifference = 0;
+  static constexpr std::uint8_t kWrapping = 24;  ///< the difference is taken modulo 256: bits to shift out
+  static constexpr std::uint8_t kAlone = 128;    ///< p1 alone, where p2 counts as 0: which colour, which slope
+
+  std::int8_t dx1 = 0;
+  std::int8_t dy1 = 0;
+  std::int8_t dx2 = 0;
+  std::int8_t dy2 = 0;
+  std::uint8_t plane = 0;
+  std::uint8_t kind = kDifference;
+  std::int16_t threshold = 0;
+};
+
+/// Working pixels per step of a test offset at depth z, in 1/256 pixel; limited so that a patch stays inside the
+/// border of a FeatureImage.
+inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, float z) {
+  const double px = patch.unit * focal_px / z;
+  const double limit = static_cast<double>(FeatureImage::kPad) / patch.radius;
+  return static_cast<std::int32_t>(std::lround(256.0 * std::min(px, limit)));
+}
+
+/// p1 - p2. The only place where a patch is looked at, in training and in detection.
+inline int test_value(const PixelTest& test, const std::uint8_t* centre, std::int32_t scale, int row_stride) {
+  const auto offset = [&](std::int8_t dx, std::int8_t dy) {
+    const int x_px = (dx * scale + 128) >> 8;
+    const int y_px = (dy * scale + 128) >> 8;
+    return static_cast<std::ptrdiff_t>(y_px) * row_stride + x_px * FeatureImage::kChannels + test.plane;
+  };
+  const int second_mask = (test.kind >> 7) - 1;
+  const int difference = centre[offset(test.dx1, test.dy1)] - (centre[offset(test.dx2, test.dy2)] & second_mask);
+  const int shift = test.kind & 31;
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(difference) << shift) >> shift;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,103 @@
+#include "detector/training/forest_trainer.hpp"
+
+#include <fmt/format.h>
+
+#include <mutex>
+
+#include "detector/training/calibration.hpp"
+#include "detector/training/hard_negatives.hpp"
+#include "detector/training/score_training.hpp"
+#include "detector/training/tree_trainer.hpp"
+#include "pipeline/parallel.hpp"
+
+namespace houghstream {
+namespace {
+
+std::int32_t moved(std::int32_t child, std::int32_t first_node, std::int32_t first_leaf) {
+  return child >= 0 ? child + first_node : child - first_leaf;
+}
+
+/// Appends a tree grown on its own, moving its indices behind those already there.
+void append_tree(const Forest& tree, Forest& forest) {
+  const auto first_node = static_cast<std::int32_t>(forest.nodes.size());
+  const auto first_leaf = static_cast<std::int32_t>(forest.leaves.size()) - 1;
+  const auto first_class = static_cast<std::uint32_t>(forest.leaf_classes.size());
+  const auto first_vote = static_cast<std::uint32_t>(forest.votes.size());
+  const auto first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
+  forest.roots.push_back(moved(tree.roots.at(0), first_node, first_leaf));
+  for (TreeNode node : tree.nodes) {
+    node.left = moved(node.left, first_node, first_leaf);
+    node.right = moved(node.right, first_node, first_leaf);
+    forest.nodes.push_back(node);
+  }
+  for (std::size_t l = 1; l < tree.leaves.size(); ++l) forest.leaves.push_back(tree.leaves[l] + first_class);
+  for (LeafClass entry : tree.leaf_classes) {
+    entry.first_vote += first_vote;
+    entry.first_view += first_view;
+    forest.leaf_classes.push_back(entry);
+  }
+  forest.votes.insert(forest.votes.end(), tree.votes.begin(), tree.votes.end());
+  forest.leaf_views.insert(forest.leaf_views.end(), tree.leaf_views.begin(), tree.leaf_views.end());
+}
+
+/// Who learns from which views: the score must not learn from rooms that the trees know by heart.
+struct Rooms {
+  std::vector<const TrainingView*> objects;
+  std::vector<const TrainingView*> for_trees;  ///< objects and rooms
+  std::vector<const TrainingView*> for_score;  ///< rooms
+};
+
+Rooms share_rooms(const std::vector<TrainingView>& views) {
+  constexpr std::size_t kForScore = 6;  // every so many-th
+  Rooms rooms;
+  std::size_t count = 0;
+  for (const TrainingView& view : views) {
+    const bool is_room = view.class_id == 0;
+    const bool for_score = is_room && ++count % kForScore == 0;
+    if (!is_room) rooms.objects.push_back(&view);
+    (for_score ? rooms.for_score : rooms.for_trees).push_back(&view);
+  }
+  if (!rooms.for_score.empty()) return rooms;
+  for (const TrainingView& view : views) {  // too few to share
+    if (view.class_id == 0) rooms.for_score.push_back(&view);
+  }
+  return rooms;
+}
+
+}  // namespace
+
+Forest train_forest(const std::vector<TrainingView>& views, const FeatureSettings& features, const PatchSettings& patch,
+                    const TrainingSettings& settings, const std::function<void(const std::string&)>& progress) {
+  const Rooms rooms = share_rooms(views);
+  TrainingSet set = make_training_set(rooms.for_trees, features, patch, settings);
+  progress(fmt::format("{} patches of {} pictures, {} classes", set.samples.size(), set.pictures.size(),
+                       set.classes.size()));
+  const std::size_t before = set.samples.size();
+  add_hard_negatives(patch, settings, set);
+  progress(fmt::format("{} background patches added that scout trees mistook", set.samples.size() - before));
+  std::vector<Forest> trees(static_cast<std::size_t>(settings.trees));
+  std::mutex progress_mutex;
+  int done = 0;
+  parallel_for(settings.threads, settings.trees, [&](int t) {
+    Forest& tree = trees[static_cast<std::size_t>(t)];
+    tree = grow_tree(set, patch, settings, t);
+    const std::lock_guard lock(progress_mutex);
+    progress(fmt::format("tree {} of {}: {} leaves", ++done, settings.trees, tree.leaves.size() - 1));
+  });
+
+  Forest forest;
+  forest.features = features;
+  forest.patch = patch;
+  forest.seed = settings.seed;
+  forest.classes = set.classes;
+  forest.views = set.views;
+  forest.leaves.push_back(0);
+  for (const Forest& tree : trees) append_tree(tree, forest);
+  calibrate_masses(set, settings, DetectionSettings{}.vote_sigma, forest);
+  train_score_model(rooms.objects, rooms.for_score, settings, forest);
+  progress(
+      fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
+  return forest;
+}
+
+}  // namespace houghstream

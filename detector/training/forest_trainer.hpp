@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "detector/forest/forest.hpp"
+#include "pipeline/training_view.hpp"
+
+namespace houghstream {
+
+/// Teaches the objects in `views` (backgrounds are those of class_id 0). Same views, settings and seed: same forest,
+/// bit for bit, for any number of threads. `progress` is called with one line per finished step, from any thread
+/// but never from two at once.
+Forest train_forest(const std::vector<TrainingView>& views, const FeatureSettings& features, const PatchSettings& patch,
+                    const TrainingSettings& settings, const std::function<void(const std::string&)>& progress);
+
+}  // namespace houghstream

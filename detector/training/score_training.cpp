@@ -1,0 +1,73 @@
+#include "detector/training/score_training.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "detector/detection_candidates.hpp"
+#include "detector/training/validation_frames.hpp"
+#include "pipeline/parallel.hpp"
+
+namespace houghstream {
+namespace {
+
+/// What counts as found in the paper's protocol (Section 4).
+constexpr float kMinIou = 0.5F;
+constexpr double kMinVisible = 0.1;
+
+using Examples = std::map<int, std::vector<ScoreExample>>;  // by class id
+
+/// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
+Examples judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
+  Examples examples;
+  std::vector<const Detection*> kept;
+  for (const Candidate& candidate : candidates) {
+    const Detection& found = candidate.detection;
+    const auto repeats = [&](const Detection* other) {
+      return other->class_id == found.class_id && box_iou(other->box_px, found.box_px) > kMinIou;
+    };
+    if (std::any_of(kept.begin(), kept.end(), repeats)) continue;
+    kept.push_back(&found);
+    bool is_object = false;
+    bool is_hidden = false;
+    for (const ValidationFrame::Object& object : truth.objects) {
+      if (object.class_id != found.class_id) continue;
+      const bool meets = box_iou(found.box_px, cv::Rect2f(object.box_visible_px)) >= kMinIou;
+      is_object = is_object || (meets && object.visible_fraction >= kMinVisible);
+      is_hidden = is_hidden || (meets && object.visible_fraction < kMinVisible);
+    }
+    if (is_object || !is_hidden) examples[found.class_id].push_back({score_terms(candidate.evidence), is_object});
+  }
+  return examples;
+}
+
+}  // namespace
+
+void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
+                       const TrainingSettings& settings, Forest& forest) {
+  DetectionSettings detection;
+  detection.threads = 1;
+  std::vector<Examples> by_frame(static_cast<std::size_t>(settings.validation_frames));
+  parallel_for(settings.threads, settings.validation_frames, [&](int f) {
+    Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(f));
+    const TrainingView& room = *rooms[static_cast<std::size_t>(f) % rooms.size()];
+    const ValidationFrame validation = make_validation_frame(objects, room.frame, settings, random);
+    StageClock clock;
+    std::vector<std::uint32_t> shown;
+    for (const ValidationFrame::Object& object : validation.objects) shown.push_back(object.view);
+    by_frame[static_cast<std::size_t>(f)] =
+        judge(find_candidates(forest, validation.frame, detection, clock, shown), validation);
+  });
+  Examples by_class;
+  std::vector<ScoreExample> all;
+  for (const Examples& part : by_frame) {
+    for (const auto& [class_id, examples] : part) {
+      std::vector<ScoreExample>& own = by_class[class_id];
+      own.insert(own.end(), examples.begin(), examples.end());
+      all.insert(all.end(), examples.begin(), examples.end());
+    }
+  }
+  const ScoreModel common = fit_score_model(all, ScoreModel{});
+  for (ObjectClass& object : forest.classes) object.score_model = fit_score_model(by_class[object.class_id], common);
+}
+
+}  // namespace houghstream

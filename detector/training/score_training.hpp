@@ -1,0 +1,14 @@
+#pragma once
+
+#include "detector/forest/forest.hpp"
+#include "pipeline/training_view.hpp"
+
+namespace houghstream {
+
+/// Sets the score model of each class, beginning from one for all of them: objects are put into rooms that the trees
+/// have not seen, the forest looks for them, and what it finds is compared with what is there. Same result for any
+/// number of threads.
+void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
+                       const TrainingSettings& settings, Forest& forest);
+
+}  // namespace houghstream

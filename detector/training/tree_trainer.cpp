@@ -1,0 +1,133 @@
+#include "detector/training/tree_trainer.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "detector/training/leaf_builder.hpp"
+#include "detector/training/split_search.hpp"
+#include "pipeline/random.hpp"
+
+namespace houghstream {
+namespace {
+
+using Samples = std::vector<std::uint32_t>;
+
+class TreeGrower {
+ public:
+  TreeGrower(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree)
+      : set_(set),
+        settings_(settings),
+        random_(Random::for_item(settings.seed ^ 0x7265655F74ULL, static_cast<std::uint64_t>(tree))) {
+    bag_ = draw_bag(tree);
+    label_weights_ = weigh_labels();
+    // Single pixels' colours tell objects apart, until the light is another one: only every other tree relies on them.
+    const bool trusts_light = tree % 2 == 0;
+    search_.emplace(set, patch, settings, label_weights_, trusts_light);
+  }
+
+  Forest grow() {
+    forest_.leaves.push_back(0);
+    forest_.roots.push_back(grow_node(bag_, 0));
+    return std::move(forest_);
+  }
+
+ private:
+  Samples draw_bag(int tree) const {
+    Samples bag;
+    for (std::uint32_t s = 0; s < set_.samples.size(); ++s) {
+      if (in_bag(settings_, tree, set_.samples[s].picture)) bag.push_back(s);
+    }
+    return bag;
+  }
+
+  /// Every object weighs the same, and the background as much as all objects together.
+  std::vector<float> weigh_labels() const {
+    std::vector<float> counts(set_.classes.size() + 1, 0.0F);
+    for (const std::uint32_t s : bag_) counts[set_.samples[s].label] += 1.0F;
+    std::vector<float> weights(counts.size(), 0.0F);
+    const auto objects = static_cast<float>(set_.classes.size());
+    const auto scale = static_cast<float>(bag_.size());
+    for (std::size_t l = 0; l < counts.size(); ++l) {
+      if (counts[l] > 0.0F) weights[l] = scale * (l == 0 ? 0.5F : 0.5F / objects) / counts[l];
+    }
+    return weights;
+  }
+
+  Samples subset(const Samples& samples) {
+    const auto limit = static_cast<std::size_t>(settings_.node_samples);
+    if (samples.size() <= limit) return samples;
+    Samples chosen = samples;
+    for (std::size_t i = 0; i < limit; ++i) {
+      std::swap(chosen[i], chosen[i + static_cast<std::size_t>(random_.below(static_cast<int>(chosen.size() - i)))]);
+    }
+    chosen.resize(limit);
+    std::sort(chosen.begin(), chosen.end());  // pictures in order: kinder to the cache
+    return chosen;
+  }
+
+  /// Gall et al. 2011: drawn at random, but nodes with hardly any background left only settle offsets.
+  Objective choose_objective(const Samples& samples) {
+    std::size_t background = 0;
+    bool several_labels = false;
+    for (const std::uint32_t s : samples) {
+      background += set_.samples[s].label == 0 ? 1 : 0;
+      several_labels = several_labels || set_.samples[s].label != set_.samples[samples[0]].label;
+    }
+    const bool draw_offset = random_.uniform() < 0.5;
+    if (!several_labels) return Objective::kOffset;
+    return draw_offset && background * 20 < samples.size() * 19 ? Objective::kOffset : Objective::kClass;
+  }
+
+  bool has_object(const Samples& samples) const {
+    return std::any_of(samples.begin(), samples.end(), [&](std::uint32_t s) { return set_.samples[s].label != 0; });
+  }
+
+  std::int32_t make_leaf(const Samples& samples) {
+    return -1 - add_leaf(set_, samples, label_weights_, settings_, forest_);
+  }
+
+  std::int32_t grow_node(const Samples& samples, int depth) {
+    const bool small = samples.size() < static_cast<std::size_t>(settings_.min_samples);
+    if (small || depth >= settings_.max_depth || !has_object(samples)) return make_leaf(samples);
+    const std::optional<PixelTest> test = search_->best_test(subset(samples), choose_objective(samples), random_);
+    if (!test) return make_leaf(samples);
+
+    Samples left;
+    Samples right;
+    for (const std::uint32_t s : samples) {
+      const TrainingSample& sample = set_.samples[s];
+      const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
+      const int value = test_value(*test, picture.at(sample.x, sample.y), sample.scale, picture.row_stride());
+      (value >= test->threshold ? right : left).push_back(s);
+    }
+    const std::size_t index = forest_.nodes.size();
+    forest_.nodes.push_back({*test, 0, 0});
+    const std::int32_t left_child = grow_node(left, depth + 1);
+    const std::int32_t right_child = grow_node(right, depth + 1);
+    forest_.nodes[index].left = left_child;
+    forest_.nodes[index].right = right_child;
+    return static_cast<std::int32_t>(index);
+  }
+
+  const TrainingSet& set_;
+  const TrainingSettings& settings_;
+  Random random_;
+  Samples bag_;
+  std::vector<float> label_weights_;
+  std::optional<SplitSearch> search_;
+  Forest forest_;
+};
+
+}  // namespace
+
+bool in_bag(const TrainingSettings& settings, int tree, std::int32_t picture) {
+  Random random =
+      Random::for_item(settings.seed + static_cast<std::uint64_t>(tree), static_cast<std::uint64_t>(picture));
+  return random.uniform() < settings.in_bag;
+}
+
+Forest grow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree) {
+  return TreeGrower(set, patch, settings, tree).grow();
+}
+
+}  // namespace houghstream

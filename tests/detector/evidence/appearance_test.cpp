@@ -1,0 +1,55 @@
+#include "detector/evidence/appearance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace houghstream {
+namespace {
+
+constexpr int kSide = Appearance::kSide;
+constexpr int kRim = Appearance::kRim;
+
+std::size_t cell(int column, int row) {
+  return static_cast<std::size_t>(row * kSide + column);
+}
+
+/// A 40 pixel wide square, its left half 10 mm nearer and red, its right half 10 mm farther and without depth below.
+Appearance square() {
+  RgbdFrame view;
+  view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
+  view.depth = cv::Mat(80, 80, CV_32FC1, cv::Scalar(2.0));
+  view.colour(cv::Rect(20, 20, 20, 40)).setTo(cv::Scalar(0, 0, 200));
+  view.depth(cv::Rect(20, 20, 20, 40)).setTo(0.99F);
+  view.depth(cv::Rect(40, 20, 20, 20)).setTo(1.01F);
+  view.depth(cv::Rect(40, 40, 20, 20)).setTo(std::numeric_limits<float>::quiet_NaN());
+  cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
+  const cv::Rect box(20, 20, 40, 40);
+  mask(box).setTo(255);
+  return remember_appearance(view, mask, box, 1.0);
+}
+
+TEST(Appearance, DepthIsRelativeToTheCentreInMillimetres) {
+  const Appearance seen = square();
+  EXPECT_EQ(seen.mm[cell(kRim, kRim)], -10);
+  EXPECT_EQ(seen.mm[cell(kSide - 1 - kRim, kRim)], 10);
+  EXPECT_EQ(seen.mm[cell(kSide - 1 - kRim, kSide - 1 - kRim)], Appearance::kNoDepth);
+  EXPECT_EQ(seen.mm[cell(0, 0)], Appearance::kBeside);
+}
+
+TEST(Appearance, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
+  const Appearance seen = square();
+  EXPECT_EQ(seen.beside[cell(0, 6)], -10);
+  EXPECT_EQ(seen.beside[cell(kSide - 1, 6)], 10);
+  EXPECT_EQ(seen.beside[cell(kRim, kRim)], Appearance::kBeside);  // on the object
+  EXPECT_EQ(seen.beside[cell(6, kSide - 1)], Appearance::kBeside);
+}
+
+TEST(Appearance, ColoursAreLab) {
+  const Appearance seen = square();
+  EXPECT_GT(seen.lab[cell(kRim, kRim)][1], 170);                   // red
+  EXPECT_NEAR(seen.lab[cell(kSide - 1 - kRim, kRim)][1], 128, 3);  // grey
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,78 @@
+#include "detector/evidence/score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pipeline/random.hpp"
+
+namespace houghstream {
+namespace {
+
+Evidence with_mass(float share) {
+  Evidence evidence;
+  evidence.mass_share = share;
+  return evidence;
+}
+
+TEST(Score, IsAProbabilityThatGrowsWithTheMass) {
+  const ScoreModel model;
+  float last = 0.0F;
+  for (const float share : {0.0F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F, 3.0F}) {
+    const float p = score(model, with_mass(share));
+    EXPECT_GT(p, last);
+    EXPECT_LT(p, 1.0F);
+    last = p;
+  }
+}
+
+TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {
+  const ScoreModel model;
+  Evidence evidence = with_mass(0.5F);
+  const float clean = score(model, evidence);
+  evidence.fit.seen_through = 0.4F;
+  EXPECT_LT(score(model, evidence), clean);
+  evidence.fit.seen_through = 0.0F;
+  evidence.fit.continued = 0.8F;
+  EXPECT_LT(score(model, evidence), clean);
+  evidence.fit.continued = 0.0F;
+  evidence.fit.hidden = 0.5F;  // half the mass is all that can be expected then
+  EXPECT_GT(score(model, evidence), clean);
+}
+
+/// Examples whose truth is drawn from a model.
+std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
+  Random random(4);
+  std::vector<ScoreExample> examples;
+  for (int i = 0; i < count; ++i) {
+    Evidence evidence = with_mass(static_cast<float>(std::exp(random.uniform(-4.0, 0.5))));
+    evidence.fit.hidden = static_cast<float>(random.uniform(0.0, 0.8));
+    evidence.fit.seen_through = static_cast<float>(random.uniform(0.0, 0.5));
+    evidence.fit.unknown = static_cast<float>(random.uniform(0.0, 0.5));
+    evidence.fit.continued = static_cast<float>(random.uniform(0.0, 1.0));
+    evidence.fit.likeness = static_cast<float>(random.uniform(-0.2, 1.0));
+    examples.push_back({score_terms(evidence), random.uniform() < score(truth, evidence)});
+  }
+  return examples;
+}
+
+TEST(Score, TheModelThatMadeTheExamplesComesBack) {
+  ScoreModel truth;
+  truth.weights = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F};
+  const ScoreModel fitted = fit_score_model(drawn_from(truth, 20000), ScoreModel{});
+  for (std::size_t i = 0; i < kScoreTerms; ++i) EXPECT_NEAR(fitted.weights[i], truth.weights[i], 0.35F) << i;
+}
+
+TEST(Score, WithoutExamplesThePriorStays) {
+  const ScoreModel prior{{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F}};
+  EXPECT_EQ(fit_score_model({}, prior).weights, prior.weights);
+}
+
+TEST(Score, SeparableExamplesGiveFiniteWeights) {
+  std::vector<ScoreExample> examples;
+  for (int i = 0; i < 50; ++i) examples.push_back({score_terms(with_mass(i < 25 ? 0.01F : 1.0F)), i >= 25});
+  for (const float weight : fit_score_model(examples, ScoreModel{}).weights) EXPECT_LT(std::abs(weight), 20.0F);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,105 @@
+#include "detector/evidence/view_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/detection.hpp"
+#include "pipeline/random.hpp"
+#include "toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr float kDistance = 0.7F;
+const Eigen::Vector3f kCentre(0.0F, 0.0F, kDistance);
+
+/// The first toy view (stripes on a relief) as a forest remembers it.
+TrainedView remembered() {
+  const TrainingView view = toy::training_views().front();
+  const cv::Rect box = cv::boundingRect(view.mask);
+  const double metres = view.frame.camera.metres_per_px(kDistance);
+  const auto side = [&](int px, double centre) { return static_cast<float>((px - 0.5 - centre) * metres); };
+  TrainedView out;
+  out.box = {side(box.x, 159.5), side(box.y, 119.5), side(box.br().x, 159.5), side(box.br().y, 119.5)};
+  out.appearance = remember_appearance(view.frame, view.mask, box, kDistance);
+  return out;
+}
+
+ViewFit fit(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
+  cv::Mat lab;
+  cv::cvtColor(frame.colour, lab, cv::COLOR_BGR2Lab);
+  return fit_view(remembered(), centre, {frame, lab, 1.0F});
+}
+
+RgbdFrame tile_frame() {
+  return toy::training_views().front().frame;
+}
+
+TEST(ViewFit, TheViewItselfFitsWholly) {
+  const TrainingView view = toy::training_views().front();
+  const ViewFit result = fit(view.frame);
+  EXPECT_GT(result.visible, 0.99F);
+  EXPECT_GT(result.likeness, 0.8F);
+  EXPECT_EQ(result.continued, 0.0F);
+  EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(cv::boundingRect(view.mask))), 0.9F);
+}
+
+TEST(ViewFit, ADepthErrorOfAVoteIsForgivenAndLargerOnesAreNot) {
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.02F}).visible, 0.9F);
+  EXPECT_LT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).visible, 0.1F);
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).seen_through, 0.9F);
+  EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.2F}).hidden, 0.9F);
+}
+
+TEST(ViewFit, AnOccluderHidesItsPartOfTheBox) {
+  RgbdFrame frame = tile_frame();
+  const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
+  frame.depth(cv::Rect(whole.x + whole.width / 2, 0, 320 - whole.x - whole.width / 2, 240)).setTo(0.5F);
+  const ViewFit result = fit(frame);
+  EXPECT_NEAR(result.hidden, 0.5F, 0.06F);
+  EXPECT_NEAR(result.visible, 0.5F, 0.06F);
+  EXPECT_EQ(result.seen_through, 0.0F);
+  EXPECT_NEAR(result.visible_box_px.x, static_cast<float>(whole.x), 3.0F);
+  EXPECT_NEAR(result.visible_box_px.width, 0.5F * static_cast<float>(whole.width), 4.0F);
+  EXPECT_NEAR(result.visible_box_px.height, static_cast<float>(whole.height), 3.0F);
+}
+
+TEST(ViewFit, MissingDepthIsUnknownAndNeitherForNorAgainst) {
+  RgbdFrame frame = tile_frame();
+  frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  const ViewFit result = fit(frame);
+  EXPECT_EQ(result.unknown, 1.0F);
+  EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.continued, 0.0F);
+}
+
+TEST(ViewFit, AWallGoesOnBesideTheOutline) {
+  RgbdFrame frame = tile_frame();
+  frame.depth.setTo(kDistance);
+  EXPECT_GT(fit(frame).continued, 0.5F);
+}
+
+TEST(ViewFit, LikenessIgnoresLightButNotPattern) {
+  RgbdFrame dim = tile_frame();
+  dim.colour.convertTo(dim.colour, -1, 0.5, 20.0);
+  EXPECT_GT(fit(dim).likeness, 0.75F);
+  RgbdFrame noise = tile_frame();
+  Random random(3);
+  for (int y = 0; y < noise.colour.rows; ++y) {
+    for (int x = 0; x < noise.colour.cols; ++x) {
+      const auto value = static_cast<std::uint8_t>(random.below(256));
+      noise.colour.at<cv::Vec3b>(y, x) = {value, value, value};
+    }
+  }
+  EXPECT_LT(fit(noise).likeness, 0.3F);
+}
+
+TEST(ViewFit, OutsideTheFrameNothingIsCompared) {
+  const ViewFit result = fit(tile_frame(), {2.0F, 0.0F, kDistance});
+  EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.unknown, 0.0F);
+  EXPECT_TRUE(result.visible_box_px.empty());
+}
+
+}  // namespace
+}  // namespace houghstream

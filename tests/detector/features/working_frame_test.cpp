@@ -1,0 +1,86 @@
+#include "detector/features/working_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace houghstream {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+RgbdFrame flat_frame(int width, int height, float depth) {
+  RgbdFrame frame;
+  frame.camera = {width, height, 200.0, 200.0, (width - 1) / 2.0, (height - 1) / 2.0};
+  frame.colour = cv::Mat(height, width, CV_8UC3, cv::Scalar(10, 20, 30));
+  frame.depth = cv::Mat(height, width, CV_32FC1, cv::Scalar(depth));
+  return frame;
+}
+
+TEST(WorkingFrame, TheNearestSurfaceOfABlockCountsAndNeverAMixture) {
+  RgbdFrame frame = flat_frame(8, 8, 2.0F);
+  frame.depth.at<float>(2, 2) = 1.0F;    // one of four pixels
+  frame.depth.at<float>(2, 5) = 1.0F;    // three of four, one far
+  frame.depth.at<float>(3, 4) = 1.002F;  // the same surface: averaged with the first
+  frame.depth.at<float>(3, 5) = kNone;
+  const WorkingFrame working = make_working_frame(frame, 0.5F, {});
+  EXPECT_FLOAT_EQ(working.filled_depth.at<float>(1, 1), 1.0F);
+  EXPECT_FLOAT_EQ(working.filled_depth.at<float>(1, 2), 1.001F);
+  EXPECT_FLOAT_EQ(working.filled_depth.at<float>(0, 0), 2.0F);
+}
+
+TEST(WorkingFrame, ASinglePixelOfDepthIsEnoughForABlock) {
+  RgbdFrame frame = flat_frame(8, 8, kNone);
+  frame.depth.at<float>(5, 5) = 0.9F;
+  FeatureSettings settings;
+  settings.fill_distance_px = 0.0F;
+  const WorkingFrame working = make_working_frame(frame, 0.5F, settings);
+  EXPECT_FLOAT_EQ(working.filled_depth.at<float>(2, 2), 0.9F);
+  EXPECT_TRUE(std::isnan(working.filled_depth.at<float>(2, 1)));
+}
+
+TEST(WorkingFrame, HolesBorrowTheNearestDepthUpToTheLimit) {
+  RgbdFrame frame = flat_frame(60, 10, kNone);
+  frame.depth.colRange(0, 5).setTo(1.0F);
+  frame.depth.colRange(55, 60).setTo(2.0F);
+  FeatureSettings settings;
+  settings.fill_distance_px = 10.0F;
+  const cv::Mat depth = make_working_frame(frame, 1.0F, settings).filled_depth;
+  EXPECT_FLOAT_EQ(depth.at<float>(5, 5), 1.0F);
+  EXPECT_FLOAT_EQ(depth.at<float>(5, 14), 1.0F);
+  EXPECT_TRUE(std::isnan(depth.at<float>(5, 16)));
+  EXPECT_TRUE(std::isnan(depth.at<float>(5, 43)));
+  EXPECT_FLOAT_EQ(depth.at<float>(5, 45), 2.0F);
+}
+
+TEST(WorkingFrame, TheFrameItselfIsNotTouchedInFullSize) {
+  RgbdFrame frame = flat_frame(10, 10, 1.0F);
+  frame.depth.at<float>(4, 4) = kNone;
+  EXPECT_FLOAT_EQ(make_working_frame(frame, 1.0F, {}).filled_depth.at<float>(4, 4), 1.0F);
+  EXPECT_TRUE(std::isnan(frame.depth.at<float>(4, 4)));
+}
+
+TEST(WorkingFrame, WithoutAnyDepthNothingIsInvented) {
+  const cv::Mat depth = make_working_frame(flat_frame(20, 10, kNone), 0.5F, {}).filled_depth;
+  EXPECT_EQ(cv::countNonZero(depth == depth), 0);
+}
+
+TEST(WorkingFrame, TheCameraSeesThePointWhereTheResizedImageShowsIt) {
+  const WorkingFrame working = make_working_frame(flat_frame(80, 60, 1.0F), 0.5F, {});
+  EXPECT_EQ(working.colour.size(), cv::Size(40, 30));
+  EXPECT_EQ(working.filled_depth.size(), cv::Size(40, 30));
+  EXPECT_EQ(working.camera, (Camera{40, 30, 100.0, 100.0, 19.5, 14.5}));
+}
+
+TEST(WorkingFrame, LevelsShareTheDistancesWithoutGapOrOverlap) {
+  const auto levels = feature_levels({});
+  EXPECT_FLOAT_EQ(levels[1].scale, 2.0F * levels[0].scale);
+  for (const float depth : {0.3F, 1.2F, 1.2001F, 2.8F}) EXPECT_NE(levels[0].holds(depth), levels[1].holds(depth));
+  for (const float depth : {0.0F, 2.9F, kNone}) {
+    EXPECT_FALSE(levels[0].holds(depth) || levels[1].holds(depth)) << depth;
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

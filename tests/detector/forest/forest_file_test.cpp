@@ -1,0 +1,108 @@
+#include "detector/forest/forest_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "detector/training/forest_trainer.hpp"
+#include "pipeline/checks.hpp"
+#include "toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+class ForestFile : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    TrainingSettings settings = toy::quick_training();
+    settings.trees = 2;
+    settings.max_depth = 8;
+    forest_ = train_forest(toy::training_views(), {}, {}, settings, [](const auto&) {});
+  }
+  void SetUp() override {
+    file_ = std::filesystem::temp_directory_path() / "houghstream_forest_file_test.forest";
+    save_forest(forest_, file_);
+    std::ostringstream bytes;
+    bytes << std::ifstream(file_, std::ios::binary).rdbuf();
+    bytes_ = bytes.str();
+  }
+  void TearDown() override { std::filesystem::remove(file_); }
+
+  void rewrite(const std::string& bytes) const { std::ofstream(file_, std::ios::binary) << bytes; }
+
+  /// The one line that comes out when the file holds these bytes.
+  std::string error_for(const std::string& bytes) const {
+    rewrite(bytes);
+    try {
+      load_forest(file_);
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos) << error.what();
+      return error.what();
+    }
+    return "no error";
+  }
+
+  static inline Forest forest_;
+  std::filesystem::path file_;
+  std::string bytes_;
+};
+
+TEST_F(ForestFile, ComesBackWhole) {
+  const Forest loaded = load_forest(file_);
+  EXPECT_EQ(loaded.nodes.size(), forest_.nodes.size());
+  EXPECT_EQ(loaded.leaves, forest_.leaves);
+  EXPECT_EQ(loaded.classes[1].name, "rings");
+  EXPECT_EQ(loaded.patch.radius, forest_.patch.radius);
+  save_forest(loaded, file_);
+  std::ostringstream again;
+  again << std::ifstream(file_, std::ios::binary).rdbuf();
+  EXPECT_TRUE(again.str() == bytes_);
+}
+
+TEST_F(ForestFile, MissingFileIsRefused) {
+  EXPECT_THROW(load_forest("/nonexistent/a.forest"), InputError);
+}
+
+TEST_F(ForestFile, OtherFilesAreRefused) {
+  EXPECT_NE(error_for("PNG and so on").find("not a forest file"), std::string::npos);
+  EXPECT_NE(error_for("").find("not a forest file"), std::string::npos);
+}
+
+TEST_F(ForestFile, AnotherVersionIsRefused) {
+  std::string other = bytes_;
+  other[other.find('\n') - 1] = '9';
+  EXPECT_NE(error_for(other).find("version '9'"), std::string::npos);
+}
+
+TEST_F(ForestFile, EveryTruncationIsRefused) {
+  for (const std::size_t size : {bytes_.size() - 1, bytes_.size() / 2, std::size_t{40}, std::size_t{25}}) {
+    EXPECT_NE(error_for(bytes_.substr(0, size)).find("expected"), std::string::npos) << size << " bytes";
+  }
+}
+
+TEST_F(ForestFile, ADamagedByteIsNoticed) {
+  std::string damaged = bytes_;
+  damaged[damaged.size() / 2] ^= 1;
+  EXPECT_NE(error_for(damaged).find("checksum"), std::string::npos);
+}
+
+TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
+  Forest bad = forest_;
+  bad.nodes[0].right = 1 << 30;
+  save_forest(bad, file_);
+  EXPECT_THROW(load_forest(file_), InputError);
+  bad = forest_;
+  bad.leaf_classes[0].first_vote = 1U << 31U;
+  save_forest(bad, file_);
+  EXPECT_THROW(load_forest(file_), InputError);
+}
+
+TEST_F(ForestFile, AGoodFileSurvivesAFailedWrite) {
+  EXPECT_THROW(save_forest(forest_, "/nonexistent/folder/a.forest"), InputError);
+  EXPECT_NO_THROW(load_forest(file_));
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,62 @@
+#include "detector/forest/forest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+TEST(RayRotation, TurnsTheOpticalAxisOntoTheRayAndNothingElse) {
+  for (const Eigen::Vector3f& ray :
+       {Eigen::Vector3f(0, 0, 2), Eigen::Vector3f(0.3F, -0.2F, 1), Eigen::Vector3f(-1, 1, 1)}) {
+    const Eigen::Matrix3f rotation = ray_rotation(ray);
+    EXPECT_LT((rotation * Eigen::Vector3f::UnitZ() - ray.normalized()).norm(), 1e-6F);
+    EXPECT_LT((rotation.transpose() * rotation - Eigen::Matrix3f::Identity()).norm(), 1e-5F);
+    EXPECT_NEAR(rotation.determinant(), 1.0F, 1e-5F);
+    const Eigen::Quaternionf smallest = Eigen::Quaternionf::FromTwoVectors(Eigen::Vector3f::UnitZ(), ray);
+    EXPECT_LT((rotation - smallest.toRotationMatrix()).norm(), 1e-5F);
+  }
+}
+
+TEST(PixelTest, DepthNormalisationKeepsTheTestOnTheObject) {
+  const PatchSettings patch{0.002F, 10};
+  // 10 steps of 2 mm at 1 m with a focal length of 250 px are 5 px, at 2 m 2.5 px.
+  EXPECT_EQ(patch_scale(patch, 250.0, 1.0F), 128);
+  EXPECT_EQ(patch_scale(patch, 250.0, 2.0F), 64);
+  // A patch never reaches beyond the border of a FeatureImage, however near it is.
+  EXPECT_LE(patch_scale(patch, 250.0, 0.01F) * patch.radius, FeatureImage::kPad * 256 + 128);
+}
+
+TEST(PixelTest, ComparesOnePlaneAtTwoPlacesAndWrapsDepth) {
+  FeatureImage image(20, 20);
+  image.at(8, 10)[3] = 200;
+  image.at(12, 10)[3] = 30;
+  image.at(8, 10)[32] = 250;
+  image.at(12, 10)[32] = 4;
+  PixelTest test{-2, 0, 2, 0, 3, 0, 0};
+  EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), 170);
+  test.plane = 32;
+  test.kind = PixelTest::kWrapping;
+  EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), -10);  // 250 - (256 + 4)
+}
+
+TEST(PixelTest, AloneItComparesOnePixelOnly) {
+  FeatureImage image(20, 20);
+  image.at(8, 10)[3] = 200;
+  image.at(12, 10)[3] = 30;
+  const PixelTest test{-2, 0, 2, 0, 3, PixelTest::kAlone, 0};
+  EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), 200);
+}
+
+TEST(FindLeaf, WalksRightFromTheThresholdOn) {
+  Forest forest;
+  forest.roots = {0};
+  forest.nodes = {{PixelTest{0, 0, 1, 0, 0, 0, 5}, -1, -2}};
+  FeatureImage image(4, 4);
+  image.at(1, 1)[0] = 5;
+  EXPECT_EQ(find_leaf(forest, 0, image.at(1, 1), 256, image.row_stride()), 1);
+  image.at(1, 1)[0] = 4;
+  EXPECT_EQ(find_leaf(forest, 0, image.at(1, 1), 256, image.row_stride()), 0);
+}
+
+}  // namespace
+}  // namespace houghstream

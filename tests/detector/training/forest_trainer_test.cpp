@@ -1,0 +1,79 @@
+#include "detector/training/forest_trainer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "detector/forest/forest_file.hpp"
+#include "pipeline/checks.hpp"
+#include "toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+const auto kQuiet = [](const std::string&) {};
+
+std::string file_bytes(const Forest& forest, const std::string& name) {
+  const auto file = std::filesystem::temp_directory_path() / name;
+  save_forest(forest, file);
+  std::ostringstream bytes;
+  bytes << std::ifstream(file, std::ios::binary).rdbuf();
+  std::filesystem::remove(file);
+  return bytes.str();
+}
+
+std::string trained_bytes(int threads, std::uint64_t seed) {
+  TrainingSettings settings = toy::quick_training();
+  settings.threads = threads;
+  settings.seed = seed;
+  return file_bytes(train_forest(toy::training_views(), {}, {}, settings, kQuiet), "houghstream_forest_trainer_test");
+}
+
+TEST(ForestTrainer, SameSeedGivesTheSameFileForAnyNumberOfThreads) {
+  const std::string serial = trained_bytes(1, 1);
+  EXPECT_TRUE(serial == trained_bytes(2, 1));
+  EXPECT_TRUE(serial == trained_bytes(4, 1));
+  EXPECT_FALSE(serial == trained_bytes(2, 2));
+}
+
+TEST(ForestTrainer, LeavesHoldProbabilitiesAndSharesOfVotes) {
+  const Forest forest = train_forest(toy::training_views(), {}, {}, toy::quick_training(), kQuiet);
+  EXPECT_EQ(forest.roots.size(), 5U);
+  ASSERT_EQ(forest.classes.size(), 2U);
+  EXPECT_NEAR(forest.classes[0].radius, 0.085F, 0.015F);  // half the diagonal of a 0.12 m tile
+  for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
+    float sum = 0.0F;
+    for (std::uint32_t e = forest.leaves[l - 1]; e < forest.leaves[l]; ++e) sum += forest.leaf_classes[e].probability;
+    EXPECT_LE(sum, 1.0001F);
+  }
+  for (const LeafClass& entry : forest.leaf_classes) {
+    float share = 0.0F;
+    for (int v = 0; v < entry.vote_count; ++v)
+      share += forest.votes[entry.first_vote + static_cast<std::uint32_t>(v)].weight;
+    EXPECT_GT(share, 0.0F);
+    EXPECT_LE(share, 1.0001F);
+  }
+}
+
+TEST(ForestTrainer, DataThatCannotTeachIsRefused) {
+  std::vector<TrainingView> views = toy::training_views();
+  std::vector<TrainingView> no_background(views.begin(), views.begin() + 24);
+  EXPECT_THROW(train_forest(no_background, {}, {}, toy::quick_training(), kQuiet), InputError);
+  std::vector<TrainingView> no_object(views.begin() + 24, views.end());
+  EXPECT_THROW(train_forest(no_object, {}, {}, toy::quick_training(), kQuiet), InputError);
+  views[3].mask.setTo(0);
+  EXPECT_THROW(train_forest(views, {}, {}, toy::quick_training(), kQuiet), InputError);
+}
+
+TEST(ForestTrainer, AnObjectWithoutDepthIsRefused) {
+  std::vector<TrainingView> views = toy::training_views();
+  for (TrainingView& view : views) view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_THROW(train_forest(views, {}, {}, toy::quick_training(), kQuiet), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

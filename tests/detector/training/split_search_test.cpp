@@ -1,0 +1,105 @@
+#include "detector/training/split_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "planted_set.hpp"
+
+namespace houghstream {
+namespace {
+
+std::vector<std::uint32_t> every_sample(const TrainingSet& set) {
+  std::vector<std::uint32_t> samples(set.samples.size());
+  for (std::uint32_t i = 0; i < samples.size(); ++i) samples[i] = i;
+  return samples;
+}
+
+bool goes_right(const TrainingSet& set, const PixelTest& test, const TrainingSample& sample) {
+  const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
+  return test_value(test, picture.at(sample.x, sample.y), sample.scale, picture.row_stride()) >= test.threshold;
+}
+
+std::optional<PixelTest> search(const TrainingSet& set, const std::vector<std::uint32_t>& samples, Objective objective,
+                                std::uint64_t seed) {
+  const PatchSettings patch;
+  TrainingSettings settings;
+  settings.tests_per_node = 800;
+  Random random(seed);
+  return SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(samples, objective, random);
+}
+
+TEST(SplitSearch, FindsThePlaneThatSeparatesTheLabels) {
+  const TrainingSet set = toy::planted_set();
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto test = search(set, every_sample(set), Objective::kClass, seed);
+    ASSERT_TRUE(test);
+    EXPECT_EQ(test->plane, toy::kClassPlane);
+    const bool object_side = goes_right(set, *test, set.samples[50]);
+    for (const TrainingSample& sample : set.samples) {
+      ASSERT_EQ(goes_right(set, *test, sample), (sample.label != 0) == object_side);
+    }
+  }
+}
+
+TEST(SplitSearch, FindsThePlaneThatSeparatesTheOffsets) {
+  const TrainingSet set = toy::planted_set();
+  const auto test = search(set, every_sample(set), Objective::kOffset, 1);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->plane, toy::kOffsetPlane);
+}
+
+TEST(SplitSearch, WhereAllValuesAreEqualThereIsNoTest) {
+  TrainingSet set = toy::planted_set();
+  for (FeatureImage& picture : set.pictures) picture = FeatureImage(32, 32);
+  EXPECT_FALSE(search(set, every_sample(set), Objective::kClass, 1));
+  EXPECT_FALSE(search(set, every_sample(set), Objective::kOffset, 1));
+}
+
+TEST(SplitSearch, BothSidesKeepEnoughSamples) {
+  const TrainingSet set = toy::planted_set();
+  std::vector<std::uint32_t> few;
+  for (std::uint32_t i = 0; i < 9; ++i) few.push_back(i);     // background
+  for (std::uint32_t i = 50; i < 60; ++i) few.push_back(i);   // object
+  EXPECT_FALSE(search(set, few, Objective::kClass, 1));       // 19 samples: no two sides of 10
+  for (std::uint32_t i = 60; i < 100; ++i) few.push_back(i);  // separating the labels would leave 9
+  const auto test = search(set, few, Objective::kClass, 1);
+  ASSERT_TRUE(test);
+  const auto right =
+      std::count_if(few.begin(), few.end(), [&](std::uint32_t s) { return goes_right(set, *test, set.samples[s]); });
+  EXPECT_GE(right, SplitSearch::kMinSide);
+  EXPECT_LE(right, static_cast<std::ptrdiff_t>(few.size()) - SplitSearch::kMinSide);
+}
+
+TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
+  const TrainingSet set = toy::planted_set();
+  TrainingSettings settings;
+  settings.tests_per_node = 800;
+  settings.alone_share = 1.0;
+  const PatchSettings patch;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Random random(seed);
+    const auto wary =
+        SplitSearch(set, patch, settings, {1.0F, 1.0F}, false).best_test(every_sample(set), Objective::kClass, random);
+    ASSERT_TRUE(wary);
+    EXPECT_EQ(wary->plane, toy::kClassPlane);
+    EXPECT_EQ(wary->kind, PixelTest::kDifference);
+    const auto trusting =
+        SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
+    ASSERT_TRUE(trusting);
+    EXPECT_EQ(trusting->kind, PixelTest::kAlone);
+  }
+}
+
+TEST(SplitSearch, TestsStayInsideThePatchAndWrapDepthOnly) {
+  TrainingSet set = toy::planted_set();
+  for (const std::uint64_t seed : {5, 6, 7, 8}) {
+    const auto test = search(set, every_sample(set), Objective::kOffset, seed);
+    ASSERT_TRUE(test);
+    for (const int step : {test->dx1, test->dy1, test->dx2, test->dy2}) EXPECT_LE(std::abs(step), 10);
+    EXPECT_NE(test->kind, PixelTest::kWrapping);
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

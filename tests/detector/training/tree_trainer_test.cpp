@@ -1,0 +1,111 @@
+#include "detector/training/tree_trainer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "planted_set.hpp"
+
+namespace houghstream {
+namespace {
+
+TrainingSettings quick() {
+  TrainingSettings settings;
+  settings.tests_per_node = 600;
+  return settings;
+}
+
+bool same_tree(const Forest& a, const Forest& b) {
+  if (a.nodes.size() != b.nodes.size() || a.votes.size() != b.votes.size() || a.leaves != b.leaves) return false;
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    if (std::memcmp(&a.nodes[i], &b.nodes[i], sizeof(TreeNode)) != 0) return false;
+  }
+  for (std::size_t i = 0; i < a.votes.size(); ++i) {
+    if (a.votes[i].offset != b.votes[i].offset || a.votes[i].weight != b.votes[i].weight) return false;
+  }
+  return true;
+}
+
+TEST(TreeTrainer, TheBagHoldsItsShareOfThePictures) {
+  TrainingSettings settings;
+  settings.in_bag = 0.75;
+  int inside = 0;
+  int alike = 0;
+  int alike_next_tree = 0;
+  constexpr int kPictures = 4000;
+  for (int picture = 0; picture < kPictures; ++picture) {
+    const bool in = in_bag(settings, 3, picture);
+    inside += in ? 1 : 0;
+    alike += in == in_bag(settings, 3, picture) ? 1 : 0;
+    alike_next_tree += in == in_bag(settings, 4, picture) ? 1 : 0;
+  }
+  EXPECT_NEAR(inside, 0.75 * kPictures, 0.03 * kPictures);
+  EXPECT_EQ(alike, kPictures);
+  EXPECT_NEAR(alike_next_tree, (0.75 * 0.75 + 0.25 * 0.25) * kPictures, 0.04 * kPictures);  // independent
+}
+
+TEST(TreeTrainer, ATreeTellsHeldOutPicturesApart) {
+  const TrainingSet set = toy::planted_set();
+  const TrainingSettings settings = quick();
+  const Forest tree = grow_tree(set, {}, settings, 0);
+  int held_out = 0;
+  for (const TrainingSample& sample : set.samples) {
+    if (in_bag(settings, 0, sample.picture)) continue;
+    ++held_out;
+    const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
+    const auto leaf = static_cast<std::size_t>(
+        find_leaf(tree, 0, picture.at(sample.x, sample.y), sample.scale, picture.row_stride()));
+    const bool is_object = tree.leaves[leaf] < tree.leaves[leaf + 1];
+    ASSERT_EQ(is_object, sample.label != 0);
+    if (!is_object) continue;
+    const LeafClass& entry = tree.leaf_classes[tree.leaves[leaf]];
+    EXPECT_FLOAT_EQ(entry.probability, 1.0F);
+    ASSERT_EQ(entry.vote_count, 1);
+    EXPECT_NEAR((tree.votes[entry.first_vote].offset - sample.offset).norm(), 0.0F, 1e-5F);
+  }
+  EXPECT_GT(held_out, 0);
+}
+
+TEST(TreeTrainer, EveryChildIsReachedOnce) {
+  const Forest tree = grow_tree(toy::planted_set(), {}, quick(), 1);
+  ASSERT_EQ(tree.roots, std::vector<std::int32_t>{0});
+  EXPECT_EQ(tree.leaves.size(), tree.nodes.size() + 2);  // a leaf more than nodes, and the end
+  std::vector<int> seen_nodes(tree.nodes.size(), 0);
+  std::vector<int> seen_leaves(tree.leaves.size() - 1, 0);
+  seen_nodes[0] = 1;
+  for (const TreeNode& node : tree.nodes) {
+    for (const std::int32_t child : {node.left, node.right}) {
+      ++(child >= 0 ? seen_nodes.at(static_cast<std::size_t>(child))
+                    : seen_leaves.at(static_cast<std::size_t>(-1 - child)));
+    }
+  }
+  EXPECT_EQ(seen_nodes, std::vector<int>(seen_nodes.size(), 1));
+  EXPECT_EQ(seen_leaves, std::vector<int>(seen_leaves.size(), 1));
+}
+
+TEST(TreeTrainer, SeedAndNumberAloneDecide) {
+  const TrainingSet set = toy::planted_set();
+  TrainingSettings settings = quick();
+  const Forest tree = grow_tree(set, {}, settings, 2);
+  EXPECT_TRUE(same_tree(tree, grow_tree(set, {}, settings, 2)));
+  EXPECT_FALSE(same_tree(tree, grow_tree(set, {}, settings, 3)));
+  settings.threads = 5;
+  EXPECT_TRUE(same_tree(tree, grow_tree(set, {}, settings, 2)));
+  settings.seed = 99;
+  EXPECT_FALSE(same_tree(tree, grow_tree(set, {}, settings, 2)));
+}
+
+TEST(TreeTrainer, TheBackgroundWeighsAsMuchAsAllObjects) {
+  TrainingSet set = toy::planted_set();
+  TrainingSettings settings = quick();
+  settings.max_depth = 0;
+  settings.in_bag = 1.0;
+  for (std::size_t i = 0; i < 300; ++i) set.samples.push_back(set.samples[0]);  // more background
+  const Forest leaf = grow_tree(set, {}, settings, 0);
+  EXPECT_EQ(leaf.roots, std::vector<std::int32_t>{-1});
+  ASSERT_EQ(leaf.leaf_classes.size(), 1U);
+  EXPECT_NEAR(leaf.leaf_classes[0].probability, 0.5F, 1e-4F);
+}
+
+}  // namespace
+}  // namespace houghstream
