@@ -8,6 +8,7 @@
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/traversal.hpp"
 #include "detector/hypotheses.hpp"
+#include "detector/scale_space_search.hpp"
 #include "detector/voting.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -27,7 +28,7 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
   const auto levels = feature_levels(forest.features);
   std::vector<WorkingFrame> working;
   for (const FeatureLevel& level : levels) {  // Section 5.1.1
-    working.push_back(make_working_frame(frame, level.scale, forest.features));
+    working.push_back(make_working_frame(frame, level, forest.features));
   }
   clock.mark("detect.resize");
   std::vector<FeatureImage> features;
@@ -41,7 +42,8 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
   for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
     add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
   }
-  seen.leaves.leaves = assign_leaves(forest, features, seen.grid, settings.threads);  // Section 5.1.2
+  seen.leaves.leaves = settings.readable ? assign_leaves_readably(forest, features, seen.grid)  // Section 5.1.2
+                                         : assign_leaves(forest, features, seen.grid, settings.threads);
   seen.leaves.probabilities = class_probabilities(forest, seen.leaves.leaves, settings.threads);
   clock.mark("detect.forest");
   return seen;
@@ -79,14 +81,18 @@ Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hy
                        const SeenPatches& seen, const RgbdFrame& frame, int max_rotations,
                        const std::vector<std::uint32_t>& forgotten) {
   Candidate candidate;
-  candidate.evidence = {hypothesis.mass / object.expected_mass,
-                        best_fit(forest, hypothesis, {frame, seen.lab, forest.features.image_scale}, forgotten)};
   Detection& detection = candidate.detection;
+  candidate.evidence.mass_share = hypothesis.mass / object.expected_mass;
+  detection.box_px = backprojected_box(forest, hypothesis, seen.grid, frame.camera);
+  detection.score = vote_score(candidate.evidence.mass_share);
+  if (forest.scoring == Scoring::kEvidence) {
+    ViewFit& fit = candidate.evidence.fit;
+    fit = best_fit(forest, hypothesis, {frame, seen.lab, forest.features.image_scale}, forgotten);
+    detection.score = score(object.score_model, candidate.evidence);
+    detection.box_px = visible_box(detection.box_px, fit.visible_box_px, frame.camera);
+  }
   detection.class_id = object.class_id;
   detection.class_name = object.name;
-  detection.score = score(object.score_model, candidate.evidence);
-  detection.box_px = visible_box(backprojected_box(forest, hypothesis, seen.grid, frame.camera),
-                                 candidate.evidence.fit.visible_box_px, frame.camera);
   detection.centre_camera = hypothesis.centre_camera;
   detection.vote_weight = hypothesis.weight;
   detection.vote_count = hypothesis.vote_count;
@@ -116,6 +122,9 @@ std::vector<Candidate> class_candidates(const Forest& forest, int class_index, c
 
 std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
                                        StageClock& clock, const std::vector<std::uint32_t>& forgotten) {
+  if (forest.features.handling == ScaleHandling::kScaleSpace) {
+    return search_scale_space(forest, frame, settings, clock);
+  }
   const SeenPatches seen = classify_patches(forest, frame, settings, clock);
   std::vector<std::vector<Candidate>> by_class(forest.classes.size());
   parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {  // Section 2

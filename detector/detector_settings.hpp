@@ -1,12 +1,32 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace houghstream {
 
+/// How one object is known at every distance.
+enum class ScaleHandling : std::uint32_t {
+  kDepthNormalised = 0,  ///< tests and offsets are divided by the measured depth (paper, Section 5.1.2)
+  /// The image is searched in several sizes (Gall et al. 2011). Nothing is known of depth: lengths on the object count
+  /// as if it stood 1 m away, metres = working pixels / (image_scale * focal length), and centres have no depth.
+  kScaleSpace = 1,
+};
+
+/// What a detection's score is.
+enum class Scoring : std::uint32_t {
+  kEvidence = 0,  ///< a calibrated probability from votes and from how remembered views fit, see score.hpp
+  kVotes = 1,     ///< vote mass over that of a wholly visible object, at most 1 (the paper's confidence)
+};
+
+constexpr int kMaxScales = 5;
+
 /// How a frame becomes feature planes. Stored in the forest file: training and detection must agree.
 struct FeatureSettings {
-  float image_scale = 0.5F;        ///< working size over frame size for near surfaces (paper, Section 5.1.1)
+  std::uint32_t families = 15;  ///< see FeatureFamily; default: the paper's final features (Section 4, end)
+  ScaleHandling handling = ScaleHandling::kDepthNormalised;
+  std::array<float, kMaxScales> scales{};  ///< of a scale space: sizes of the image searched, 0 = unused
+  float image_scale = 0.5F;                ///< working size over frame size for near surfaces (paper, Section 5.1.1)
   float far_distance = 1.2F;       ///< surfaces beyond are looked at in twice that size, metres: see feature_levels
   float max_distance = 2.8F;       ///< surfaces beyond belong to no object that was taught, metres
   int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
@@ -16,8 +36,10 @@ struct FeatureSettings {
 
 /// How patches are tested. Stored in the forest file.
 struct PatchSettings {
-  float unit = 0.002F;  ///< metres per step of a test offset on the object (depth normalisation, Section 5.1.2)
-  int radius = 10;      ///< test offsets reach from -radius to +radius steps
+  /// Metres per step of a test offset on the object (depth normalisation, Section 5.1.2); in a scale space, working
+  /// pixels per step.
+  float unit = 0.002F;
+  int radius = 10;  ///< test offsets reach from -radius to +radius steps
 };
 
 /// How a forest is trained.
@@ -25,7 +47,7 @@ struct TrainingSettings {
   int trees = 15;
   int max_depth = 25;            ///< levels
   int min_samples = 20;          ///< a node with fewer becomes a leaf
-  int tests_per_node = 400;      ///< random pixel tests tried
+  int tests_per_node = 2000;     ///< random pixel tests tried
   double alone_share = 0.3;      ///< of the tests look at one pixel alone, see PixelTest::kAlone
   int node_samples = 1500;       ///< at most so many samples choose a node's test; all are then split by it
   int patches_per_view = 250;    ///< per training view, and per background frame
@@ -39,7 +61,8 @@ struct TrainingSettings {
   int max_leaf_votes = 12;       ///< offsets kept per leaf and class after merging
   int max_leaf_views = 12;       ///< remembered training views per leaf and class
   float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres
-  int validation_frames = 120;   ///< composed pictures on which the score learns what it is worth
+  Scoring scoring = Scoring::kEvidence;
+  int validation_frames = 120;  ///< composed pictures on which the score learns what it is worth
   std::uint64_t seed = 1;
   int threads = 2;
 };
@@ -47,6 +70,7 @@ struct TrainingSettings {
 /// How a frame is searched.
 struct DetectionSettings {
   int threads = 2;
+  bool readable = false;           ///< patch by patch, tree by tree: the same leaves, but slowly
   int stride = 2;                  ///< patch offset, working pixels (paper, Section 5.1.3)
   float threshold = 0.5F;          ///< smallest score that is reported
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at

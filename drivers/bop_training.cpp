@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "drivers/bop_dataset.hpp"
 #include "drivers/object_pixels.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/parallel.hpp"
 
 namespace houghstream {
 namespace {
@@ -50,37 +52,46 @@ TrainingView object_view(const BopScene& scene, std::size_t index, const std::ma
   return view;
 }
 
+/// One image as a view; nothing where it shows too little of its object.
+std::optional<TrainingView> read_view(const BopScene& scene, std::size_t index,
+                                      const std::map<int, std::string>& names) {
+  const std::string source = fmt::format("{} image {}", scene.folder().string(), scene.images()[index].image_id);
+  const std::size_t objects = scene.images()[index].objects.size();
+  require(objects <= 1, "{}: {} objects, expected one object per training image", source, objects);
+  if (objects == 0) {
+    return TrainingView{scene.read_frame(index), {}, 0, "", Eigen::Isometry3d::Identity(), source};
+  }
+  TrainingView view = object_view(scene, index, names);
+  if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
+    spdlog::warn("{}: empty mask, or no depth on the object; view left out", view.source);
+    return std::nullopt;
+  }
+  crop_around_mask(view);
+  return view;
+}
+
 /// Returns the number of views that were left out.
-int append_views(const BopScene& scene, const std::map<int, std::string>& names, std::vector<TrainingView>& views) {
+int append_views(const BopScene& scene, const std::map<int, std::string>& names, int threads,
+                 std::vector<TrainingView>& views) {
+  std::vector<std::optional<TrainingView>> read(scene.images().size());
+  parallel_for(threads, static_cast<int>(read.size()), [&](int i) {
+    read[static_cast<std::size_t>(i)] = read_view(scene, static_cast<std::size_t>(i), names);
+  });
   int skipped = 0;
-  for (std::size_t i = 0; i < scene.images().size(); ++i) {
-    const std::size_t objects = scene.images()[i].objects.size();
-    require(objects <= 1, "{} image {}: {} objects, expected one object per training image", scene.folder().string(),
-            scene.images()[i].image_id, objects);
-    if (objects == 0) {
-      const std::string source = fmt::format("{} image {}", scene.folder().string(), scene.images()[i].image_id);
-      views.push_back({scene.read_frame(i), {}, 0, "", Eigen::Isometry3d::Identity(), source});
-      continue;
-    }
-    TrainingView view = object_view(scene, i, names);
-    if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
-      spdlog::warn("{}: empty mask, or no depth on the object; view left out", view.source);
-      ++skipped;
-      continue;
-    }
-    crop_around_mask(view);
-    views.push_back(std::move(view));
+  for (std::optional<TrainingView>& view : read) {
+    if (view) views.push_back(std::move(*view));
+    skipped += view ? 0 : 1;
   }
   return skipped;
 }
 
 }  // namespace
 
-std::vector<TrainingView> read_bop_training_views(const fs::path& folder) {
+std::vector<TrainingView> read_bop_training_views(const fs::path& folder, int threads) {
   std::vector<TrainingView> views;
   int skipped = 0;
   for (const fs::path& scene_folder : scene_folders(folder)) {
-    skipped += append_views(BopScene(scene_folder), find_bop_names(scene_folder), views);
+    skipped += append_views(BopScene(scene_folder), find_bop_names(scene_folder), threads, views);
   }
   require(!views.empty(),
           "{}: all {} views have an empty mask or no depth on the object, expected at least one usable view",

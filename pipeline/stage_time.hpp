@@ -14,14 +14,20 @@ struct StageTime {
   std::int64_t duration_us = 0;
 };
 
-/// Measures consecutive stages: each `mark` closes the stage that began at the previous one.
+/// Measures consecutive stages: each `mark` closes the stage that began at the previous one. A stage that comes again
+/// adds to its time.
 class StageClock {
  public:
   void mark(std::string stage) {
     const auto now = std::chrono::steady_clock::now();
     const auto spent = std::chrono::duration_cast<std::chrono::microseconds>(now - last_).count();
-    times_.push_back({std::move(stage), spent});
     last_ = now;
+    for (StageTime& known : times_) {
+      if (known.stage != stage) continue;
+      known.duration_us += spent;
+      return;
+    }
+    times_.push_back({std::move(stage), spent});
   }
   const std::vector<StageTime>& times() const { return times_; }
 

@@ -18,6 +18,11 @@ ScoreTerms score_terms(const Evidence& evidence);
 /// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
 float score(const ScoreModel& model, const Evidence& evidence);
 
+/// Confidence from votes alone: it rises with their mass and is 0.1 at a tenth of the expected mass.
+inline float vote_score(float mass_share) {
+  return mass_share / (mass_share + 0.9F);
+}
+
 /// A judged hypothesis.
 struct ScoreExample {
   ScoreTerms terms{};

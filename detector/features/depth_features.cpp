@@ -34,25 +34,32 @@ void make_metric(cv::Mat& derivative, const WorkingFrame& frame, int power, floa
 
 }  // namespace
 
-std::vector<cv::Mat> depth_planes(const WorkingFrame& frame, const FeatureSettings& settings) {
+DepthPlanes depth_planes(const WorkingFrame& frame, const FeatureSettings& settings) {
   constexpr float kMaxSlope = 2.5F;       // metres per metre: 68 degrees
   constexpr float kMaxCurvature = 60.0F;  // 1/metres: a cylinder of 17 mm radius
-  cv::Mat dx = depth_derivative(frame.filled_depth, 1, 0, settings.depth_sobel_px);
-  cv::Mat dy = depth_derivative(frame.filled_depth, 0, 1, settings.depth_sobel_px);
-  cv::Mat dxx = depth_derivative(frame.filled_depth, 2, 0, settings.depth_sobel_px);
-  cv::Mat dyy = depth_derivative(frame.filled_depth, 0, 2, settings.depth_sobel_px);
-  make_metric(dx, frame, 1, kMaxSlope);
-  make_metric(dy, frame, 1, kMaxSlope);
-  make_metric(dxx, frame, 2, kMaxCurvature);
-  make_metric(dyy, frame, 2, kMaxCurvature);
-
-  std::vector<cv::Mat> planes(5);
-  planes[0] = frame.filled_depth;
-  dx.convertTo(planes[1], CV_8U, 127.0 / kMaxSlope, 128.0);
-  dy.convertTo(planes[2], CV_8U, 127.0 / kMaxSlope, 128.0);
-  dxx.convertTo(planes[3], CV_8U, 127.0 / kMaxCurvature, 128.0);
-  dyy.convertTo(planes[4], CV_8U, 127.0 / kMaxCurvature, 128.0);
-  for (cv::Mat& plane : gradient_histograms(dx, dy, 160.0F)) planes.push_back(std::move(plane));
+  DepthPlanes planes;
+  const bool derivatives = (settings.families & kDepthDerivatives) != 0;
+  const bool hog = (settings.families & kDepthHog) != 0;
+  if (!derivatives && !hog) return planes;
+  const auto slope = [&](int dx, int dy, int power, float limit) {
+    cv::Mat out = depth_derivative(frame.filled_depth, dx, dy, settings.depth_sobel_px);
+    make_metric(out, frame, power, limit);
+    return out;
+  };
+  const auto add_bytes = [&](const cv::Mat& metric, float limit) {
+    cv::Mat bytes;
+    metric.convertTo(bytes, CV_8U, 127.0 / limit, 128.0);
+    planes.derivatives.push_back(bytes);
+  };
+  const cv::Mat dx = slope(1, 0, 1, kMaxSlope);
+  const cv::Mat dy = slope(0, 1, 1, kMaxSlope);
+  if (derivatives) {
+    add_bytes(dx, kMaxSlope);
+    add_bytes(dy, kMaxSlope);
+    add_bytes(slope(2, 0, 2, kMaxCurvature), kMaxCurvature);
+    add_bytes(slope(0, 2, 2, kMaxCurvature), kMaxCurvature);
+  }
+  if (hog) planes.hog = gradient_histograms(dx, dy, 160.0F);
   return planes;
 }
 

@@ -2,40 +2,51 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <opencv2/core.hpp>
 #include <vector>
 
 namespace houghstream {
 
-/// Feature planes of one picture, interleaved: all values of a pixel lie in one 64-byte cache line, since a test
-/// reads one plane at two places and a patch runs many tests. The border is replicated `kPad` pixels
+/// A patch as the tests see it: its centre pixel and how to get from there to the pixels around it.
+struct PatchView {
+  const std::uint8_t* centre = nullptr;
+  std::int32_t scale = 0;  ///< working pixels per step of a test offset, in 1/256
+  int row_stride = 0;      ///< bytes
+  int pixel_stride = 0;    ///< bytes
+};
+
+/// Feature planes of one picture, interleaved: all values of a pixel lie side by side, in one or few cache lines, since
+/// a test reads one plane at two places and a patch runs many tests. The border is replicated `kPad` pixels
 /// outwards, so that no test needs a clamp.
 class FeatureImage {
  public:
-  static constexpr int kChannels = 64;  ///< room per pixel; FeatureLayout says which are used
-  static constexpr int kPad = 24;       ///< pixels; test offsets are limited to this
+  static constexpr int kPad = 24;  ///< pixels; test offsets are limited to this
 
   FeatureImage() = default;
-  FeatureImage(int width, int height);
+  /// `pixel_stride`: room per pixel, bytes; FeatureLayout says which are used.
+  FeatureImage(int width, int height, int pixel_stride);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  int row_stride() const { return (width_ + 2 * kPad) * kChannels; }
+  int pixel_stride() const { return pixel_stride_; }
+  int row_stride() const { return (width_ + 2 * kPad) * pixel_stride_; }
 
-  /// The 64 values of pixel (x,y); valid from -kPad to size + kPad - 1.
+  /// The values of pixel (x,y); valid from -kPad to size + kPad - 1.
   const std::uint8_t* at(int x, int y) const { return data_.data() + offset(x, y); }
   std::uint8_t* at(int x, int y) { return data_.data() + offset(x, y); }
+
+  PatchView patch(int x, int y, std::int32_t scale) const { return {at(x, y), scale, row_stride(), pixel_stride_}; }
 
   /// Fills the border from the nearest inner pixels.
   void replicate_border();
 
  private:
   std::size_t offset(int x, int y) const {
-    return static_cast<std::size_t>(y + kPad) * row_stride() + static_cast<std::size_t>(x + kPad) * kChannels;
+    return static_cast<std::size_t>(y + kPad) * row_stride() + static_cast<std::size_t>(x + kPad) * pixel_stride_;
   }
 
   int width_ = 0;
   int height_ = 0;
+  int pixel_stride_ = 0;
   std::vector<std::uint8_t> data_;
 };
 

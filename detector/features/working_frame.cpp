@@ -49,6 +49,22 @@ cv::Mat shrink_depth(const cv::Mat& depth, cv::Size size) {
   return out;
 }
 
+/// Between the pixels of one surface the depth is interpolated, between two surfaces it is that of the nearest pixel.
+cv::Mat enlarge_depth(const cv::Mat& depth, cv::Size size) {
+  cv::Mat nearest;
+  cv::Mat smooth;
+  cv::resize(depth, nearest, size, 0, 0, cv::INTER_NEAREST);
+  cv::resize(depth, smooth, size, 0, 0, cv::INTER_LINEAR);
+  for (int y = 0; y < size.height; ++y) {
+    const auto* from = nearest.ptr<float>(y);
+    auto* to = smooth.ptr<float>(y);
+    for (int x = 0; x < size.width; ++x) {
+      if (!(std::abs(to[x] - from[x]) < 0.01F * from[x])) to[x] = from[x];  // also where either is NaN
+    }
+  }
+  return smooth;
+}
+
 void fill_holes(cv::Mat& depth, float max_distance_px) {
   cv::Mat missing(depth.size(), CV_8UC1);
   int holes = 0;
@@ -84,9 +100,20 @@ void fill_holes(cv::Mat& depth, float max_distance_px) {
 
 }  // namespace
 
-std::array<FeatureLevel, 2> feature_levels(const FeatureSettings& settings) {
-  return {{{settings.image_scale, 0.0F, settings.far_distance},
-           {2.0F * settings.image_scale, settings.far_distance, settings.max_distance}}};
+std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
+  constexpr float kAnywhere = std::numeric_limits<float>::infinity();
+  std::vector<FeatureLevel> levels;
+  if (settings.handling == ScaleHandling::kScaleSpace) {
+    for (const float ratio : settings.scales) {
+      if (ratio > 0.0F) levels.push_back({settings.image_scale * ratio, ratio, 0.0F, kAnywhere});
+    }
+    return levels;
+  }
+  levels.push_back({settings.image_scale, 1.0F, 0.0F, std::min(settings.far_distance, settings.max_distance)});
+  if (settings.far_distance < settings.max_distance) {
+    levels.push_back({2.0F * settings.image_scale, 1.0F, settings.far_distance, settings.max_distance});
+  }
+  return levels;
 }
 
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
@@ -97,10 +124,16 @@ WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const Featu
     out.colour = frame.colour;
     out.filled_depth = frame.depth.clone();
   } else {
-    cv::resize(frame.colour, out.colour, size, 0, 0, cv::INTER_AREA);
-    out.filled_depth = shrink_depth(frame.depth, size);
+    cv::resize(frame.colour, out.colour, size, 0, 0, scale < 1.0F ? cv::INTER_AREA : cv::INTER_LINEAR);
+    out.filled_depth = scale < 1.0F ? shrink_depth(frame.depth, size) : enlarge_depth(frame.depth, size);
   }
   fill_holes(out.filled_depth, settings.fill_distance_px);
+  return out;
+}
+
+WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings) {
+  WorkingFrame out = make_working_frame(frame, level.scale, settings);
+  out.size_ratio = level.size_ratio;
   return out;
 }
 

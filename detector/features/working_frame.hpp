@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "detector/detector_settings.hpp"
 #include "pipeline/frame.hpp"
@@ -10,25 +10,30 @@ namespace houghstream {
 
 /// A frame at the size the detector works at.
 struct WorkingFrame {
-  cv::Mat colour;        ///< CV_8UC3 BGR
-  cv::Mat filled_depth;  ///< CV_32FC1, metres; holes borrow the nearest measured depth, NaN where it is too far away
-  Camera camera;         ///< of these images
+  cv::Mat colour;           ///< CV_8UC3 BGR
+  cv::Mat filled_depth;     ///< CV_32FC1, metres; holes borrow the nearest measured depth, NaN where it is too far away
+  Camera camera;            ///< of these images
+  float size_ratio = 1.0F;  ///< of a scale space: how much larger than taught this image shows everything
 };
 
 /// A size at which features are computed, and the surfaces that are looked at in it. The support of a feature is fixed
 /// in pixels, which the paper leaves as it is (Section 5.1.2); two sizes an octave apart keep it within a factor of two
-/// in metres too, and give far objects enough pixels.
+/// in metres too, and give far objects enough pixels. The levels of a scale space each look at everything.
 struct FeatureLevel {
   float scale = 1.0F;         ///< working size over frame size
+  float size_ratio = 1.0F;    ///< of a scale space: its entry in FeatureSettings::scales
   float min_distance = 0.0F;  ///< metres
   float max_distance = 0.0F;  ///< metres
 
   bool holds(float depth) const { return depth > min_distance && depth <= max_distance; }  // false for NaN
 };
-std::array<FeatureLevel, 2> feature_levels(const FeatureSettings& settings);
+std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
 
 /// Resizes (paper, Section 5.1.1) and closes small holes. Of each 2x2 block the nearest surface counts, so that
 /// foreground and background are never averaged into a surface that is not there.
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings);
+
+/// The same for a level of a scale space.
+WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
 
 }  // namespace houghstream

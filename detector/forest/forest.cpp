@@ -13,11 +13,11 @@ Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray) {
   return rotation;
 }
 
-std::int32_t find_leaf(const Forest& forest, int tree, const std::uint8_t* centre, std::int32_t scale, int row_stride) {
+std::int32_t find_leaf(const Forest& forest, int tree, const PatchView& patch) {
   std::int32_t at = forest.roots[static_cast<std::size_t>(tree)];
   while (at >= 0) {
     const TreeNode& node = forest.nodes[static_cast<std::size_t>(at)];
-    const bool right = test_value(node.test, centre, scale, row_stride) >= node.test.threshold;
+    const bool right = test_value(node.test, patch) >= node.test.threshold;
     at = right ? node.right : node.left;
   }
   return -1 - at;

@@ -71,8 +71,10 @@ struct TrainedView {
 
 /// A trained forest: flat arrays, trees one after another. Read-only once built.
 struct Forest {
+  std::string profile;  ///< that it was trained by, see profiles.hpp
   FeatureSettings features;
   PatchSettings patch;
+  Scoring scoring = Scoring::kEvidence;
   std::uint64_t seed = 0;
   std::vector<ObjectClass> classes;
   std::vector<TrainedView> views;
@@ -88,6 +90,6 @@ struct Forest {
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);
 
 /// Walks one patch down one tree. The readable way; the fast one (traversal.hpp) gives the same leaves.
-std::int32_t find_leaf(const Forest& forest, int tree, const std::uint8_t* centre, std::int32_t scale, int row_stride);
+std::int32_t find_leaf(const Forest& forest, int tree, const PatchView& patch);
 
 }  // namespace houghstream

@@ -1,7 +1,9 @@
 #include "detector/forest/forest_file.hpp"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -9,6 +11,7 @@
 #include <type_traits>
 
 #include "detector/features/features.hpp"
+#include "detector/profiles.hpp"
 #include "pipeline/checks.hpp"
 
 namespace houghstream {
@@ -19,8 +22,10 @@ constexpr char kName[] = "HOUGHSTREAM FOREST ";
 /// One list of members for writing and reading, so that the two cannot drift apart.
 template <typename Archive, typename ForestType>
 void archive_members(Archive& archive, ForestType& forest) {
+  archive(forest.profile);
   archive(forest.features);
   archive(forest.patch);
+  archive(forest.scoring);
   archive(forest.seed);
   archive(forest.classes);
   archive(forest.views);
@@ -33,7 +38,7 @@ void archive_members(Archive& archive, ForestType& forest) {
 }
 
 // Arrays are written as they lie in memory, so no type may have gaps whose bytes nobody set.
-static_assert(sizeof(FeatureSettings) == 24 && sizeof(PatchSettings) == 8 &&
+static_assert(sizeof(FeatureSettings) == 52 && sizeof(PatchSettings) == 8 &&
               sizeof(TrainedView) == 36 + sizeof(Appearance));
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
 
@@ -45,12 +50,15 @@ struct Writer {
     static_assert(std::is_standard_layout_v<T>);
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
+  void operator()(const std::string& text) {
+    (*this)(static_cast<std::uint64_t>(text.size()));
+    bytes.append(text);
+  }
   void operator()(const std::vector<ObjectClass>& classes) {
     (*this)(static_cast<std::uint64_t>(classes.size()));
     for (const ObjectClass& c : classes) {
       (*this)(c.class_id);
-      (*this)(static_cast<std::uint64_t>(c.name.size()));
-      bytes.append(c.name);
+      (*this)(c.name);
       (*this)(c.radius);
       (*this)(c.expected_mass);
       (*this)(c.score_model);
@@ -84,12 +92,15 @@ struct Reader {
   void operator()(T& value) {
     copy(&value, sizeof value);
   }
+  void operator()(std::string& text) {
+    text.resize(count(1));
+    copy(text.data(), text.size());
+  }
   void operator()(std::vector<ObjectClass>& classes) {
     classes.resize(count(1));
     for (ObjectClass& c : classes) {
       (*this)(c.class_id);
-      c.name.resize(count(1));
-      copy(c.name.data(), c.name.size());
+      (*this)(c.name);
       (*this)(c.radius);
       (*this)(c.expected_mass);
       (*this)(c.score_model);
@@ -110,6 +121,7 @@ std::uint32_t checksum(const std::string& bytes) {
 void check_indices(const Forest& forest, const std::string& source) {
   const auto nodes = static_cast<std::int64_t>(forest.nodes.size());
   const auto leaves = static_cast<std::int64_t>(forest.leaves.size()) - 1;
+  const int planes = FeatureLayout(forest.features).planes();
   const auto check_child = [&](std::int64_t child, std::int64_t parent) {
     const bool good = child >= 0 ? child > parent && child < nodes : -1 - child < leaves;
     require(good, "{}: a tree points to node {}, expected a later one of {} nodes or one of {} leaves", source, child,
@@ -125,10 +137,9 @@ void check_indices(const Forest& forest, const std::string& source) {
     const int reach = forest.patch.radius;
     const PixelTest& t = node.test;
     const bool inside = std::max({std::abs(t.dx1), std::abs(t.dy1), std::abs(t.dx2), std::abs(t.dy2)}) <= reach;
-    require(inside && t.plane < FeatureLayout::kPlanes &&
+    require(inside && t.plane < planes &&
                 (t.kind == PixelTest::kDifference || t.kind == PixelTest::kWrapping || t.kind == PixelTest::kAlone),
-            "{}: node {} tests plane {}, expected one of {} planes within {} steps", source, n, t.plane,
-            FeatureLayout::kPlanes, reach);
+            "{}: node {} tests plane {}, expected one of {} planes within {} steps", source, n, t.plane, planes, reach);
   }
   for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
     require(forest.leaves[l - 1] <= forest.leaves[l], "{}: leaf {} ends before it begins", source, l - 1);
@@ -150,10 +161,22 @@ void check_settings(const Forest& forest, const std::string& source) {
   const FeatureSettings& f = forest.features;
   require(f.image_scale > 0.05 && f.image_scale <= 2.0, "{}: image scale {}, expected 0.05 to 2", source,
           f.image_scale);
+  require(f.families > 0 && f.families < 256 && FeatureLayout(f).planes() < 256,
+          "{}: feature families {:#x}, expected some of {:#x}", source, f.families, 255);
+  require(
+      f.handling == ScaleHandling::kDepthNormalised || (f.handling == ScaleHandling::kScaleSpace && f.scales[0] > 0),
+      "{}: scale handling {}, expected depth normalisation or some scales", source,
+      static_cast<std::uint32_t>(f.handling));
+  for (const float scale : f.scales) {
+    require(scale >= 0.0F && scale <= 8.0F, "{}: image searched at scale {}, expected up to 8", source, scale);
+  }
+  const std::vector<std::string> profiles = profile_names();
+  require(std::find(profiles.begin(), profiles.end(), forest.profile) != profiles.end(),
+          "{}: profile '{}', expected one of {}", source, forest.profile, fmt::join(profiles, ", "));
   require(f.depth_sobel_px >= 3 && f.depth_sobel_px <= 31 && f.min_max_px >= 1 && f.min_max_px <= 31,
           "{}: feature kernels {} and {}, expected up to 31 pixels", source, f.depth_sobel_px, f.min_max_px);
   require(
-      forest.patch.radius >= 1 && forest.patch.radius <= 127 && forest.patch.unit > 0.0F && forest.patch.unit < 1.0F,
+      forest.patch.radius >= 1 && forest.patch.radius <= 127 && forest.patch.unit > 0.0F && forest.patch.unit <= 1.0F,
       "{}: patch of {} steps of {} m, expected 1 to 127 steps below 1 m", source, forest.patch.radius,
       forest.patch.unit);
   require(!forest.classes.empty() && !forest.roots.empty(), "{}: {} classes and {} trees, expected at least one each",

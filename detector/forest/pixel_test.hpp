@@ -26,23 +26,28 @@ struct PixelTest {
   std::int16_t threshold = 0;
 };
 
-/// Working pixels per step of a test offset at depth z, in 1/256 pixel; limited so that a patch stays inside the
-/// border of a FeatureImage.
-inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, float z) {
-  const double px = patch.unit * focal_px / z;
+/// Working pixels per step of a test offset in 1/256 pixel, for steps of `step_px`; limited so that a patch stays
+/// inside the border of a FeatureImage.
+inline std::int32_t limited_scale(const PatchSettings& patch, double step_px) {
   const double limit = static_cast<double>(FeatureImage::kPad) / patch.radius;
-  return static_cast<std::int32_t>(std::lround(256.0 * std::min(px, limit)));
+  return static_cast<std::int32_t>(std::lround(256.0 * std::min(step_px, limit)));
+}
+
+/// The same at depth z (depth normalisation).
+inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, float z) {
+  return limited_scale(patch, patch.unit * focal_px / z);
 }
 
 /// p1 - p2. The only place where a patch is looked at, in training and in detection.
-inline int test_value(const PixelTest& test, const std::uint8_t* centre, std::int32_t scale, int row_stride) {
+inline int test_value(const PixelTest& test, const PatchView& patch) {
   const auto offset = [&](std::int8_t dx, std::int8_t dy) {
-    const int x_px = (dx * scale + 128) >> 8;
-    const int y_px = (dy * scale + 128) >> 8;
-    return static_cast<std::ptrdiff_t>(y_px) * row_stride + x_px * FeatureImage::kChannels + test.plane;
+    const int x_px = (dx * patch.scale + 128) >> 8;
+    const int y_px = (dy * patch.scale + 128) >> 8;
+    return static_cast<std::ptrdiff_t>(y_px) * patch.row_stride + x_px * patch.pixel_stride + test.plane;
   };
   const int second_mask = (test.kind >> 7) - 1;
-  const int difference = centre[offset(test.dx1, test.dy1)] - (centre[offset(test.dx2, test.dy2)] & second_mask);
+  const int difference =
+      patch.centre[offset(test.dx1, test.dy1)] - (patch.centre[offset(test.dx2, test.dy2)] & second_mask);
   const int shift = test.kind & 31;
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(difference) << shift) >> shift;
 }

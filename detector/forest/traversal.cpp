@@ -13,15 +13,11 @@ constexpr int kLanes = 8;  // patches in flight
 /// Walks up to kLanes patches down one tree in step. Lanes that have arrived wait.
 void walk_lanes(const Forest& forest, std::int32_t root, const std::vector<FeatureImage>& features,
                 const PatchGrid& patches, std::size_t first, int lanes, std::array<std::int32_t, kLanes>& at) {
-  std::array<const std::uint8_t*, kLanes> centres{};
-  std::array<int, kLanes> row_strides{};
-  std::array<std::int32_t, kLanes> scales{};
+  std::array<PatchView, kLanes> views{};
   for (int l = 0; l < lanes; ++l) {
     const std::size_t p = first + static_cast<std::size_t>(l);
     const FeatureImage& image = features[patches.level[p]];
-    centres[static_cast<std::size_t>(l)] = image.at(patches.x[p], patches.y[p]);
-    row_strides[static_cast<std::size_t>(l)] = image.row_stride();
-    scales[static_cast<std::size_t>(l)] = patches.scale[p];
+    views[static_cast<std::size_t>(l)] = image.patch(patches.x[p], patches.y[p], patches.scale[p]);
     at[static_cast<std::size_t>(l)] = root;
   }
   const TreeNode* nodes = forest.nodes.data();
@@ -31,34 +27,49 @@ void walk_lanes(const Forest& forest, std::int32_t root, const std::vector<Featu
     for (std::size_t l = 0; l < static_cast<std::size_t>(lanes); ++l) {
       if (at[l] < 0) continue;
       const TreeNode& node = nodes[at[l]];
-      const bool right = test_value(node.test, centres[l], scales[l], row_strides[l]) >= node.test.threshold;
+      const bool right = test_value(node.test, views[l]) >= node.test.threshold;
       at[l] = right ? node.right : node.left;
       walking = walking || at[l] >= 0;
     }
   }
 }
 
+void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index, int stride, PatchGrid& grid) {
+  const float to_frame = 1.0F / level.scale;
+  const float side_px = static_cast<float>(stride) * to_frame;
+  grid.level.push_back(level_index);
+  grid.x.push_back(static_cast<std::int16_t>(x));
+  grid.y.push_back(static_cast<std::int16_t>(y));
+  const float left = (static_cast<float>(x) + 0.5F) * to_frame - 0.5F * side_px;
+  const float top = (static_cast<float>(y) + 0.5F) * to_frame - 0.5F * side_px;
+  grid.cell_px.emplace_back(left, top, side_px, side_px);
+}
+
 }  // namespace
 
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
                  const PatchSettings& patch, int stride, PatchGrid& grid) {
-  const float to_frame = 1.0F / level.scale;
-  const auto side_px = static_cast<float>(stride) * to_frame;
   const auto side_per_metre = static_cast<float>(stride * frame.camera.metres_per_px(1.0));
   for (int y = stride / 2; y < frame.filled_depth.rows; y += stride) {
     const auto* depth = frame.filled_depth.ptr<float>(y);
     for (int x = stride / 2; x < frame.filled_depth.cols; x += stride) {
       const float z = depth[x];
       if (!level.holds(z)) continue;
-      grid.level.push_back(level_index);
-      grid.x.push_back(static_cast<std::int16_t>(x));
-      grid.y.push_back(static_cast<std::int16_t>(y));
+      add_place(x, y, level, level_index, stride, grid);
       grid.scale.push_back(patch_scale(patch, frame.camera.fx, z));
       grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
-      const float left = (static_cast<float>(x) + 0.5F) * to_frame - 0.5F * side_px;
-      const float top = (static_cast<float>(y) + 0.5F) * to_frame - 0.5F * side_px;
-      grid.cell_px.emplace_back(left, top, side_px, side_px);
       grid.area.push_back(side_per_metre * z * side_per_metre * z);
+    }
+  }
+}
+
+void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
+                            int stride, PatchGrid& grid) {
+  const std::int32_t scale = limited_scale(patch, patch.unit);
+  for (int y = stride / 2; y < frame.filled_depth.rows; y += stride) {
+    for (int x = stride / 2; x < frame.filled_depth.cols; x += stride) {
+      add_place(x, y, level, 0, stride, grid);
+      grid.scale.push_back(scale);
     }
   }
 }
@@ -83,6 +94,18 @@ std::vector<std::int32_t> assign_leaves(const Forest& forest, const std::vector<
       }
     }
   });
+  return leaves;
+}
+
+std::vector<std::int32_t> assign_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features,
+                                                 const PatchGrid& patches) {
+  std::vector<std::int32_t> leaves;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const PatchView patch = features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
+    for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
+      leaves.push_back(find_leaf(forest, static_cast<int>(tree), patch));
+    }
+  }
   return leaves;
 }
 

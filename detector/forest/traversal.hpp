@@ -25,9 +25,17 @@ struct PatchGrid {
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
                  const PatchSettings& patch, int stride, PatchGrid& grid);
 
+/// The same for a level of a scale space: every patch, whatever its depth; without points and areas.
+void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
+                            int stride, PatchGrid& grid);
+
 /// Leaf of every patch in every tree: element [patch * trees + tree]; `features` holds one image per level. Several
 /// patches are walked at once, so that their cache misses overlap; the leaves are those of find_leaf.
 std::vector<std::int32_t> assign_leaves(const Forest& forest, const std::vector<FeatureImage>& features,
                                         const PatchGrid& patches, int threads);
+
+/// The same leaves, found one after another by find_leaf.
+std::vector<std::int32_t> assign_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features,
+                                                 const PatchGrid& patches);
 
 }  // namespace houghstream

@@ -34,8 +34,7 @@ std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSett
   for (const TrainingSample& sample : set.samples) {
     if (sample.label == 0 || in_bag(settings, tree, sample.picture)) continue;
     const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
-    const std::int32_t leaf =
-        find_leaf(forest, tree, picture.at(sample.x, sample.y), sample.scale, picture.row_stride());
+    const std::int32_t leaf = find_leaf(forest, tree, picture.patch(sample.x, sample.y, sample.scale));
     Tally& tally = tallies[sample.label - 1U];
     tally.support += support_of_truth(forest, leaf, sample, vote_sigma);
     tally.count += 1.0;

@@ -47,13 +47,13 @@ struct Rooms {
   std::vector<const TrainingView*> for_score;  ///< rooms
 };
 
-Rooms share_rooms(const std::vector<TrainingView>& views) {
+Rooms share_rooms(const std::vector<TrainingView>& views, Scoring scoring) {
   constexpr std::size_t kForScore = 6;  // every so many-th
   Rooms rooms;
   std::size_t count = 0;
   for (const TrainingView& view : views) {
     const bool is_room = view.class_id == 0;
-    const bool for_score = is_room && ++count % kForScore == 0;
+    const bool for_score = is_room && scoring == Scoring::kEvidence && ++count % kForScore == 0;
     if (!is_room) rooms.objects.push_back(&view);
     (for_score ? rooms.for_score : rooms.for_trees).push_back(&view);
   }
@@ -64,37 +64,45 @@ Rooms share_rooms(const std::vector<TrainingView>& views) {
   return rooms;
 }
 
-}  // namespace
-
-Forest train_forest(const std::vector<TrainingView>& views, const FeatureSettings& features, const PatchSettings& patch,
-                    const TrainingSettings& settings, const std::function<void(const std::string&)>& progress) {
-  const Rooms rooms = share_rooms(views);
-  TrainingSet set = make_training_set(rooms.for_trees, features, patch, settings);
-  progress(fmt::format("{} patches of {} pictures, {} classes", set.samples.size(), set.pictures.size(),
-                       set.classes.size()));
-  const std::size_t before = set.samples.size();
-  add_hard_negatives(patch, settings, set);
-  progress(fmt::format("{} background patches added that scout trees mistook", set.samples.size() - before));
+std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, const Progress& progress) {
+  const TrainingSettings& settings = profile.training;
   std::vector<Forest> trees(static_cast<std::size_t>(settings.trees));
   std::mutex progress_mutex;
   int done = 0;
   parallel_for(settings.threads, settings.trees, [&](int t) {
     Forest& tree = trees[static_cast<std::size_t>(t)];
-    tree = grow_tree(set, patch, settings, t);
+    tree = grow_tree(set, profile.patch, settings, t);
     const std::lock_guard lock(progress_mutex);
     progress(fmt::format("tree {} of {}: {} leaves", ++done, settings.trees, tree.leaves.size() - 1));
   });
+  return trees;
+}
+
+}  // namespace
+
+Forest train_forest(const std::vector<TrainingView>& views, const Profile& profile, const Progress& progress) {
+  const TrainingSettings& settings = profile.training;
+  const Rooms rooms = share_rooms(views, settings.scoring);
+  TrainingSet set = make_training_set(rooms.for_trees, profile);
+  progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.pictures.size(),
+                       set.classes.size(), set.layout.planes()));
+  const std::size_t before = set.samples.size();
+  add_hard_negatives(profile.patch, settings, set);
+  progress(fmt::format("{} background patches added that scout trees mistook", set.samples.size() - before));
 
   Forest forest;
-  forest.features = features;
-  forest.patch = patch;
+  forest.profile = profile.name;
+  forest.features = profile.features;
+  forest.patch = profile.patch;
+  forest.scoring = settings.scoring;
   forest.seed = settings.seed;
   forest.classes = set.classes;
   forest.views = set.views;
   forest.leaves.push_back(0);
-  for (const Forest& tree : trees) append_tree(tree, forest);
-  calibrate_masses(set, settings, DetectionSettings{}.vote_sigma, forest);
-  train_score_model(rooms.objects, rooms.for_score, settings, forest);
+  for (const Forest& tree : grow_trees(set, profile, progress)) append_tree(tree, forest);
+  calibrate_masses(set, settings, profile.detection.vote_sigma, forest);
+  if (settings.scoring == Scoring::kVotes) return forest;
+  train_score_model(rooms.objects, rooms.for_score, profile, forest);
   progress(
       fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
   return forest;

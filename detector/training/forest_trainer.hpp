@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detector/forest/forest.hpp"
+#include "detector/profiles.hpp"
 #include "pipeline/training_view.hpp"
 
 namespace houghstream {
@@ -12,7 +13,7 @@ namespace houghstream {
 /// Teaches the objects in `views` (backgrounds are those of class_id 0). Same views, settings and seed: same forest,
 /// bit for bit, for any number of threads. `progress` is called with one line per finished step, from any thread
 /// but never from two at once.
-Forest train_forest(const std::vector<TrainingView>& views, const FeatureSettings& features, const PatchSettings& patch,
-                    const TrainingSettings& settings, const std::function<void(const std::string&)>& progress);
+using Progress = std::function<void(const std::string&)>;
+Forest train_forest(const std::vector<TrainingView>& views, const Profile& profile, const Progress& progress);
 
 }  // namespace houghstream

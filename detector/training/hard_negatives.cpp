@@ -25,8 +25,7 @@ float object_probability(const TrainingSet& set, const std::vector<Forest>& scou
   const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
   float sum = 0.0F;
   for (const Forest& scout : scouts) {
-    const auto leaf = static_cast<std::size_t>(
-        find_leaf(scout, 0, picture.at(sample.x, sample.y), sample.scale, picture.row_stride()));
+    const auto leaf = static_cast<std::size_t>(find_leaf(scout, 0, picture.patch(sample.x, sample.y, sample.scale)));
     for (std::uint32_t e = scout.leaves[leaf]; e < scout.leaves[leaf + 1]; ++e) {
       sum += scout.leaf_classes[e].probability;
     }

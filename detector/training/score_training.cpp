@@ -43,8 +43,9 @@ Examples judge(const std::vector<Candidate>& candidates, const ValidationFrame& 
 }  // namespace
 
 void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
-                       const TrainingSettings& settings, Forest& forest) {
-  DetectionSettings detection;
+                       const Profile& profile, Forest& forest) {
+  const TrainingSettings& settings = profile.training;
+  DetectionSettings detection = profile.detection;
   detection.threads = 1;
   std::vector<Examples> by_frame(static_cast<std::size_t>(settings.validation_frames));
   parallel_for(settings.threads, settings.validation_frames, [&](int f) {

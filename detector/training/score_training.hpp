@@ -1,6 +1,7 @@
 #pragma once
 
 #include "detector/forest/forest.hpp"
+#include "detector/profiles.hpp"
 #include "pipeline/training_view.hpp"
 
 namespace houghstream {
@@ -9,6 +10,6 @@ namespace houghstream {
 /// have not seen, the forest looks for them, and what it finds is compared with what is there. Same result for any
 /// number of threads.
 void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
-                       const TrainingSettings& settings, Forest& forest);
+                       const Profile& profile, Forest& forest);
 
 }  // namespace houghstream

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "detector/features/features.hpp"
 
@@ -28,10 +27,13 @@ PixelTest SplitSearch::random_test(Random& random) const {
   test.dy1 = coordinate();
   test.dx2 = coordinate();
   test.dy2 = coordinate();
-  test.plane = static_cast<std::uint8_t>(random.below(FeatureLayout::kPlanes));
-  if (FeatureLayout::wraps(test.plane)) {
+  test.plane = static_cast<std::uint8_t>(random.below(set_.layout.planes()));
+  const PlaneKind kind = set_.layout.kind(test.plane);
+  // The scaled depth rules out what has the wrong size for its distance, which a difference cannot do.
+  const double alone_share = kind == PlaneKind::kScaledDepth ? 0.5 : settings_.alone_share;
+  if (kind == PlaneKind::kWrappedDepth) {
     test.kind = PixelTest::kWrapping;
-  } else if ((trusts_light_ || test.plane >= FeatureLayout::kDepthMax) && random.uniform() < settings_.alone_share) {
+  } else if ((trusts_light_ || kind != PlaneKind::kLight) && random.uniform() < alone_share) {
     test.kind = PixelTest::kAlone;
     test.dx2 = test.dx1;
     test.dy2 = test.dy1;
@@ -69,11 +71,10 @@ void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::
     const std::size_t size = std::min(kBlock, count - begin);
     for (std::size_t s = 0; s < size; ++s) {
       const TrainingSample& sample = set_.samples[samples[begin + s]];
-      const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
-      const std::uint8_t* centre = picture.at(sample.x, sample.y);
-      const int stride = picture.row_stride();
+      const PatchView patch =
+          set_.pictures[static_cast<std::size_t>(sample.picture)].patch(sample.x, sample.y, sample.scale);
       for (std::size_t t = 0; t < test_count; ++t) {
-        block_[s * test_count + t] = static_cast<std::int16_t>(test_value(tests_[t], centre, sample.scale, stride));
+        block_[s * test_count + t] = static_cast<std::int16_t>(test_value(tests_[t], patch));
       }
     }
     for (std::size_t t = 0; t < test_count; ++t) {
@@ -135,7 +136,7 @@ bool SplitSearch::fill_bins(std::size_t t, Objective objective, int& first, int&
   return true;
 }
 
-std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, Objective objective, float least_gain) {
+std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, Objective objective, int min_side) {
   int first = 0;
   int range = 0;
   if (!fill_bins(t, objective, first, range)) return std::nullopt;
@@ -148,9 +149,9 @@ std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, 
     if (bin_counts_[bin] == 0) continue;
     for (std::size_t l = 0; l < labels; ++l) left_[l] += bins_[bin * labels + l];
     left_count += bin_counts_[bin];
-    if (left_count < kMinSide || static_cast<int>(items_.size()) - left_count < kMinSide) continue;
+    if (left_count < min_side || static_cast<int>(items_.size()) - left_count < min_side) continue;
     const float gain = objective == Objective::kClass ? class_gain() : offset_gain();
-    if (gain <= (best ? best->gain : least_gain)) continue;
+    if (best && gain <= best->gain) continue;
     // the smallest value of the next bin: value * scale >> 16 > bin
     const std::uint32_t next = ((static_cast<std::uint32_t>(bin) + 1) << 16U) + scale - 1;
     best = Split{gain, first + static_cast<int>(next / scale)};
@@ -158,22 +159,46 @@ std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, 
   return best;
 }
 
+/// The best threshold of each of the first `test_count` tests, on `samples`; tests that split nothing are left out.
+std::vector<SplitSearch::Judged> SplitSearch::judge_tests(std::size_t test_count,
+                                                          const std::vector<std::uint32_t>& samples,
+                                                          Objective objective, int min_side) {
+  load_items(samples);
+  evaluate_tests(test_count, samples);
+  std::vector<Judged> judged;
+  for (std::size_t t = 0; t < test_count; ++t) {
+    const std::optional<Split> split = search_thresholds(t, objective, min_side);
+    if (split) judged.push_back({split->gain, static_cast<std::uint32_t>(t), split->threshold});
+  }
+  // equal gains in the order of drawing, so that the order is the same everywhere
+  std::sort(judged.begin(), judged.end(),
+            [](const Judged& a, const Judged& b) { return a.gain != b.gain ? a.gain > b.gain : a.test < b.test; });
+  return judged;
+}
+
+/// Every k-th sample, so that about `count` are left.
+static std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& samples, std::size_t count) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < count; ++i) out.push_back(samples[i * samples.size() / count]);
+  return out;
+}
+
 std::optional<PixelTest> SplitSearch::best_test(const std::vector<std::uint32_t>& samples, Objective objective,
                                                 Random& random) {
   // Few samples are told apart by few tests; trying more would only fit their noise.
-  const std::size_t test_count = std::min(tests_.size(), std::max<std::size_t>(64, samples.size()));
+  std::size_t test_count = std::min(tests_.size(), std::max<std::size_t>(64, 2 * samples.size()));
   for (std::size_t t = 0; t < test_count; ++t) tests_[t] = random_test(random);
-  load_items(samples);
-  evaluate_tests(test_count, samples);
-  float best_gain = -std::numeric_limits<float>::infinity();
-  std::optional<PixelTest> best;
-  for (std::size_t t = 0; t < test_count; ++t) {
-    const std::optional<Split> split = search_thresholds(t, objective, best_gain);
-    if (!split) continue;
-    best_gain = split->gain;
-    best = tests_[t];
-    best->threshold = static_cast<std::int16_t>(split->threshold);
+  if (samples.size() >= 2 * kFirstLook && test_count > kFinalists) {
+    const std::vector<Judged> first = judge_tests(test_count, thinned(samples, kFirstLook), objective, 2);
+    test_count = std::min(first.size(), kFinalists);
+    std::vector<PixelTest> finalists;
+    for (std::size_t i = 0; i < test_count; ++i) finalists.push_back(tests_[first[i].test]);
+    std::copy(finalists.begin(), finalists.end(), tests_.begin());
   }
+  const std::vector<Judged> judged = judge_tests(test_count, samples, objective, kMinSide);
+  if (judged.empty()) return std::nullopt;
+  PixelTest best = tests_[judged.front().test];
+  best.threshold = static_cast<std::int16_t>(judged.front().threshold);
   return best;
 }
 

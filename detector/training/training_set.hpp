@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "detector/detector_settings.hpp"
+#include "detector/features/feature_families.hpp"
 #include "detector/features/feature_image.hpp"
 #include "detector/forest/forest.hpp"
+#include "detector/profiles.hpp"
 #include "pipeline/training_view.hpp"
 
 namespace houghstream {
@@ -25,6 +26,7 @@ struct TrainingSample {
 
 /// Everything the trees see.
 struct TrainingSet {
+  FeatureLayout layout;  ///< of the pictures
   std::vector<FeatureImage> pictures;
   std::vector<TrainingSample> samples;           ///< grouped by picture
   std::vector<TrainingSample> spare_background;  ///< more background patches, from which the hard ones are chosen
@@ -35,7 +37,6 @@ struct TrainingSet {
 
 /// Puts every view into several backgrounds, computes features and draws patches (paper, Section 4: 250 an image).
 /// Throws InputError when a class or the background is missing or a mask is empty.
-TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const FeatureSettings& features,
-                              const PatchSettings& patch, const TrainingSettings& settings);
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile);
 
 }  // namespace houghstream

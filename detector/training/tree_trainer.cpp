@@ -97,7 +97,7 @@ class TreeGrower {
     for (const std::uint32_t s : samples) {
       const TrainingSample& sample = set_.samples[s];
       const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
-      const int value = test_value(*test, picture.at(sample.x, sample.y), sample.scale, picture.row_stride());
+      const int value = test_value(*test, picture.patch(sample.x, sample.y, sample.scale));
       (value >= test->threshold ? right : left).push_back(s);
     }
     const std::size_t index = forest_.nodes.size();

@@ -4,6 +4,7 @@
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/detect_process.hpp"
 #include "pipeline/stop_signal.hpp"
+#include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 
 int main(int argc, char** argv) {
@@ -13,15 +14,11 @@ int main(int argc, char** argv) {
   std::string camera;
   std::string url;
   std::string output_log;
-  DetectionSettings settings;
+  SearchOptions search;
   DetectProcessOptions options;
   app.add_option("--forest", forest_file, "forest file of hs-train")->required();
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
-  app.add_option("--threads", settings.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--threshold", settings.threshold, "smallest score that is reported")->capture_default_str();
-  app.add_option("--stride", settings.stride, "patch offset, working pixels")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
+  add_search_options(app, search);
   app.add_option("-c,--channel", options.frame_channel, "channel of the frames")->capture_default_str();
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, url);
@@ -29,7 +26,9 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.camera = parse_camera(camera);
-    const Detector detector(load_forest(forest_file), settings);
+    Forest forest = load_forest(forest_file);
+    const DetectionSettings settings = search.settings_for(forest);
+    const Detector detector(std::move(forest), settings);
     for (const ObjectClass& object : detector.forest().classes) {
       spdlog::debug("class {}: {}", object.class_id, object.name);
     }

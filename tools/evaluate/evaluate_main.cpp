@@ -4,6 +4,7 @@
 
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/checks.hpp"
+#include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/report.hpp"
@@ -21,7 +22,8 @@ struct EvaluateOptions {
   std::string out;
   std::vector<std::string> classes;
   EvaluationRules rules;
-  DetectionSettings detection;
+  SearchOptions search;
+  int every = 1;
 };
 
 /// The classes that were asked for, else those that the forest knows, else those of the truth.
@@ -49,8 +51,10 @@ void run(const EvaluateOptions& options) {
   const std::map<std::string, Mesh> meshes =
       options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
   const PublishedResults results =
-      options.log.empty() ? run_in_process(scene, *forest, options.detection, meshes) : read_result_log(options.log);
+      options.log.empty() ? run_in_process(scene, *forest, options.search.settings_for(*forest), options.every, meshes)
+                          : read_result_log(options.log);
   const std::string source = options.log.empty() ? options.scene : options.log;
+  frames = every_nth(std::move(frames), options.every);
   add_detections(frames, results.detections, source);
   add_poses(frames, results.poses, source);
   std::map<std::string, PoseModel> models;
@@ -82,9 +86,13 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("--operating-score", rules.operating_score, "score from which precision and false detections count")
       ->capture_default_str();
   app.add_flag("--processed-only", rules.processed_only, "leave skipped frames out; default: they count as missed");
-  app.add_option("--threshold", options.detection.threshold, "in-process: smallest score")->capture_default_str();
-  app.add_option("--stride", options.detection.stride, "in-process: patch offset")->capture_default_str();
-  app.add_option("--threads", options.detection.threads, "in-process: threads")->capture_default_str();
+  app.add_option("--every", options.every, "look at every Nth frame only")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  add_search_options(app, options.search);
+  app.add_option("--min-mass", options.search.min_mass_share,
+                 "in-process: vote mass, over a whole object's, from which a maximum counts; default: the profile's");
+  app.add_flag("--readable", options.search.readable, "in-process: the slow, readable engine; the same detections");
 }
 
 }  // namespace

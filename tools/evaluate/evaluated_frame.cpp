@@ -56,6 +56,13 @@ void add_poses(std::vector<EvaluatedFrame>& frames, const std::vector<ObjectPose
   }
 }
 
+std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int every) {
+  std::vector<EvaluatedFrame> chosen;
+  for (std::size_t i = 0; i < frames.size(); i += static_cast<std::size_t>(every))
+    chosen.push_back(std::move(frames[i]));
+  return chosen;
+}
+
 std::vector<EvaluatedFrame> processed_frames(const std::vector<EvaluatedFrame>& frames) {
   std::vector<EvaluatedFrame> kept;
   for (const EvaluatedFrame& frame : frames) {

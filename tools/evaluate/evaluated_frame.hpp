@@ -35,6 +35,9 @@ void add_detections(std::vector<EvaluatedFrame>& frames, const std::vector<Detec
                     const std::string& source);
 void add_poses(std::vector<EvaluatedFrame>& frames, const std::vector<ObjectPoses>& results, const std::string& source);
 
+/// Frames 0, N, 2N ...
+std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int every);
+
 /// Only the frames that have detections.
 std::vector<EvaluatedFrame> processed_frames(const std::vector<EvaluatedFrame>& frames);
 

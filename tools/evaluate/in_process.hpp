@@ -12,8 +12,8 @@
 
 namespace houghstream {
 
-/// Detects in every frame of the scene, and estimates poses where there are models (by class name), without LCM.
-PublishedResults run_in_process(const BopScene& scene, Forest forest, const DetectionSettings& settings,
+/// Detects in every Nth frame of the scene, and estimates poses where there are models (by class name), without LCM.
+PublishedResults run_in_process(const BopScene& scene, Forest forest, const DetectionSettings& settings, int every,
                                 const std::map<std::string, Mesh>& models);
 
 }  // namespace houghstream

@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
+#include "detector/features/feature_families.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/checks.hpp"
@@ -11,33 +13,73 @@ using namespace houghstream;
 
 namespace {
 
-void add_settings(CLI::App& app, TrainingSettings& training) {
-  app.add_option("--seed", training.seed, "same seed, same data: same forest")->capture_default_str();
-  app.add_option("--threads", training.threads, "any number gives the same forest")->capture_default_str();
-  app.add_option("--trees", training.trees)->capture_default_str()->check(CLI::Range(1, 1000));
-  app.add_option("--max-depth", training.max_depth, "levels")->capture_default_str()->check(CLI::Range(1, 60));
-  app.add_option("--tests", training.tests_per_node, "random tests tried per node")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--patches", training.patches_per_view, "patches per training view")
-      ->capture_default_str()
-      ->check(CLI::Range(4, 100000));
-  app.add_option("--composites", training.composites_per_view, "pictures made of one view")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100));
-  app.add_option("--min-distance", training.min_distance, "nearest distance taught, metres")->capture_default_str();
-  app.add_option("--max-distance", training.max_distance, "farthest distance taught, metres")->capture_default_str();
+/// What the command line changes of a profile.
+struct Overrides {
+  std::string profile = "realtime";
+  std::string features;
+  std::string scale_handling;
+  std::optional<int> depth_kernel;
+  std::optional<int> trees;
+  std::optional<int> max_depth;
+  std::optional<int> tests;
+  std::optional<int> patches;
+  std::optional<int> composites;
+  std::optional<float> min_distance;
+  std::optional<float> max_distance;
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+void add_overrides(CLI::App& app, Overrides& overrides) {
+  app.add_option("--profile", overrides.profile, fmt::format("{}", fmt::join(profile_names(), ", ")))
+      ->capture_default_str();
+  app.add_option("--features", overrides.features, "instead of the profile's: " + family_names(255));
+  app.add_option("--depth-kernel", overrides.depth_kernel, "of the depth derivatives, working pixels")
+      ->check(CLI::IsMember({3, 5, 7, 9}));
+  app.add_option("--scale-handling", overrides.scale_handling, "instead of the profile's: five, single or normalised");
+  app.add_option("--seed", overrides.seed, "same seed, same data: same forest")->capture_default_str();
+  app.add_option("--threads", overrides.threads, "any number gives the same forest")->capture_default_str();
+  app.add_option("--trees", overrides.trees)->check(CLI::Range(1, 1000));
+  app.add_option("--max-depth", overrides.max_depth, "levels")->check(CLI::Range(1, 60));
+  app.add_option("--tests", overrides.tests, "random tests tried per node")->check(CLI::Range(1, 100000));
+  app.add_option("--patches", overrides.patches, "patches per training view")->check(CLI::Range(4, 100000));
+  app.add_option("--composites", overrides.composites, "pictures made of one view")->check(CLI::Range(1, 100));
+  app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres");
+  app.add_option("--max-distance", overrides.max_distance, "farthest distance taught, metres");
 }
 
-void train(const TrainingSources& sources, const TrainingSettings& training, const std::string& out) {
+template <typename T>
+void take(const std::optional<T>& from, T& to) {
+  if (from) to = *from;
+}
+
+Profile overridden(const Overrides& overrides) {
+  Profile profile = make_profile(overrides.profile);
+  if (!overrides.features.empty()) profile.features.families = parse_families(overrides.features);
+  if (!overrides.scale_handling.empty()) set_scale_handling(profile, overrides.scale_handling);
+  take(overrides.depth_kernel, profile.features.depth_sobel_px);
+  TrainingSettings& training = profile.training;
+  take(overrides.trees, training.trees);
+  take(overrides.max_depth, training.max_depth);
+  take(overrides.tests, training.tests_per_node);
+  take(overrides.patches, training.patches_per_view);
+  take(overrides.composites, training.composites_per_view);
+  take(overrides.min_distance, training.min_distance);
+  take(overrides.max_distance, training.max_distance);
+  training.seed = overrides.seed;
+  training.threads = overrides.threads;
+  return profile;
+}
+
+void train(const TrainingSources& sources, const Profile& profile, const std::string& out) {
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const auto progress = [&](const std::string& line) {
     fmt::print(stderr, "hs-train: {:6.1f} s  {}\n", seconds(), line);
   };
-  const std::vector<TrainingView> views = read_training_sources(sources);
+  const std::vector<TrainingView> views = read_training_sources(sources, profile.training.threads);
   progress(fmt::format("{} views and backgrounds read", views.size()));
-  const Forest forest = train_forest(views, FeatureSettings{}, PatchSettings{}, training, progress);
+  const Forest forest = train_forest(views, profile, progress);
   save_forest(forest, out);
   fmt::print("train_seconds {:.1f}\n", seconds());
 }
@@ -49,7 +91,7 @@ int main(int argc, char** argv) {
       "Teaches objects to a depth-normalised Hough Forest: training views and background in, one forest file out");
   app.set_version_flag("--version", HOUGHSTREAM_VERSION);
   TrainingSources sources;
-  TrainingSettings training;
+  Overrides overrides;
   std::string out;
   app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR")->required();
   app.add_option("--background", sources.backgrounds, "rooms without the objects: bop:DIR or images:DIR")->required();
@@ -57,10 +99,10 @@ int main(int argc, char** argv) {
   app.add_option("--rename", sources.renames, "can_1=can: what an instance is called")->delimiter(',');
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
   app.add_option("--out", out, "forest file to write")->required();
-  add_settings(app, training);
+  add_overrides(app, overrides);
   CLI11_PARSE(app, argc, argv);
   try {
-    train(sources, training, out);
+    train(sources, overridden(overrides), out);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "hs-train: {}\n", error.what());

@@ -51,13 +51,13 @@ void rename_classes(const std::vector<std::string>& renames, std::vector<Trainin
 
 }  // namespace
 
-std::vector<TrainingView> read_training_sources(const TrainingSources& sources) {
+std::vector<TrainingView> read_training_sources(const TrainingSources& sources, int threads) {
   std::vector<TrainingView> all;
   std::vector<TrainingView> turntable;
   for (const std::string& source : sources.views) {
     const auto [kind, folder] = split_kind(source, "bop:DIR or uw:DIR");
     if (kind == "bop") {
-      append(read_bop_training_views(folder), all);
+      append(read_bop_training_views(folder, threads), all);
     } else if (kind == "uw") {
       append(read_uw_training_views(folder, {sources.instances, false}, camera_option(sources, source)), turntable);
     } else {
@@ -71,7 +71,7 @@ std::vector<TrainingView> read_training_sources(const TrainingSources& sources) 
   for (const std::string& source : sources.backgrounds) {
     const auto [kind, folder] = split_kind(source, "bop:DIR or images:DIR");
     if (kind == "bop") {
-      append(read_bop_training_views(folder), all);
+      append(read_bop_training_views(folder, threads), all);
     } else if (kind == "images") {
       append(read_background_views(folder, camera_option(sources, source)), all);
     } else {

@@ -18,6 +18,6 @@ struct TrainingSources {
 };
 
 /// Reads everything; class ids of uw: folders count from 1 in the order of their names. Throws InputError.
-std::vector<TrainingView> read_training_sources(const TrainingSources& sources);
+std::vector<TrainingView> read_training_sources(const TrainingSources& sources, int threads = 1);
 
 }  // namespace houghstream

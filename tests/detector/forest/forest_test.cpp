@@ -33,10 +33,10 @@ TEST(PixelTest, ComparesOnePlaneAtTwoPlacesAndWrapsDepth) {
   image.at(8, 10)[32] = 250;
   image.at(12, 10)[32] = 4;
   PixelTest test{-2, 0, 2, 0, 3, 0, 0};
-  EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), 170);
+  EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 170);
   test.plane = 32;
   test.kind = PixelTest::kWrapping;
-  EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), -10);  // 250 - (256 + 4)
+  EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), -10);  // 250 - (256 + 4)
 }
 
 TEST(PixelTest, AloneItComparesOnePixelOnly) {
@@ -44,7 +44,7 @@ TEST(PixelTest, AloneItComparesOnePixelOnly) {
   image.at(8, 10)[3] = 200;
   image.at(12, 10)[3] = 30;
   const PixelTest test{-2, 0, 2, 0, 3, PixelTest::kAlone, 0};
-  EXPECT_EQ(test_value(test, image.at(10, 10), 256, image.row_stride()), 200);
+  EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 200);
 }
 
 TEST(FindLeaf, WalksRightFromTheThresholdOn) {
@@ -53,9 +53,9 @@ TEST(FindLeaf, WalksRightFromTheThresholdOn) {
   forest.nodes = {{PixelTest{0, 0, 1, 0, 0, 0, 5}, -1, -2}};
   FeatureImage image(4, 4);
   image.at(1, 1)[0] = 5;
-  EXPECT_EQ(find_leaf(forest, 0, image.at(1, 1), 256, image.row_stride()), 1);
+  EXPECT_EQ(find_leaf(forest, 0, image.patch(1, 1, 256)), 1);
   image.at(1, 1)[0] = 4;
-  EXPECT_EQ(find_leaf(forest, 0, image.at(1, 1), 256, image.row_stride()), 0);
+  EXPECT_EQ(find_leaf(forest, 0, image.patch(1, 1, 256)), 0);
 }
 
 }  // namespace

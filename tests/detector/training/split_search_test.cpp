@@ -17,7 +17,7 @@ std::vector<std::uint32_t> every_sample(const TrainingSet& set) {
 
 bool goes_right(const TrainingSet& set, const PixelTest& test, const TrainingSample& sample) {
   const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
-  return test_value(test, picture.at(sample.x, sample.y), sample.scale, picture.row_stride()) >= test.threshold;
+  return test_value(test, picture.patch(sample.x, sample.y, sample.scale)) >= test.threshold;
 }
 
 std::optional<PixelTest> search(const TrainingSet& set, const std::vector<std::uint32_t>& samples, Objective objective,

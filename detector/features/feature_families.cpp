@@ -1,0 +1,77 @@
+#include "detector/features/feature_families.hpp"
+
+#include <sstream>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+std::string all_names() {
+  std::string names;
+  for (const FamilyName& known : kFamilyNames) names += (names.empty() ? "" : ", ") + std::string(known.name);
+  return names;
+}
+
+FeatureBlock block_of(FeatureFamily family) {
+  switch (family) {
+    case kIntensity: return {family, 0, 16, true};
+    case kDepthValue: return {family, 0, 1, true};
+    case kDepthDerivatives: return {family, 0, 4, true};
+    case kDepthHog: return {family, 0, 9, true};
+    case kHonv: return {family, 0, 12, false};
+    case kCurvature: return {family, 0, 4, true};
+    case kPointHistogram: return {family, 0, 125, false};
+    case kFastHistogram: return {family, 0, 33, false};
+  }
+  fail("feature family {}, expected one of {}", static_cast<std::uint32_t>(family), all_names());
+}
+
+PlaneKind kind_of(FeatureFamily family, ScaleHandling handling) {
+  if (family == kIntensity) return PlaneKind::kLight;
+  if (family != kDepthValue) return PlaneKind::kSurface;
+  return handling == ScaleHandling::kDepthNormalised ? PlaneKind::kWrappedDepth : PlaneKind::kScaledDepth;
+}
+
+}  // namespace
+
+std::uint32_t parse_families(const std::string& names) {
+  std::uint32_t families = 0;
+  std::istringstream list(names);
+  for (std::string name; std::getline(list, name, ',');) {
+    std::uint32_t found = 0;
+    for (const FamilyName& known : kFamilyNames) found |= name == known.name ? known.family : 0U;
+    require(found != 0, "feature '{}', expected some of {}", name, all_names());
+    families |= found;
+  }
+  require(families != 0, "features '{}', expected some of {}", names, all_names());
+  return families;
+}
+
+std::string family_names(std::uint32_t families) {
+  std::string names;
+  for (const FamilyName& known : kFamilyNames) {
+    if ((families & known.family) != 0) names += (names.empty() ? "" : ",") + std::string(known.name);
+  }
+  return names;
+}
+
+FeatureLayout::FeatureLayout(const FeatureSettings& settings) {
+  for (const FamilyName& known : kFamilyNames) {
+    if ((settings.families & known.family) == 0) continue;
+    FeatureBlock block = block_of(known.family);
+    block.first = planes_;
+    planes_ += block.planes();
+    kinds_.resize(static_cast<std::size_t>(planes_), kind_of(known.family, settings.handling));
+    blocks_.push_back(block);
+  }
+}
+
+const FeatureBlock& FeatureLayout::block(FeatureFamily family) const {
+  for (const FeatureBlock& block : blocks_) {
+    if (block.family == family) return block;
+  }
+  fail("features: no '{}' in this layout, expected it among its families", family_names(family));
+}
+
+}  // namespace houghstream

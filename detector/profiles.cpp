@@ -1,0 +1,89 @@
+#include "detector/profiles.hpp"
+
+#include <fmt/format.h>
+
+#include "detector/features/feature_families.hpp"
+#include "detector/forest/forest.hpp"
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::array<float, kMaxScales> kFiveScales = {0.33F, 0.66F, 1.0F, 1.66F, 2.33F};  // Section 4
+constexpr float kUsualFocal = 525.0F;  // pixels, of the 640x480 cameras that the paper's patches were counted in
+
+Profile realtime() {
+  Profile profile;
+  profile.name = "realtime";
+  return profile;
+}
+
+Profile paper() {
+  Profile profile;
+  profile.name = "paper";
+  profile.features.image_scale = 0.7F;
+  profile.features.far_distance = profile.features.max_distance;  // one size for all
+  profile.patch.radius = 5;
+  profile.patch.unit = 1.0F / (0.7F * kUsualFocal);  // one working pixel at 1 m
+  profile.detection.stride = 1;
+  return profile;
+}
+
+Profile gall() {
+  Profile profile;
+  profile.name = "gall";
+  profile.features.families = kIntensity;
+  profile.features.image_scale = 1.0F;
+  profile.patch.radius = 8;
+  profile.training.alone_share = 0.0;  // differences only
+  profile.training.spare_background = 0;
+  profile.training.scoring = Scoring::kVotes;
+  profile.training.max_leaf_votes = 64;
+  profile.detection.stride = 1;
+  set_scale_handling(profile, "five");
+  return profile;
+}
+
+}  // namespace
+
+std::vector<std::string> profile_names() {
+  return {"gall", "paper", "realtime"};
+}
+
+Profile make_profile(const std::string& name) {
+  if (name == "gall") return gall();
+  if (name == "paper") return paper();
+  if (name == "realtime") return realtime();
+  fail("profile '{}', expected one of {}", name, fmt::join(profile_names(), ", "));
+}
+
+DetectionSettings detection_settings(const Forest& forest) {
+  Profile profile = make_profile(forest.profile);
+  if (forest.features.handling == ScaleHandling::kDepthNormalised) set_scale_handling(profile, "normalised");
+  return profile.detection;
+}
+
+void set_scale_handling(Profile& profile, const std::string& handling) {
+  FeatureSettings& features = profile.features;
+  if (handling == "normalised") {
+    if (features.handling == ScaleHandling::kDepthNormalised) return;
+    constexpr float kTaughtDistance = 0.7F;  // metres: about where turntables stand
+    features.handling = ScaleHandling::kDepthNormalised;
+    features.scales = {};
+    features.far_distance = features.max_distance;
+    profile.patch.unit = kTaughtDistance / (features.image_scale * kUsualFocal);
+    profile.training.merge_radius = TrainingSettings{}.merge_radius;
+    profile.detection.vote_sigma = DetectionSettings{}.vote_sigma;
+    return;
+  }
+  require(handling == "five" || handling == "single", "scale handling '{}', expected five, single or normalised",
+          handling);
+  features.handling = ScaleHandling::kScaleSpace;
+  features.scales = handling == "five" ? kFiveScales : std::array<float, kMaxScales>{1.0F};
+  profile.patch.unit = 1.0F;
+  // Offsets are counted as at 1 m: see FeatureSettings::handling.
+  profile.training.merge_radius = 1.5F / kUsualFocal;
+  profile.detection.vote_sigma = 3.0F / (features.image_scale * kUsualFocal);
+}
+
+}  // namespace houghstream

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+
+namespace houghstream {
+
+struct Forest;
+
+/// Everything that describes one way to train a forest and to search with it.
+struct Profile {
+  std::string name;
+  FeatureSettings features;
+  PatchSettings patch;
+  TrainingSettings training;
+  DetectionSettings detection;
+};
+
+/// The one place where the named settings are:
+///
+/// gall      the original Hough Forest (Gall et al. 2011) with the parameters of the paper's Section 4: intensity only,
+///           five scales of the image, patches of 16x16 pixels, every pixel; a detection's score is its votes' mass.
+/// paper     Section 6: final features, image scale 0.7, patches of 10x10 pixels (at 1 m), depth normalisation, every
+///           pixel.
+/// realtime  the default: half the image size (full size for what is far), every other pixel.
+///
+/// paper and realtime share what goes beyond the paper: 3-D votes, occluders in training, evidence, calibrated scores.
+/// Throws InputError that lists the names for an unknown one.
+Profile make_profile(const std::string& name);
+
+std::vector<std::string> profile_names();
+
+/// How a forest wants to be searched: the detection settings of the profile that it was trained by.
+DetectionSettings detection_settings(const Forest& forest);
+
+/// How distances are handled: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by depth,
+/// Section 5.1.2; patches as large as at `reference_distance`). Throws InputError for another word.
+void set_scale_handling(Profile& profile, const std::string& handling);
+
+}  // namespace houghstream

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "detector/profiles.hpp"
+
+namespace houghstream {
+
+/// What a command line changes of a forest's own detection settings.
+struct SearchOptions {
+  std::optional<int> stride;
+  std::optional<float> threshold;
+  std::optional<float> min_mass_share;
+  int threads = 2;
+  bool readable = false;
+
+  DetectionSettings settings_for(const Forest& forest) const {
+    DetectionSettings settings = detection_settings(forest);
+    settings.stride = stride.value_or(settings.stride);
+    settings.threshold = threshold.value_or(settings.threshold);
+    settings.min_mass_share = min_mass_share.value_or(settings.min_mass_share);
+    settings.threads = threads;
+    settings.readable = readable;
+    return settings;
+  }
+};
+
+inline void add_search_options(CLI::App& app, SearchOptions& options) {
+  app.add_option("--threads", options.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--threshold", options.threshold, "smallest score that is reported; default: the profile's");
+  app.add_option("--stride", options.stride, "patch offset, working pixels; default: the profile's")
+      ->check(CLI::Range(1, 64));
+}
+
+}  // namespace houghstream
