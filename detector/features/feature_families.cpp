@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "detector/features/surface_curvature.hpp"
 #include "pipeline/checks.hpp"
 
 namespace houghstream {
@@ -20,7 +21,7 @@ FeatureBlock block_of(FeatureFamily family) {
     case kDepthDerivatives: return {family, 0, 4, true};
     case kDepthHog: return {family, 0, 9, true};
     case kHonv: return {family, 0, 12, false};
-    case kCurvature: return {family, 0, 4, true};
+    case kCurvature: return {family, 0, CurvatureLayout::kPlanes, true};
     case kPointHistogram: return {family, 0, 125, false};
     case kFastHistogram: return {family, 0, 33, false};
   }

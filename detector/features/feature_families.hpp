@@ -16,7 +16,7 @@ enum FeatureFamily : std::uint32_t {
   kDepthDerivatives = 4,  ///< 4 planes: first and second Sobel derivatives of the depth
   kDepthHog = 8,          ///< 9 planes: histogram of oriented depth gradients (Janoch et al. 2011)
   kHonv = 16,             ///< 12 planes: histogram of oriented normal vectors (Tang et al. 2013)
-  kCurvature = 32,        ///< 4 planes: principal curvature (Arbeiter et al. 2012)
+  kCurvature = 32,        ///< 5 planes: principal curvature (Arbeiter et al. 2012), see CurvatureLayout
   kPointHistogram = 64,   ///< 125 planes: point feature histogram, PFH (Rusu et al. 2009)
   kFastHistogram = 128,   ///< 33 planes: fast point feature histogram, FPFH (Rusu et al. 2009)
 };

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/features/surface_curvature.hpp"
+#include "detector/features/surface_histograms.hpp"
+#include "detector/features/surface_honv.hpp"
 #include "pipeline/parallel.hpp"
 
 namespace houghstream {
@@ -41,13 +44,20 @@ void depth_value_planes(const WorkingFrame& frame, const FeatureSettings& settin
 
 /// The planes of a block before minimum and maximum, one per thing it measures.
 std::vector<cv::Mat> base_planes(const FeatureBlock& block, const WorkingFrame& frame, const DepthPlanes& depth,
-                                 const std::vector<cv::Mat>& intensity) {
+                                 const std::vector<cv::Mat>& intensity, int threads) {
+  PointHistogramSettings histograms;
+  histograms.step_px = 4;  // of every pixel they would take minutes a frame
   switch (block.family) {
     case kIntensity: return intensity;
     case kDepthDerivatives: return depth.derivatives;
     case kDepthHog: return depth.hog;
-    default: return {};
+    case kHonv: return honv_planes(frame, threads);
+    case kCurvature: return curvature_planes(frame, threads);
+    case kPointHistogram: return pfh_planes(frame, histograms, threads);
+    case kFastHistogram: return fpfh_planes(frame, histograms, threads);
+    case kDepthValue: break;  // its minimum and maximum are taken of metres, not of bytes
   }
+  return {};
 }
 
 /// All planes into one image, pixel by pixel, so that every cache line is written once.
@@ -95,7 +105,7 @@ FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& 
     if (block.family == kDepthValue) {
       depth_value_planes(frame, settings, out);
     } else {
-      place_block(block, base_planes(block, frame, depth, intensity), settings.min_max_px, threads, out);
+      place_block(block, base_planes(block, frame, depth, intensity, threads), settings.min_max_px, threads, out);
     }
   }
   FeatureImage image(frame.colour.cols, frame.colour.rows, layout.pixel_stride());

@@ -38,13 +38,16 @@ inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, flo
   return limited_scale(patch, patch.unit * focal_px / z);
 }
 
-/// p1 - p2. The only place where a patch is looked at, in training and in detection.
+/// Bytes from a patch's centre to the pixel `dx`, `dy` steps away.
+inline std::ptrdiff_t patch_offset(const PatchView& patch, int dx, int dy) {
+  const int x_px = (dx * patch.scale + 128) >> 8;
+  const int y_px = (dy * patch.scale + 128) >> 8;
+  return static_cast<std::ptrdiff_t>(y_px) * patch.row_stride + x_px * patch.pixel_stride;
+}
+
+/// p1 - p2 (the other place where patches are looked at is SplitSearch).
 inline int test_value(const PixelTest& test, const PatchView& patch) {
-  const auto offset = [&](std::int8_t dx, std::int8_t dy) {
-    const int x_px = (dx * patch.scale + 128) >> 8;
-    const int y_px = (dy * patch.scale + 128) >> 8;
-    return static_cast<std::ptrdiff_t>(y_px) * patch.row_stride + x_px * patch.pixel_stride + test.plane;
-  };
+  const auto offset = [&](std::int8_t dx, std::int8_t dy) { return patch_offset(patch, dx, dy) + test.plane; };
   const int second_mask = (test.kind >> 7) - 1;
   const int difference =
       patch.centre[offset(test.dx1, test.dy1)] - (patch.centre[offset(test.dx2, test.dy2)] & second_mask);

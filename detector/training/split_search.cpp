@@ -1,7 +1,7 @@
 #include "detector/training/split_search.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 
 #include "detector/features/features.hpp"
 
@@ -16,17 +16,24 @@ SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, con
       trusts_light_(trusts_light) {
   tests_.resize(static_cast<std::size_t>(settings.tests_per_node));
   bins_.resize(kBins * label_weights_.size());
+  label_counts_.resize(bins_.size());
   left_.resize(label_weights_.size());
   all_.resize(label_weights_.size());
 }
 
-PixelTest SplitSearch::random_test(Random& random) const {
-  PixelTest test;
+void SplitSearch::draw_tests(std::size_t test_count, Random& random) {
   const auto coordinate = [&] { return static_cast<std::int8_t>(random.between(-patch_.radius, patch_.radius)); };
-  test.dx1 = coordinate();
-  test.dy1 = coordinate();
-  test.dx2 = coordinate();
-  test.dy2 = coordinate();
+  for (Place& place : places_) place = {coordinate(), coordinate()};
+  drawn_.resize(test_count);
+  for (std::size_t t = 0; t < test_count; ++t) {
+    drawn_[t].first = static_cast<std::uint8_t>(random.below(kPlaces));
+    drawn_[t].second = static_cast<std::uint8_t>(random.below(kPlaces));
+    tests_[t] = random_test(drawn_[t], random);
+  }
+}
+
+PixelTest SplitSearch::random_test(PlacePair& pair, Random& random) const {
+  PixelTest test;
   test.plane = static_cast<std::uint8_t>(random.below(set_.layout.planes()));
   const PlaneKind kind = set_.layout.kind(test.plane);
   // The scaled depth rules out what has the wrong size for its distance, which a difference cannot do.
@@ -35,9 +42,12 @@ PixelTest SplitSearch::random_test(Random& random) const {
     test.kind = PixelTest::kWrapping;
   } else if ((trusts_light_ || kind != PlaneKind::kLight) && random.uniform() < alone_share) {
     test.kind = PixelTest::kAlone;
-    test.dx2 = test.dx1;
-    test.dy2 = test.dy1;
+    pair.second = pair.first;
   }
+  test.dx1 = places_[pair.first].dx;
+  test.dy1 = places_[pair.first].dy;
+  test.dx2 = places_[pair.second].dx;
+  test.dy2 = places_[pair.second].dy;
   return test;
 }
 
@@ -60,21 +70,49 @@ void SplitSearch::load_items(const std::vector<std::uint32_t>& samples) {
   }
 }
 
-/// Sample by sample, so that a patch is in the cache for all tests; in blocks, so that the values, which are read test
-/// by test, are not written one cache line each.
+void SplitSearch::prepare_tests(std::size_t test_count, int pixel_stride) {
+  prepared_.resize(test_count);
+  for (std::size_t t = 0; t < test_count; ++t) {
+    const PixelTest& test = tests_[t];
+    prepared_[t] = {static_cast<std::uint16_t>(drawn_[t].first * pixel_stride + test.plane),
+                    static_cast<std::uint16_t>(drawn_[t].second * pixel_stride + test.plane),
+                    static_cast<std::uint16_t>(test.kind & 31), static_cast<std::uint16_t>((test.kind >> 7) - 1)};
+  }
+}
+
+/// Copies the pixels at the node's places side by side. Patches are far apart in memory: the next one is asked for
+/// while this one is looked at.
+void SplitSearch::load_pixels(const PatchView& patch, const PatchView& next) {
+  const auto stride = static_cast<std::size_t>(patch.pixel_stride);
+  pixels_.resize(kPlaces * stride);
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    __builtin_prefetch(next.centre + patch_offset(next, places_[i].dx, places_[i].dy));
+    std::memcpy(pixels_.data() + i * stride, patch.centre + patch_offset(patch, places_[i].dx, places_[i].dy), stride);
+  }
+}
+
+/// Sample by sample; in blocks, so that the values, which are read test by test, are not written one cache line each.
+/// The values are those of test_value.
 void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::uint32_t>& samples) {
   constexpr std::size_t kBlock = 32;
   const std::size_t count = samples.size();
   values_.resize(test_count * count);
   block_.resize(test_count * kBlock);
+  const auto patch_of = [&](std::size_t s) {
+    const TrainingSample& sample = set_.samples[samples[s]];
+    return set_.pictures[static_cast<std::size_t>(sample.picture)].patch(sample.x, sample.y, sample.scale);
+  };
+  prepare_tests(test_count, patch_of(0).pixel_stride);
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     const std::size_t size = std::min(kBlock, count - begin);
     for (std::size_t s = 0; s < size; ++s) {
-      const TrainingSample& sample = set_.samples[samples[begin + s]];
-      const PatchView patch =
-          set_.pictures[static_cast<std::size_t>(sample.picture)].patch(sample.x, sample.y, sample.scale);
+      load_pixels(patch_of(begin + s), patch_of(std::min(begin + s + 1, count - 1)));
+      std::int16_t* out = block_.data() + s * test_count;
       for (std::size_t t = 0; t < test_count; ++t) {
-        block_[s * test_count + t] = static_cast<std::int16_t>(test_value(tests_[t], patch));
+        const Prepared& test = prepared_[t];
+        const int difference = pixels_[test.first] - (pixels_[test.second] & test.mask);
+        out[t] = static_cast<std::int16_t>(
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(difference) << test.shift) >> test.shift);
       }
     }
     for (std::size_t t = 0; t < test_count; ++t) {
@@ -84,19 +122,22 @@ void SplitSearch::evaluate_tests(std::size_t test_count, const std::vector<std::
   }
 }
 
-/// Information gain up to a constant: minus the weighted entropy of both sides.
+/// Reduction of the Gini impurity up to a constant (Breiman et al. 1984); it orders tests as the entropy does and needs
+/// no logarithms.
 float SplitSearch::class_gain() const {
   float left_sum = 0.0F;
   float right_sum = 0.0F;
-  float gain = 0.0F;
-  const auto term = [](float w) { return w > 0.0F ? w * std::log2(w) : 0.0F; };
+  float left_sq = 0.0F;
+  float right_sq = 0.0F;
   for (std::size_t l = 0; l < left_.size(); ++l) {
-    const float right = all_[l].weight - left_[l].weight;
-    gain += term(left_[l].weight) + term(right);
-    left_sum += left_[l].weight;
+    const float left = left_[l].weight;
+    const float right = all_[l].weight - left;
+    left_sum += left;
     right_sum += right;
+    left_sq += left * left;
+    right_sq += right * right;
   }
-  return gain - term(left_sum) - term(right_sum);
+  return (left_sum > 0.0F ? left_sq / left_sum : 0.0F) + (right_sum > 0.0F ? right_sq / right_sum : 0.0F);
 }
 
 /// Reduction of the offsets' variance up to a constant, per class, background left out.
@@ -115,23 +156,32 @@ bool SplitSearch::fill_bins(std::size_t t, Objective objective, int& first, int&
   const std::size_t count = items_.size();
   const std::size_t labels = label_weights_.size();
   const std::int16_t* values = values_.data() + t * count;
-  const auto [low, high] = std::minmax_element(values, values + count);
-  first = *low;
-  range = *high - first + 1;
+  std::int16_t low = values[0];
+  std::int16_t high = values[0];
+  for (std::size_t s = 1; s < count; ++s) {
+    low = std::min(low, values[s]);
+    high = std::max(high, values[s]);
+  }
+  first = low;
+  range = high - low + 1;
   if (range < 2) return false;
-  std::fill(bins_.begin(), bins_.end(), Sums{});
-  bin_counts_.fill(0);
   const std::uint32_t scale = (static_cast<std::uint32_t>(kBins) << 16U) / static_cast<std::uint32_t>(range);
+  std::fill(label_counts_.begin(), label_counts_.end(), 0);
+  const bool needs_offsets = objective == Objective::kOffset;
+  if (needs_offsets) std::fill(bins_.begin(), bins_.end(), Sums{});
   for (std::size_t s = 0; s < count; ++s) {
-    const std::size_t bin = (static_cast<std::uint32_t>(values[s] - first) * scale) >> 16U;
-    const Item& item = items_[s];
-    Sums& sums = bins_[bin * labels + item.label];
-    if (objective == Objective::kClass) {
-      sums.weight += item.sums.weight;
-    } else {
-      sums += item.sums;
+    const std::size_t bin = (static_cast<std::uint32_t>(values[s] - low) * scale) >> 16U;
+    const std::size_t place = bin * labels + items_[s].label;
+    ++label_counts_[place];
+    if (needs_offsets) bins_[place] += items_[s].sums;
+  }
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    bin_counts_[bin] = 0;
+    for (std::size_t l = 0; l < labels; ++l) {
+      const int n = label_counts_[bin * labels + l];
+      bin_counts_[bin] += n;
+      if (!needs_offsets) bins_[bin * labels + l].weight = label_weights_[l] * static_cast<float>(n);
     }
-    ++bin_counts_[bin];
   }
   return true;
 }
@@ -147,7 +197,11 @@ std::optional<SplitSearch::Split> SplitSearch::search_thresholds(std::size_t t, 
   int left_count = 0;
   for (std::size_t bin = 0; bin + 1 < kBins; ++bin) {
     if (bin_counts_[bin] == 0) continue;
-    for (std::size_t l = 0; l < labels; ++l) left_[l] += bins_[bin * labels + l];
+    if (objective == Objective::kClass) {
+      for (std::size_t l = 0; l < labels; ++l) left_[l].weight += bins_[bin * labels + l].weight;
+    } else {
+      for (std::size_t l = 0; l < labels; ++l) left_[l] += bins_[bin * labels + l];
+    }
     left_count += bin_counts_[bin];
     if (left_count < min_side || static_cast<int>(items_.size()) - left_count < min_side) continue;
     const float gain = objective == Objective::kClass ? class_gain() : offset_gain();
@@ -183,17 +237,27 @@ static std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& samp
   return out;
 }
 
+/// Moves the best tests to the front.
+void SplitSearch::keep_finalists(const std::vector<Judged>& judged, std::size_t count) {
+  std::vector<PixelTest> tests;
+  std::vector<PlacePair> pairs;
+  for (std::size_t i = 0; i < count; ++i) {
+    tests.push_back(tests_[judged[i].test]);
+    pairs.push_back(drawn_[judged[i].test]);
+  }
+  std::copy(tests.begin(), tests.end(), tests_.begin());
+  std::copy(pairs.begin(), pairs.end(), drawn_.begin());
+}
+
 std::optional<PixelTest> SplitSearch::best_test(const std::vector<std::uint32_t>& samples, Objective objective,
                                                 Random& random) {
   // Few samples are told apart by few tests; trying more would only fit their noise.
-  std::size_t test_count = std::min(tests_.size(), std::max<std::size_t>(64, 2 * samples.size()));
-  for (std::size_t t = 0; t < test_count; ++t) tests_[t] = random_test(random);
+  std::size_t test_count = std::min(tests_.size(), std::max<std::size_t>(64, samples.size()));
+  draw_tests(test_count, random);
   if (samples.size() >= 2 * kFirstLook && test_count > kFinalists) {
     const std::vector<Judged> first = judge_tests(test_count, thinned(samples, kFirstLook), objective, 2);
     test_count = std::min(first.size(), kFinalists);
-    std::vector<PixelTest> finalists;
-    for (std::size_t i = 0; i < test_count; ++i) finalists.push_back(tests_[first[i].test]);
-    std::copy(finalists.begin(), finalists.end(), tests_.begin());
+    keep_finalists(first, test_count);
   }
   const std::vector<Judged> judged = judge_tests(test_count, samples, objective, kMinSide);
   if (judged.empty()) return std::nullopt;

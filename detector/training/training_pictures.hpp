@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "detector/features/working_frame.hpp"
 #include "detector/profiles.hpp"
 #include "detector/training/training_set.hpp"
 #include "pipeline/random.hpp"
