@@ -74,7 +74,7 @@ ThingPtr make_teapot(Random& random) {
   const std::vector<Eigen::Vector3d> spout = {
       {-0.055, 0, 0.04}, {-0.08, 0, 0.05}, {-0.098, 0, 0.07}, {-0.108, 0, 0.09}, {-0.122, 0, 0.107}};
   const Mesh body = lathe(with_arc_length(profile), glaze);
-  const Mesh handle = tube(handle_path({0.058, 0.032}, {0.058, 0.1}, 0.058), 0.0075, glaze);
+  const Mesh handle = tube(handle_path({0.06, 0.032}, {0.048, 0.098}, 0.06), 0.0075, glaze);
   const Mesh pour = tapered_tube(spout, {0.02, 0.0175, 0.0135, 0.0105, 0.009}, glaze, 16);
   return make_thing("teapot",
                     finish_object(compose({at(body, kOrigin), at(handle, kOrigin), at(pour, kOrigin),
