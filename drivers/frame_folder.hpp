@@ -19,6 +19,10 @@ struct FramePair {
 /// picture lacks its partner.
 std::vector<FramePair> list_frame_pairs(const std::filesystem::path& folder);
 
+/// `folder` itself and those anywhere below it that hold image pairs, in natural order, for instance the background
+/// videos of the UW datasets (background/background_K/). Throws InputError when there is none.
+std::vector<std::filesystem::path> list_frame_folders(const std::filesystem::path& folder);
+
 /// Throws InputError when the images are unreadable or their sizes disagree with each other or with the camera.
 RgbdFrame read_frame_pair(const FramePair& pair, const Camera& camera, std::int64_t utime);
 

@@ -26,8 +26,9 @@ struct UwSelection {
 std::vector<TrainingView> read_uw_training_views(const std::filesystem::path& folder, const UwSelection& selection,
                                                  const Camera& camera);
 
-/// Background frames: NAME_color.png or NAME.png with NAME_depth.png (uint16 millimetres),
-/// in natural order. Throws InputError where they are missing or their sizes disagree with the camera.
+/// Background frames: NAME_color.png or NAME.png with NAME_depth.png (uint16 millimetres) in `folder` and below it, as
+/// in the UW RGB-D Scenes Dataset's background/background_K/background_K_N.png, in natural order. Throws InputError
+/// where they are missing or their sizes disagree with the camera.
 std::vector<TrainingView> read_background_views(const std::filesystem::path& folder, const Camera& camera);
 
 }  // namespace houghstream

@@ -113,7 +113,13 @@ Mesh box(const Eigen::Vector3d& size, const cv::Mat& texture) {
 }
 
 Mesh tube(const std::vector<Eigen::Vector3d>& path, double radius, const cv::Mat& texture, int segments) {
+  return tapered_tube(path, std::vector<double>(path.size(), radius), texture, segments);
+}
+
+Mesh tapered_tube(const std::vector<Eigen::Vector3d>& path, const std::vector<double>& radii, const cv::Mat& texture,
+                  int segments) {
   require(path.size() >= 2, "tube: path of {} points, expected at least 2", path.size());
+  require(radii.size() == path.size(), "tube: {} radii for {} points", radii.size(), path.size());
   Mesh mesh;
   const auto columns = static_cast<std::size_t>(segments) + 1;
   const Eigen::Vector3d start_direction = (path[1] - path[0]).normalized();
@@ -134,11 +140,11 @@ Mesh tube(const std::vector<Eigen::Vector3d>& path, double radius, const cv::Mat
     const double v = static_cast<double>(i) / static_cast<double>(path.size() - 1);
     if (i == 0) {
       add_ring(path[i], direction, 0.0, v);
-      add_ring(path[i], direction, radius, v);
+      add_ring(path[i], direction, radii[i], v);
     }
-    add_ring(path[i], direction, radius, v);
+    add_ring(path[i], direction, radii[i], v);
     if (i + 1 == path.size()) {
-      add_ring(path[i], direction, radius, v);
+      add_ring(path[i], direction, radii[i], v);
       add_ring(path[i], direction, 0.0, v);
     }
   }

@@ -36,6 +36,17 @@ Mesh box(const Eigen::Vector3d& size, const cv::Mat& texture);
 /// Round rod along a path with closed ends (handles, legs, spouts).
 Mesh tube(const std::vector<Eigen::Vector3d>& path, double radius, const cv::Mat& texture, int segments = 12);
 
+/// The same with a radius for each point of the path, metres.
+Mesh tapered_tube(const std::vector<Eigen::Vector3d>& path, const std::vector<double>& radii, const cv::Mat& texture,
+                  int segments = 12);
+
+/// Straight solid along y, from -depth/2 to depth/2. `outline` holds (x, z), convex, counter-clockwise seen from -y;
+/// `ends` covers its bounding rectangle, `side` each of the flat sides. Lengths in metres.
+Mesh prism(const std::vector<Eigen::Vector2d>& outline, double depth, const cv::Mat& ends, const cv::Mat& side);
+
+/// Stretched about the origin along each axis.
+Mesh scaled(Mesh mesh, const Eigen::Vector3d& factors);
+
 /// A part and where it goes.
 struct Part {
   Mesh mesh;

@@ -11,18 +11,24 @@
 namespace houghstream {
 
 /// An object that can be taught. Ids 1-4 (bowl, cereal_box, coffee_mug, soda_can) are the demo's classes; 5-8 are
-/// their second instances (bowl_2 ...), of other proportions and prints.
+/// their second instances (bowl_2 ...), of other proportions and prints; 101-116 are sixteen further classes
+/// (further_objects.hpp), which with the demo's make twenty.
 struct TaughtObject {
   int id = 0;
   std::string name;
-  bool symmetric_about_z = false;
+  bool symmetric_about_z = false;  ///< of its shape; its print may differ all round
   ThingPtr thing;
 };
 
 inline constexpr int kClassCount = 4;         ///< ids 1 to 4
 inline constexpr int kTaughtObjectCount = 8;  ///< ids 1 to 8, look-alikes included
+inline constexpr int kFirstFurtherId = 101;
+inline constexpr int kFurtherClassCount = 16;  ///< ids 101 to 116
 
-/// Object `id`, 1 to 8; the same on every call. Throws InputError for another id.
+/// The twenty classes' ids: 1-4 and 101-116.
+std::vector<int> twenty_class_ids();
+
+/// Object `id`, 1 to 8 or 101 to 116; the same on every call. Throws InputError for another id.
 TaughtObject make_taught_object(int id);
 
 /// "bowl" -> 1. Throws InputError listing the known names.

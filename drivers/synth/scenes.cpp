@@ -34,12 +34,13 @@ class TableSetter {
             Eigen::Vector2d(x_high * half_.x(), y_high * half_.y())};
   }
 
-  void stand_object(int id) {
+  void stand_object(int id, const Eigen::AlignedBox2d& where) {
     const TaughtObject object = make_taught_object(id);
-    const int truth_id = id <= kClassCount ? id : 0;  // the truth does not name look-alikes
-    require(stand(object.thing, region(-0.62, 0.62, -0.75, 0.6), M_PI, truth_id), "scene: no place left for {}",
-            object.name);
+    const bool look_alike = id > kClassCount && id <= kTaughtObjectCount;  // the truth does not name them
+    require(stand(object.thing, where, M_PI, look_alike ? 0 : id), "scene: no place left for {}", object.name);
   }
+
+  void stand_object(int id) { stand_object(id, region(-0.62, 0.62, -0.75, 0.6)); }
 
   Random& random() { return random_; }
 
@@ -62,6 +63,15 @@ void add_distractors(TableSetter& setter, RoomStyle style, int count, std::uint6
   }
 }
 
+// Twelve objects need more room than four.
+void add_many_objects(TableSetter& setter, FurtherClasses further) {
+  const Eigen::AlignedBox2d where = setter.region(-0.75, 0.75, -0.65, 0.85);
+  for (const int id : twenty_class_ids()) {
+    const bool odd = id % 2 == 1;
+    if (id <= kClassCount || odd == (further == FurtherClasses::kOddIds)) setter.stand_object(id, where);
+  }
+}
+
 }  // namespace
 
 Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, std::uint64_t seed) {
@@ -73,47 +83,64 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
   if (style == RoomStyle::kDesk)
     setter.stand(make_distractor(kMonitor, aspect_seed(seed, kFirstDistractor + 500)),
                  setter.region(-0.4, 0.4, 0.4, 0.9), 0.3, 0);
-  for (int id = 1; clutter.taught_objects && id <= kClassCount; ++id) setter.stand_object(id);
+  if (clutter.further != FurtherClasses::kNone) {
+    add_many_objects(setter, clutter.further);
+  } else {
+    for (int id = 1; clutter.taught_objects && id <= kClassCount; ++id) setter.stand_object(id);
+  }
   const int first = setter.random().below(kClassCount);
   for (int i = 0; i < clutter.look_alikes; ++i) setter.stand_object(kClassCount + 1 + (first + i) % kClassCount);
   add_distractors(setter, style, clutter.distractors, seed);
   return scene;
 }
 
+namespace {
+
+struct Plan {
+  const char* name;
+  WorldUse use;
+  std::uint64_t world;  ///< number for world_seed()
+  RoomStyle style;
+  Clutter clutter;
+};
+
+constexpr std::uint64_t kDevelopment = 1ULL << 40U;  // first of its worlds, far beyond the numbers of training data
+constexpr WorldUse kTest = WorldUse::kTest;
+constexpr WorldUse kTraining = WorldUse::kTraining;
+constexpr FurtherClasses kNone = FurtherClasses::kNone;
+constexpr FurtherClasses kOdd = FurtherClasses::kOddIds;
+constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
+
+constexpr std::array<Plan, 13> kPlans = {
+    {{kTestScenes[0], kTest, 0, RoomStyle::kTable, {true, 1, 14, kNone}},
+     {kTestScenes[1], kTest, 1, RoomStyle::kTable, {true, 2, 16, kNone}},
+     {kTestScenes[2], kTest, 2, RoomStyle::kDesk, {true, 1, 14, kNone}},
+     {kTestScenes[3], kTest, 3, RoomStyle::kDesk, {true, 2, 18, kNone}},
+     {kTestScenes[4], kTest, 4, RoomStyle::kKitchen, {true, 1, 20, kNone}},
+     {kTestScenes[5], kTest, 5, RoomStyle::kMeeting, {true, 1, 16, kNone}},
+     {kTwentyClassScenes[0], kTest, 20, RoomStyle::kTable, {true, 1, 12, kOdd}},
+     {kTwentyClassScenes[1], kTest, 21, RoomStyle::kMeeting, {true, 1, 14, kEven}},
+     {kDevelopmentScenes[0], kTraining, kDevelopment, RoomStyle::kTable, {true, 2, 16, kNone}},
+     {kDevelopmentScenes[1], kTraining, kDevelopment + 1, RoomStyle::kDesk, {true, 1, 16, kNone}},
+     {kDevelopmentScenes[2], kTraining, kDevelopment + 2, RoomStyle::kKitchen, {true, 1, 18, kNone}},
+     {kTwentyClassDevelopmentScenes[0], kTraining, kDevelopment + 20, RoomStyle::kMeeting, {true, 1, 14, kOdd}},
+     {kTwentyClassDevelopmentScenes[1], kTraining, kDevelopment + 21, RoomStyle::kTable, {true, 1, 12, kEven}}}};
+
+}  // namespace
+
 Scene make_named_scene(const std::string& name) {
-  struct Plan {
-    const char* name;
-    RoomStyle style;
-    Clutter clutter;
-  };
-  constexpr std::array<Plan, kTestScenes.size()> kTests = {{{kTestScenes[0], RoomStyle::kTable, {true, 1, 14}},
-                                                            {kTestScenes[1], RoomStyle::kTable, {true, 2, 16}},
-                                                            {kTestScenes[2], RoomStyle::kDesk, {true, 1, 14}},
-                                                            {kTestScenes[3], RoomStyle::kDesk, {true, 2, 18}},
-                                                            {kTestScenes[4], RoomStyle::kKitchen, {true, 1, 20}},
-                                                            {kTestScenes[5], RoomStyle::kMeeting, {true, 1, 16}}}};
-  constexpr std::array<Plan, kDevelopmentScenes.size()> kDevelopment = {
-      {{kDevelopmentScenes[0], RoomStyle::kTable, {true, 2, 16}},
-       {kDevelopmentScenes[1], RoomStyle::kDesk, {true, 1, 16}},
-       {kDevelopmentScenes[2], RoomStyle::kKitchen, {true, 1, 18}}}};
-  constexpr std::uint64_t kFirstDevelopmentWorld = 1ULL << 40U;  // far beyond the numbers of training data
-  const auto make = [](const Plan& plan, WorldUse use, std::uint64_t number) {
-    return make_scene(plan.name, plan.style, plan.clutter, world_seed(use, number));
-  };
-  for (std::size_t i = 0; i < kTests.size(); ++i) {
-    if (name == kTests[i].name) return make(kTests[i], WorldUse::kTest, i);
+  for (const Plan& plan : kPlans) {
+    if (name == plan.name) return make_scene(name, plan.style, plan.clutter, world_seed(plan.use, plan.world));
   }
-  for (std::size_t i = 0; i < kDevelopment.size(); ++i) {
-    if (name == kDevelopment[i].name) return make(kDevelopment[i], WorldUse::kTraining, kFirstDevelopmentWorld + i);
-  }
-  fail("scene \"{}\": expected one of {}, or for choosing settings {}", name, fmt::join(kTestScenes, ", "),
-       fmt::join(kDevelopmentScenes, ", "));
+  fail("scene \"{}\": expected one of {}, {}, or for choosing settings {}, {}", name, fmt::join(kTestScenes, ", "),
+       fmt::join(kTwentyClassScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
+       fmt::join(kTwentyClassDevelopmentScenes, ", "));
 }
 
 Scene make_background_scene(int index, std::uint64_t seed) {
   const std::uint64_t own = world_seed(WorldUse::kTraining, seed * 100000U + static_cast<std::uint64_t>(index));
   const auto style = static_cast<RoomStyle>(index % kRoomStyles);
-  return make_scene("background", style, {false, 0, 16}, own);
+  return make_scene("background", style, {false, 0, 16, kNone}, own);
 }
 
 }  // namespace houghstream

@@ -17,11 +17,15 @@ struct Scene {
   Trajectory trajectory;
 };
 
+/// Which of the sixteen further classes (ids 101-116) stand beside the four.
+enum class FurtherClasses : std::uint8_t { kNone, kOddIds, kEvenIds };
+
 /// What stands on the table.
 struct Clutter {
-  bool taught_objects = false;  ///< the four classes, once each
-  int look_alikes = 0;          ///< how many of the second instances (ids 5-8)
-  int distractors = 10;         ///< how many things are tried; those that find no place are left out
+  bool taught_objects = false;                     ///< the four classes, once each
+  int look_alikes = 0;                             ///< how many of the second instances (ids 5-8)
+  int distractors = 10;                            ///< how many things are tried; those that find no place are left out
+  FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each
 };
 
 Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, std::uint64_t seed);
@@ -34,6 +38,13 @@ inline constexpr std::array<const char*, 6> kTestScenes = {"table_small_1", "tab
 /// use.
 inline constexpr std::array<const char*, 3> kDevelopmentScenes = {"development_table", "development_desk",
                                                                   "development_kitchen"};
+
+/// Test scenes of the twenty classes: each holds the four and eight of the sixteen others, both together all of them.
+inline constexpr std::array<const char*, 2> kTwentyClassScenes = {"objects_20_a", "objects_20_b"};
+
+/// Their like to choose settings on.
+inline constexpr std::array<const char*, 2> kTwentyClassDevelopmentScenes = {"development_objects_20_a",
+                                                                             "development_objects_20_b"};
 
 /// One of the test or development scenes. Throws InputError listing the known names.
 Scene make_named_scene(const std::string& name);

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "drivers/synth/further_objects.hpp"
 #include "drivers/synth/materials.hpp"
 #include "drivers/synth/mesh_parts.hpp"
 #include "drivers/synth/objects.hpp"
@@ -16,6 +19,30 @@ constexpr std::uint64_t kObjectSeed = 7100;
 
 const std::array<const char*, kTaughtObjectCount> kNames = {"bowl",   "cereal_box",   "coffee_mug",   "soda_can",
                                                             "bowl_2", "cereal_box_2", "coffee_mug_2", "soda_can_2"};
+
+struct FurtherClass {
+  const char* name;
+  bool symmetric_about_z;
+  ThingPtr (*make)(Random&);
+};
+
+// By id, from kFirstFurtherId on.
+constexpr std::array<FurtherClass, kFurtherClassCount> kFurther = {{{"plate", true, make_plate},
+                                                                    {"teapot", false, make_teapot},
+                                                                    {"pitcher", false, make_pitcher},
+                                                                    {"tumbler", true, make_tumbler},
+                                                                    {"water_bottle", true, make_water_bottle},
+                                                                    {"shampoo_bottle", false, make_shampoo_bottle},
+                                                                    {"jam_jar", true, make_jam_jar},
+                                                                    {"food_tin", true, make_food_tin},
+                                                                    {"milk_carton", false, make_milk_carton},
+                                                                    {"tea_box", false, make_tea_box},
+                                                                    {"sponge", false, make_sponge},
+                                                                    {"office_stapler", false, make_office_stapler},
+                                                                    {"beach_ball", true, make_beach_ball},
+                                                                    {"toy_truck", false, make_toy_truck},
+                                                                    {"banana", false, make_banana},
+                                                                    {"flashlight", false, make_flashlight}}};
 
 ThingPtr bowl(bool second, Random& random) {
   const BowlShape shape = second ? BowlShape{0.084, 0.045, 0.056, 0.0035} : BowlShape{0.074, 0.036, 0.066, 0.004};
@@ -48,10 +75,29 @@ ThingPtr soda_can(bool second, Random& random) {
   return make_thing(second ? "soda_can_2" : "soda_can", can_mesh(radius, height, palette, random), 0.45F);
 }
 
+TaughtObject make_further_object(int id) {
+  const FurtherClass& further = kFurther[static_cast<std::size_t>(id - kFirstFurtherId)];
+  Random random(kObjectSeed + static_cast<std::uint64_t>(id));
+  return {id, further.name, further.symmetric_about_z, further.make(random)};
+}
+
+bool is_further(int id) {
+  return id >= kFirstFurtherId && id < kFirstFurtherId + kFurtherClassCount;
+}
+
 }  // namespace
 
+std::vector<int> twenty_class_ids() {
+  std::vector<int> ids(kClassCount + kFurtherClassCount);
+  std::iota(ids.begin(), ids.begin() + kClassCount, 1);
+  std::iota(ids.begin() + kClassCount, ids.end(), kFirstFurtherId);
+  return ids;
+}
+
 TaughtObject make_taught_object(int id) {
-  require(id >= 1 && id <= kTaughtObjectCount, "taught object: id {}, expected 1 to {}", id, kTaughtObjectCount);
+  if (is_further(id)) return make_further_object(id);
+  require(id >= 1 && id <= kTaughtObjectCount, "taught object: id {}, expected 1 to {} or {} to {}", id,
+          kTaughtObjectCount, kFirstFurtherId, kFirstFurtherId + kFurtherClassCount - 1);
   const bool second = id > kClassCount;
   const int kind = (id - 1) % kClassCount;
   Random random(kObjectSeed + static_cast<std::uint64_t>(id));
@@ -69,7 +115,12 @@ int taught_object_id(const std::string& name) {
   for (int i = 0; i < kTaughtObjectCount; ++i) {
     if (name == kNames[static_cast<std::size_t>(i)]) return i + 1;
   }
-  fail("object \"{}\": expected one of {}", name, fmt::join(kNames, ", "));
+  std::vector<std::string> further;
+  for (const FurtherClass& entry : kFurther) {
+    if (name == entry.name) return kFirstFurtherId + static_cast<int>(further.size());
+    further.emplace_back(entry.name);
+  }
+  fail("object \"{}\": expected one of {}, {}", name, fmt::join(kNames, ", "), fmt::join(further, ", "));
 }
 
 }  // namespace houghstream

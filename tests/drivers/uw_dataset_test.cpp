@@ -117,5 +117,25 @@ TEST(UwDataset, BackgroundIsReadInNaturalOrder) {
   EXPECT_THROW(read_background_views(fresh_folder("uw_no_background"), kCamera), InputError);
 }
 
+TEST(UwDataset, BackgroundVideosLieInFoldersBelow) {
+  const fs::path folder = fresh_folder("uw_background_videos");
+  for (const std::string video : {"background_10", "background_2"}) {
+    fs::create_directories(folder / video);
+    for (const std::string number : {"_2", "_10"}) {
+      const std::string stem = (folder / video / (video + number)).string();
+      write_png(cv::Mat(480, 640, CV_8UC3, cv::Scalar(0)), stem + ".png");
+      write_png(cv::Mat(480, 640, CV_16UC1, cv::Scalar(0)), stem + "_depth.png");
+    }
+  }
+  const auto views = read_background_views(folder, kCamera);
+  ASSERT_EQ(views.size(), 4U);
+  EXPECT_NE(views[0].source.find("background_2_2.png"), std::string::npos);
+  EXPECT_NE(views[1].source.find("background_2_10.png"), std::string::npos);
+  EXPECT_NE(views[3].source.find("background_10_10.png"), std::string::npos);
+  EXPECT_LT(views[0].frame.utime, views[3].frame.utime);
+  fs::remove(folder / "background_10" / "background_10_2.png");
+  EXPECT_THROW(read_background_views(folder, kCamera), InputError);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -5,6 +5,7 @@
 #include "drivers/bop_dataset.hpp"
 #include "drivers/image_file.hpp"
 #include "pipeline/checks.hpp"
+#include "tests/drivers/mat_writing.hpp"
 #include "tests/drivers/test_files.hpp"
 
 namespace houghstream {
@@ -52,6 +53,35 @@ TEST(ImportScene, FramesBecomeASceneWithoutObjectsInNaturalOrder) {
   EXPECT_EQ(scene.read_frame(0).colour.at<cv::Vec3b>(0, 0)[0], 9);
   EXPECT_FLOAT_EQ(scene.read_frame(0).depth.at<float>(0, 0), 0.7F);
   EXPECT_TRUE(scene.images()[0].objects.empty());
+}
+
+TEST(ImportScene, UwVideosBecomeScenesAsBoxesDo) {
+  const fs::path video = fresh_folder("import_uw") / "desk" / "desk_1";
+  fs::create_directories(video);
+  for (const int number : {1, 2}) {
+    const std::string stem = (video / ("desk_1_" + std::to_string(number))).string();
+    write_png(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(number)), stem + ".png");
+    write_png(cv::Mat(48, 64, CV_16UC1, cv::Scalar(700)), stem + "_depth.png");
+  }
+  const std::vector<MatBox> boxes = {uw_box("soda_can", 4, {6, 25, 11, 30}), uw_box("cap", 1, {6, 40, 41, 50})};
+  write_mat(video.parent_path() / "desk_1.mat", mat_cells("bboxes", {mat_boxes(boxes), mat_boxes({})}));
+  const fs::path scene_folder = fresh_folder("import_uw_out");
+  EXPECT_EQ(import_uw_scene(video, {64, 48, 60.0, 61.0, 31.5, 23.5}, scene_folder), 2);
+  const BopScene scene(scene_folder);
+  ASSERT_EQ(scene.images().size(), 2U);
+  EXPECT_EQ(scene.images()[0].camera.fy, 61.0);
+  EXPECT_EQ(scene.read_frame(1).colour.at<cv::Vec3b>(0, 0)[0], 2);
+  EXPECT_FLOAT_EQ(scene.read_frame(0).depth.at<float>(0, 0), 0.7F);
+  EXPECT_TRUE(scene.images()[1].objects.empty());
+  ASSERT_EQ(scene.images()[0].objects.size(), 2U);
+  const TrueObject& can = scene.images()[0].objects[0];
+  EXPECT_FALSE(can.has_pose);
+  EXPECT_EQ(can.object_id, 2);
+  EXPECT_EQ(can.box_visible_px, cv::Rect(10, 5, 20, 20));
+  EXPECT_EQ(can.visible_fraction, 1.0);
+  EXPECT_EQ(find_bop_names(scene_folder), (std::map<int, std::string>{{1, "cap_1"}, {2, "soda_can_4"}}));
+  EXPECT_THROW(import_uw_scene(video, {32, 48, 60.0, 61.0, 31.5, 23.5}, scene_folder), InputError);
+  EXPECT_THROW(import_uw_scene(video, Camera(), scene_folder), InputError);
 }
 
 TEST(ImportScene, BadSourcesAreRefused) {

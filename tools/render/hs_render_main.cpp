@@ -19,6 +19,13 @@ struct Arguments {
   int every = 1;
 };
 
+std::string scene_names() {
+  using namespace houghstream;
+  return fmt::format("{}, {}; for choosing settings {}, {}", fmt::join(kTestScenes, ", "),
+                     fmt::join(kTwentyClassScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
+                     fmt::join(kTwentyClassDevelopmentScenes, ", "));
+}
+
 void add_common(CLI::App& command, Arguments& arguments) {
   command.add_option("--out", arguments.common.out, "folder to write to")->required();
   command.add_option("--threads", arguments.common.threads, "threads to render on")
@@ -30,7 +37,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   CLI::App* training = app.add_subcommand("training", "turntable views of the objects, with masks and models");
   add_common(*training, arguments);
   training->add_option("--seed", arguments.common.seed, "of the training rooms")->capture_default_str();
-  training->add_option("--objects", arguments.objects, "names, or all (the four classes)")
+  training->add_option("--objects", arguments.objects, "names, all (the four classes) or all_20 (sixteen more)")
       ->delimiter(',')
       ->capture_default_str();
   training->add_option("--azimuths", arguments.turntable.azimuths, "views a turn")->capture_default_str();
@@ -45,7 +52,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
 
   CLI::App* scene = app.add_subcommand("scene", "one of the test scenes");
   add_common(*scene, arguments);
-  scene->add_option("name", arguments.scene, fmt::format("{}", fmt::join(houghstream::kTestScenes, ", ")))->required();
+  scene->add_option("name", arguments.scene, scene_names())->required();
   scene->add_option("--frames", arguments.frames, "frames along the camera's whole way")->capture_default_str();
   scene->add_option("--every", arguments.every, "write only every Nth of them")->capture_default_str();
   scene->callback([&] { render_scene(arguments.common, arguments.scene, arguments.frames, arguments.every); });

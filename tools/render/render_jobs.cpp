@@ -1,7 +1,6 @@
 #include "tools/render/render_jobs.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "drivers/bop_writer.hpp"
 #include "pipeline/checks.hpp"
@@ -13,16 +12,28 @@ namespace {
 constexpr int kMostFrames = 100000;
 constexpr int kFramesPerRoom = 5;
 
-std::vector<TaughtObject> taught_objects(const std::vector<std::string>& names) {
-  std::vector<int> ids(kClassCount);
-  std::iota(ids.begin(), ids.end(), 1);
-  if (names != std::vector<std::string>{"all"}) {
-    ids.resize(names.size());
-    std::transform(names.begin(), names.end(), ids.begin(), taught_object_id);
-  }
+std::vector<int> object_ids(const std::vector<std::string>& names) {
+  std::vector<int> ids = twenty_class_ids();
+  if (names == std::vector<std::string>{"all_20"}) return ids;
+  ids.resize(kClassCount);
+  if (names == std::vector<std::string>{"all"}) return ids;
+  ids.resize(names.size());
+  std::transform(names.begin(), names.end(), ids.begin(), taught_object_id);
+  return ids;
+}
+
+std::vector<TaughtObject> taught_objects(const std::vector<int>& ids) {
   std::vector<TaughtObject> objects(ids.size());
   std::transform(ids.begin(), ids.end(), objects.begin(), make_taught_object);
   return objects;
+}
+
+// The demo's classes, or all twenty where the truth names one of the others.
+std::vector<int> classes_of(const Scene& scene) {
+  const auto& items = scene.world.items;
+  const bool further =
+      std::any_of(items.begin(), items.end(), [](const Placed& item) { return item.object_id >= kFirstFurtherId; });
+  return object_ids({further ? "all_20" : "all"});
 }
 
 void write_models(const std::vector<TaughtObject>& objects, const std::filesystem::path& folder) {
@@ -47,7 +58,7 @@ std::filesystem::path fresh_scene(const std::filesystem::path& folder) {
 
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
                      const TurntableSettings& turntable) {
-  const std::vector<TaughtObject> taught = taught_objects(objects);
+  const std::vector<TaughtObject> taught = taught_objects(object_ids(objects));
   const Turntable table(turntable, options.seed);
   write_models(taught, options.out / "models");
   for (const TaughtObject& object : taught) {
@@ -80,7 +91,7 @@ void render_scene(const RenderOptions& options, const std::string& name, int fra
   require(every >= 1, "scene: every {}th frame, expected at least 1", every);
   const Scene scene = make_named_scene(name);
   const LitWorld lit_world = light_world(scene.world);
-  write_models(taught_objects({"all"}), options.out / "models");
+  write_models(taught_objects(classes_of(scene)), options.out / "models");
   BopWriter writer(fresh_scene(options.out));
   render_in_order(
       name, options.threads, (frames + every - 1) / every,

@@ -16,14 +16,16 @@ struct RenderOptions {
   int threads = 2;
 };
 
-/// OUT/00000I/ for each object id I, and OUT/models/.
+/// OUT/00000I/ for each object id I, and OUT/models/. `objects` holds names, or only "all" (the demo's four classes) or
+/// only "all_20" (twenty_class_ids()).
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
                      const TurntableSettings& turntable);
 
 /// OUT/ becomes one BOP scene of `count` frames of training rooms without the objects.
 void render_background(const RenderOptions& options, int count);
 
-/// OUT/ becomes one BOP scene: every `every`-th of `frames` frames of the test scene `name`, and OUT/models/.
+/// OUT/ becomes one BOP scene: every `every`-th of `frames` frames of the test scene `name`, and OUT/models/ with
+/// the demo's four classes or, where the scene holds others, all twenty.
 void render_scene(const RenderOptions& options, const std::string& name, int frames, int every);
 
 }  // namespace houghstream

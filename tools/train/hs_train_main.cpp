@@ -94,7 +94,9 @@ int main(int argc, char** argv) {
   Overrides overrides;
   std::string out;
   app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR")->required();
-  app.add_option("--background", sources.backgrounds, "rooms without the objects: bop:DIR or images:DIR")->required();
+  app.add_option("--background", sources.backgrounds,
+                 "rooms without the objects: bop:DIR or images:DIR, with the folders below it")
+      ->required();
   app.add_option("--instances", sources.instances, "instances of a uw: folder to teach")->delimiter(',');
   app.add_option("--rename", sources.renames, "can_1=can: what an instance is called")->delimiter(',');
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");

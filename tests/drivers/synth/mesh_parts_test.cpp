@@ -43,5 +43,25 @@ TEST(MeshParts, AtlasKeepsEachPartsTexture) {
   EXPECT_LT(mesh_bounds(mesh).center().norm(), 1e-6F);
 }
 
+TEST(MeshParts, PrismIsClosedWithTheVolumeOfItsOutline) {
+  const Mesh roof = prism({{-0.1, 0.0}, {0.1, 0.0}, {0.0, 0.05}}, 0.3, kTexture, kTexture);
+  expect_sound(roof);
+  EXPECT_NEAR(signed_volume(roof), 0.5 * 0.2 * 0.05 * 0.3, 1e-7);
+  EXPECT_THROW(prism({{0, 0}, {1, 0}}, 0.3, kTexture, kTexture), InputError);
+}
+
+TEST(MeshParts, StretchingKeepsTheSurfaceClosedAndItsNormalsUpright) {
+  const Mesh cube = scaled(box({0.1, 0.1, 0.1}, kTexture), {1.0, 0.5, 2.0});
+  expect_sound(cube);
+  EXPECT_NEAR(signed_volume(cube), 0.001, 1e-8);
+}
+
+TEST(MeshParts, TaperedTubeIsAClosedCone) {
+  const Mesh cone = tapered_tube({{0, 0, 0}, {0, 0, 0.1}}, {0.03, 0.01}, kTexture, 96);
+  expect_sound(cone);
+  EXPECT_NEAR(signed_volume(cone), M_PI * 0.1 * (0.03 * 0.03 + 0.03 * 0.01 + 0.01 * 0.01) / 3.0, 2e-6);
+  EXPECT_THROW(tapered_tube({{0, 0, 0}, {0, 0, 0.1}}, {0.03}, kTexture), InputError);
+}
+
 }  // namespace
 }  // namespace houghstream

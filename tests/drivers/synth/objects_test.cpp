@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <set>
 
@@ -12,23 +13,58 @@
 namespace houghstream {
 namespace {
 
+// All that can be taught: the four classes, their look-alikes and the sixteen further ones.
+std::vector<int> taught_ids() {
+  std::vector<int> ids = twenty_class_ids();
+  for (int id = kClassCount + 1; id <= kTaughtObjectCount; ++id) ids.push_back(id);
+  return ids;
+}
+
+// Whether a step of the lathe's 48 about z brings every vertex to the place of another.
+bool turns_onto_itself(const Mesh& mesh) {
+  const Eigen::AngleAxisf step(static_cast<float>(2.0 * M_PI / 48.0), Eigen::Vector3f::UnitZ());
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Eigen::Vector3f& vertex) {
+    const Eigen::Vector3f there = step * vertex;
+    return std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [&](const Eigen::Vector3f& other) { return (other - there).norm() < 1e-5F; });
+  });
+}
+
 TEST(Objects, TaughtOnesAreClosedCentredAndOfHouseholdSize) {
   std::set<std::string> names;
-  for (int id = 1; id <= kTaughtObjectCount; ++id) {
+  for (const int id : taught_ids()) {
     const TaughtObject object = make_taught_object(id);
     const Mesh& mesh = object.thing->mesh;
     SCOPED_TRACE(object.name);
     names.insert(object.name);
+    EXPECT_EQ(object.id, id);
+    EXPECT_EQ(object.thing->name, object.name);
     EXPECT_EQ(taught_object_id(object.name), id);
     EXPECT_TRUE(is_closed(mesh));
     EXPECT_GT(signed_volume(mesh), 0.0);
     EXPECT_GT(agreeing_normals(mesh), 0.99);
     EXPECT_LT(mesh_bounds(mesh).center().norm(), 1e-5F);
-    EXPECT_GT(mesh_bounds(mesh).sizes().minCoeff(), 0.04F);
+    EXPECT_GT(mesh_bounds(mesh).sizes().minCoeff(), id < kFirstFurtherId ? 0.04F : 0.03F);
+    EXPECT_GT(mesh_bounds(mesh).sizes().maxCoeff(), 0.06F);
     EXPECT_LT(mesh_bounds(mesh).sizes().maxCoeff(), 0.3F);
     EXPECT_EQ(mesh.colours.size(), mesh.vertices.size());
   }
-  EXPECT_EQ(names.size(), static_cast<std::size_t>(kTaughtObjectCount));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(kTaughtObjectCount + kFurtherClassCount));
+}
+
+TEST(Objects, TwentyClassesAreTheFourAndSixteenMore) {
+  const std::vector<int> ids = twenty_class_ids();
+  ASSERT_EQ(ids.size(), 20U);
+  EXPECT_EQ(std::set<int>(ids.begin(), ids.end()).size(), 20U);
+  EXPECT_EQ(std::vector<int>(ids.begin(), ids.begin() + 5), (std::vector<int>{1, 2, 3, 4, 101}));
+  EXPECT_EQ(ids.back(), 116);
+}
+
+TEST(Objects, OnlyBodiesOfRevolutionAreCalledSymmetric) {
+  for (const int id : taught_ids()) {
+    const TaughtObject object = make_taught_object(id);
+    EXPECT_EQ(turns_onto_itself(object.thing->mesh), object.symmetric_about_z) << object.name;
+  }
 }
 
 TEST(Objects, SodaCanHasTheSizeOfACan) {
@@ -38,9 +74,11 @@ TEST(Objects, SodaCanHasTheSizeOfACan) {
 }
 
 TEST(Objects, AreTheSameOnEveryCall) {
-  const ThingPtr first = make_taught_object(2).thing;
-  const ThingPtr second = make_taught_object(2).thing;
-  EXPECT_EQ(cv::norm(first->mesh.texture, second->mesh.texture, cv::NORM_INF), 0.0);
+  for (const int id : {2, 101, 111, 116}) {
+    const ThingPtr first = make_taught_object(id).thing;
+    const ThingPtr second = make_taught_object(id).thing;
+    EXPECT_EQ(cv::norm(first->mesh.texture, second->mesh.texture, cv::NORM_INF), 0.0);
+  }
 }
 
 TEST(Objects, PrintsAreNotFlatButTheBowlIsPlain) {
@@ -69,7 +107,8 @@ TEST(Objects, DistractorsAreClosedAndDifferFromSeedToSeed) {
 
 TEST(Objects, RefusesWhatItDoesNotKnow) {
   EXPECT_THROW(make_taught_object(0), InputError);
-  EXPECT_THROW(make_taught_object(kTaughtObjectCount + 1), InputError);
+  for (const int id : {kTaughtObjectCount + 1, kFirstFurtherId - 1, kFirstFurtherId + kFurtherClassCount})
+    EXPECT_THROW(make_taught_object(id), InputError);
   EXPECT_THROW(taught_object_id("bathtub"), InputError);
   EXPECT_THROW(make_distractor(kDistractorKinds, 1), InputError);
 }

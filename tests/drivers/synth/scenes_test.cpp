@@ -25,6 +25,14 @@ double yaw_of(const Eigen::Isometry3d& T) {
   return std::atan2(T.linear()(1, 0), T.linear()(0, 0));
 }
 
+std::multiset<int> ids_in_truth(const Scene& scene) {
+  std::multiset<int> ids;
+  for (const Placed& placed : scene.world.items) {
+    if (placed.object_id != 0) ids.insert(placed.object_id);
+  }
+  return ids;
+}
+
 // Footprints of what stands on the table: its lowest point is at the table's height.
 std::vector<Footprint> standing(const World& world) {
   std::vector<Footprint> footprints;
@@ -37,6 +45,22 @@ std::vector<Footprint> standing(const World& world) {
   return footprints;
 }
 
+void expect_apart(const World& world, std::size_t least_count) {
+  const std::vector<Footprint> footprints = standing(world);
+  EXPECT_GE(footprints.size(), least_count);
+  for (std::size_t i = 0; i < footprints.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(footprints_touch(footprints[i], footprints[j], 0.0));
+  }
+}
+
+// All scenes whose truth names something.
+std::vector<const char*> scenes_with_truth() {
+  std::vector<const char*> names(kTestScenes.begin(), kTestScenes.end());
+  names.insert(names.end(), kTwentyClassScenes.begin(), kTwentyClassScenes.end());
+  names.insert(names.end(), kTwentyClassDevelopmentScenes.begin(), kTwentyClassDevelopmentScenes.end());
+  return names;
+}
+
 TEST(Scenes, TestAndTrainingSeedsNeverCoincide) {
   for (std::uint64_t number = 0; number < 2000; ++number) {
     const std::uint64_t training = world_seed(WorldUse::kTraining, number);
@@ -47,6 +71,8 @@ TEST(Scenes, TestAndTrainingSeedsNeverCoincide) {
     EXPECT_EQ(aspect_seed(test, number) % 2, 1U);
   }
   for (const char* name : kTestScenes) EXPECT_EQ(test_scene(name).seed % 2, 1U);
+  for (const char* name : kTwentyClassScenes) EXPECT_EQ(test_scene(name).seed % 2, 1U);
+  for (const char* name : kTwentyClassDevelopmentScenes) EXPECT_EQ(test_scene(name).seed % 2, 0U);
   EXPECT_EQ(make_background_scene(0, 1).seed % 2, 0U);
 }
 
@@ -54,21 +80,29 @@ TEST(Scenes, HoldTheFourClassesAmongClutterThatDoesNotTouch) {
   for (const char* name : kTestScenes) {
     SCOPED_TRACE(name);
     const Scene& scene = test_scene(name);
-    std::multiset<int> ids;
-    for (const Placed& placed : scene.world.items) {
-      if (placed.object_id != 0) ids.insert(placed.object_id);
+    EXPECT_EQ(ids_in_truth(scene), (std::multiset<int>{1, 2, 3, 4}));
+    expect_apart(scene.world, 12);
+  }
+}
+
+TEST(Scenes, TwoScenesHoldTheTwentyClassesAmongClutter) {
+  const std::vector<int> twenty = twenty_class_ids();
+  for (const auto& names : {kTwentyClassScenes, kTwentyClassDevelopmentScenes}) {
+    std::set<int> all;
+    for (const char* name : names) {
+      SCOPED_TRACE(name);
+      const std::multiset<int> ids = ids_in_truth(test_scene(name));
+      EXPECT_EQ(ids.size(), 12U);
+      for (const int id : {1, 2, 3, 4}) EXPECT_EQ(ids.count(id), 1U);
+      all.insert(ids.begin(), ids.end());
+      expect_apart(test_scene(name).world, 18);
     }
-    EXPECT_EQ(ids, (std::multiset<int>{1, 2, 3, 4}));
-    const std::vector<Footprint> footprints = standing(scene.world);
-    EXPECT_GE(footprints.size(), 12U);
-    for (std::size_t i = 0; i < footprints.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(footprints_touch(footprints[i], footprints[j], 0.0));
-    }
+    EXPECT_EQ(all, std::set<int>(twenty.begin(), twenty.end()));
   }
 }
 
 TEST(Scenes, ObjectsAreBetween60CentimetresAnd250FromTheCamera) {
-  for (const char* name : kTestScenes) {
+  for (const char* name : scenes_with_truth()) {
     SCOPED_TRACE(name);
     const Scene& scene = test_scene(name);
     for (int i = 0; i <= 100; ++i) {
@@ -95,6 +129,7 @@ TEST(Scenes, CameraMovesSmoothly) {
 TEST(Scenes, BackgroundsHoldNoTaughtObject) {
   std::set<std::string> taught;
   for (int id = 1; id <= kTaughtObjectCount; ++id) taught.insert(make_taught_object(id).name);
+  for (const int id : twenty_class_ids()) taught.insert(make_taught_object(id).name);
   for (int i = 0; i < kRoomStyles; ++i) {
     for (const Placed& placed : make_background_scene(i, 1).world.items)
       EXPECT_EQ(taught.count(placed.thing->name), 0U);

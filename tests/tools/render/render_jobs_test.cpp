@@ -1,0 +1,68 @@
+#include "tools/render/render_jobs.hpp"
+
+#include <gtest/gtest.h>
+
+#include "drivers/bop_dataset.hpp"
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+TurntableSettings one_view() {
+  TurntableSettings turntable;
+  turntable.azimuths = 1;
+  turntable.pitches = 1;
+  return turntable;
+}
+
+RenderOptions into(const fs::path& folder) {
+  RenderOptions options;
+  options.out = folder;
+  options.threads = 1;
+  return options;
+}
+
+TEST(RenderJobs, AllTwentyAreTaughtUnderTheirOwnIdsAndNames) {
+  const fs::path folder = fresh_folder("render_jobs_all_20");
+  render_training(into(folder), {"all_20"}, one_view());
+  const std::vector<int> ids = twenty_class_ids();
+  EXPECT_EQ(read_bop_models(folder / "models").names.size(), ids.size());
+  for (const int id : ids) {
+    const BopScene scene(folder / fmt::format("{:06d}", id));
+    ASSERT_EQ(scene.images().size(), 1U);
+    EXPECT_EQ(scene.images()[0].objects.at(0).object_id, id);
+    EXPECT_EQ(find_bop_names(scene.folder()).at(id), make_taught_object(id).name);
+  }
+}
+
+TEST(RenderJobs, AllMeansTheFourClassesAndNamesMayBeAny) {
+  const fs::path four = fresh_folder("render_jobs_all");
+  render_training(into(four), {"all"}, one_view());
+  EXPECT_EQ(read_bop_models(four / "models").names.size(), 4U);
+  const fs::path named = fresh_folder("render_jobs_named");
+  render_training(into(named), {"teapot", "bowl_2"}, one_view());
+  EXPECT_EQ(read_bop_models(named / "models").names, (std::map<int, std::string>{{5, "bowl_2"}, {102, "teapot"}}));
+  EXPECT_THROW(render_training(into(named), {"bathtub"}, one_view()), InputError);
+}
+
+TEST(RenderJobs, ASceneBringsTheModelsOfWhatItMayHold) {
+  const fs::path folder = fresh_folder("render_jobs_scene");
+  render_scene(into(folder), "objects_20_b", 1, 1);
+  const BopModels models = read_bop_models(folder / "models");
+  EXPECT_EQ(models.names.size(), 20U);
+  EXPECT_TRUE(models.symmetric.at(104));
+  EXPECT_FALSE(models.symmetric.at(102));
+  const BopScene scene(folder);
+  EXPECT_GE(scene.images().at(0).objects.size(), 8U);
+  for (const TrueObject& object : scene.images().at(0).objects)
+    EXPECT_EQ(models.names.count(object.object_id), 1U) << object.object_id;
+  const fs::path demo = fresh_folder("render_jobs_demo");
+  render_scene(into(demo), "table_small_1", 1, 1);
+  EXPECT_EQ(read_bop_models(demo / "models").names.size(), 4U);
+}
+
+}  // namespace
+}  // namespace houghstream
