@@ -11,7 +11,7 @@ table { border-collapse: collapse; } td, th { padding: .2em 1em .2em 0; text-ali
 td:first-child, th:first-child { text-align: left; }
 .charts, .sheet { display: flex; flex-wrap: wrap; gap: 1em; } .charts { align-items: flex-start; } .charts figure { flex: 1 1 480px; margin: 0; }
 .sheet img { width: calc(50% - .5em); } svg { width: 100%; } svg text { font-size: 12px; fill: #444; }
-.grid { stroke: #e4e4e4; } figcaption span { margin-right: 1.2em; }
+.grid { stroke: #e4e4e4; } .whisker { stroke: #222; stroke-width: 1.2; } figcaption span { margin-right: 1.2em; display: inline-block; }
 figcaption i { display: inline-block; width: .8em; height: .8em; margin-right: .4em; border-radius: 2px; }
 pre { background: #f6f6f6; padding: 1em; overflow-x: auto; font-size: 13px; }
 """
