@@ -7,7 +7,8 @@ import sys
 import unittest
 import xml.etree.ElementTree
 
-sys.path.insert(0, str(pathlib.Path(sys.argv.pop(1), "tools", "demo.d")))
+tools = pathlib.Path(sys.argv.pop(1), "tools")
+sys.path[:0] = [str(tools / "demo.d"), str(tools / "report_kit")]
 
 import charts
 import count_events

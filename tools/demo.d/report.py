@@ -1,30 +1,15 @@
 """Adds up one run of tools/demo: writes summary.json and report.html into its folder and prints a table."""
 
 import argparse
-import csv
 import json
-import os
 import pathlib
 import shutil
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report_kit"))
+
 import page
-
-
-def read_json(file):
-    with open(file) as text:
-        return json.load(text)
-
-
-def read_csv(file):
-    with open(file, newline="") as text:
-        return list(csv.DictReader(text))
-
-
-def cpu_name():
-    with open("/proc/cpuinfo") as text:
-        names = [line.split(":", 1)[1].strip() for line in text if line.startswith("model name")]
-    return f"{names[0] if names else 'unknown processor'}, {len(os.sched_getaffinity(0))} cores used"
+from measured import cpu_name, read_csv, read_json
 
 
 def train_seconds(data):

@@ -1,0 +1,124 @@
+"""Tests of the parts of tools/reproduce: plan, verdicts, views of the UW dataset, bars.
+
+Usage: reproduce_parts_test.py REPOSITORY"""
+
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+tools = pathlib.Path(sys.argv.pop(1), "tools").resolve()
+sys.path[:0] = [str(tools / "reproduce.d"), str(tools / "report_kit")]
+
+import bars
+import plan
+import planner
+import reliability
+import units
+import uw_views
+import variants
+
+
+class UwViews(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.folder, self.out = pathlib.Path(place.name, "rgbd-dataset"), pathlib.Path(place.name, "out")
+
+    def test_views_of_a_turn_are_spread_evenly(self):
+        instance = self.folder / "soda_can" / "soda_can_4"
+        instance.mkdir(parents=True)
+        for video, number in [(1, number) for number in range(1, 73)] + [(2, 1)]:
+            for ending in uw_views.FILES:
+                (instance / f"soda_can_4_{video}_{number}{ending}").touch()
+        uw_views.link_views(self.folder, self.out, "soda_can_4")
+        links = sorted((self.out / "soda_can" / "soda_can_4").iterdir())
+        self.assertEqual(len(links), 37 * len(uw_views.FILES))
+        names = {link.name for link in links}
+        self.assertIn("soda_can_4_1_71_loc.txt", names)
+        self.assertNotIn("soda_can_4_1_72_loc.txt", names)
+        self.assertTrue(all(link.is_file() for link in links))
+
+    def test_an_instance_without_views_is_refused(self):
+        with self.assertRaises(SystemExit):
+            uw_views.link_views(self.folder, self.out, "bowl_1")
+
+    def test_instances_are_those_of_the_scenes(self):
+        scenes = [self.folder / name for name in ("desk_1", "desk_2")]
+        for scene, names in zip(scenes, ({"1": "cap_1", "2": "bowl_2"}, {"1": "bowl_2"})):
+            scene.mkdir(parents=True)
+            (scene / "names.json").write_text(json.dumps(names))
+        self.assertEqual(uw_views.instances(scenes), ["bowl_2", "cap_1"])
+
+
+class Reliability(unittest.TestCase):
+    def test_recall_tells_which_detections_are_true(self):
+        curve = [
+            {"object": "bowl", "score": "0.9", "recall": "0.5"},
+            {"object": "bowl", "score": "0.8", "recall": "0.5"},
+            {"object": "mug", "score": "0.7", "recall": "0.0"},
+            {"object": "mug", "score": "0.6", "recall": "1.0"},
+        ]
+        self.assertEqual(reliability.verdicts(curve), [(0.9, True), (0.8, False), (0.7, False), (0.6, True)])
+
+    def test_bins_hold_the_share_that_is_true(self):
+        curve = [{"object": "bowl", "score": "0.95", "recall": str(0.1 * (i + 1))} for i in range(3)]
+        curve += [
+            {"object": "bowl", "score": "0.92", "recall": "0.3"},
+            {"object": "bowl", "score": "1.0", "recall": "0.3"},
+        ]
+        rows = reliability.reliability([curve])
+        self.assertEqual([(row["count"], row["share_true"]) for row in rows], [(5, 0.6)])
+        self.assertTrue(0.2 < rows[0]["low"] < 0.6 < rows[0]["high"] < 0.9)
+        self.assertIsNone(reliability.calibration_error([]))
+
+
+class Plan(unittest.TestCase):
+    def test_every_input_is_made_before_it_is_used(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.make_uw_folders(pathlib.Path(folder))
+            for dataset in ("rendered", "uw", "real"):
+                made = set()
+                for unit in plan.make_plan(dataset, folder, "/recorded", planner.Protocol()):
+                    self.assertLessEqual(set(unit.inputs), made, unit.name)
+                    made.add(unit.name)
+
+    def make_uw_folders(self, folder):
+        for scene in variants.SCENES:
+            (folder / "rgbd-scenes" / scene.rpartition("_")[0] / scene).mkdir(parents=True)
+        (folder / "rgbd-scenes" / "background").mkdir()
+        (folder / "rgbd-dataset" / "soda_can").mkdir(parents=True)
+
+    def test_folders_that_the_uw_datasets_lack_are_named(self):
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(
+            SystemExit, "no table_small/table_small_1"
+        ):
+            plan.make_plan("uw", folder, "", planner.Protocol())
+
+    def test_no_two_units_share_a_name(self):
+        collected = units.Units()
+        collected.add("train/a", "1", "hs-train", "--seed", 1)
+        collected.add("train/a", "2", "hs-train", "--seed", 1)
+        self.assertEqual(collected.all()[0].figures, ("1", "2"))
+        with self.assertRaises(ValueError):
+            collected.add("train/a", "1", "hs-train", "--seed", 2)
+
+
+class Bars(unittest.TestCase):
+    def test_a_value_that_is_missing_is_no_bar(self):
+        chart = bars.GroupedBars(["a <b>", "c"], "AUC")
+        chart.add("one", [0.5, None], [(0.4, 0.6), None])
+        root = xml.etree.ElementTree.fromstring(chart.svg())
+        heights = [float(bar.get("height")) for bar in root.findall(".//rect")]
+        self.assertEqual(heights, [(bars.HEIGHT - bars.TOP - bars.BOTTOM) / 2])
+
+    def test_rows_without_value_say_so(self):
+        drawing = bars.row_bars([("a", None, None, 0.5), ("b", 0.25, None, None)], "AUC", "ours", "theirs")
+        self.assertEqual(len(xml.etree.ElementTree.fromstring(drawing).findall(".//rect")), 1)
+        self.assertIn("not measured (paper 0.500)", drawing)
+
+
+if __name__ == "__main__":
+    unittest.main()

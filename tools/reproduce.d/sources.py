@@ -1,0 +1,68 @@
+"""Where views, background and scenes come from: each source adds the units that make them."""
+
+import dataclasses
+import pathlib
+import sys
+
+from variants import SCENES, SCENES_20
+
+CAMERA = "640x480,525,525,319.5,239.5"
+WAY, FRAMES = 300, 60  # frames along the camera's way, and those that are looked at
+REAL_INSTANCES = "ornament_3,ornament_1,koaramarch_1,pack_2,bottle_2,can_1,can_2"
+REAL_NAMES = "can_1=can,can_2=can"
+
+
+@dataclasses.dataclass(frozen=True)
+class Source:
+    training: tuple  # options of hs-train and hs-linemod
+    scenes: dict  # "{NAME}" of the unit that makes it, by scene
+
+
+def rendered(units):
+    """Four objects, and twenty on the same scenes. Frames are spread over the camera's whole way through each scene."""
+    views = units.add("data/training", "data", "hs-render", "training", "--out", "{out}")
+    rooms = units.add("data/background", "data", "hs-render", "background", "--count", "215", "--out", "{out}")
+    more = units.add("data/training_20", "objects", "hs-render", "training", "--objects", "all_20", "--out", "{out}")
+    scenes = {}
+    for scene in (*SCENES, *SCENES_20):
+        name = f"data/scene/{scene}"
+        way = ("--frames", WAY, "--every", WAY // FRAMES)
+        units.add(name, "data", "hs-render", "scene", scene, *way, "--out", "{out}")
+        scenes[scene] = "{" + name + "}"
+    background = ("--background", f"bop:{{{rooms}}}")
+    return tuple(Source(("--views", f"bop:{{{taught}}}", *background), scenes) for taught in (views, more))
+
+
+def located(folder, name):
+    """The datasets' archives unpack into folders of their own, which lie in `folder` or are it."""
+    places = [folder / name, *sorted(place / name for place in folder.iterdir() if place.is_dir())]
+    for place in places:
+        if place.is_dir():
+            return place
+    sys.exit(f"reproduce: {folder}: no {name} in it, expected rgbd-dataset/ and rgbd-scenes/ of the UW datasets")
+
+
+def uw(units, folder):
+    """The UW RGB-D Object Dataset (rgbd-dataset/) and the RGB-D Scenes Dataset (rgbd-scenes/), as they unpack."""
+    folder = pathlib.Path(folder)
+    scenes = {}
+    for scene in SCENES:
+        video = located(folder, f"{scene.rpartition('_')[0]}/{scene}")
+        command = ("hs-import", "uw-scene", "--camera", CAMERA, video, "{out}")
+        scenes[scene] = "{" + units.add(f"data/scene/{scene}", "data", *command) + "}"
+    objects = located(folder, "soda_can").parent
+    views = units.add("data/uw/views", "data", "uw_views.py", objects, "{out}", *scenes.values())
+    background = ("--background", f"images:{located(folder, 'background')}", "--camera", CAMERA)
+    return Source(("--views", f"uw:{{{views}}}", *background), scenes)
+
+
+def recorded(units, folder):
+    """Pictures of a camera: DIR/objects, background, scenes (with boxes), clutter (without any taught object)."""
+    clutter = ("hs-import", "frames", "--camera", CAMERA, f"{folder}/clutter", "{out}")
+    scenes = {
+        "scenes": units.add("data/real/scenes", "real", "hs-import", "boxes", f"{folder}/scenes", "{out}"),
+        "clutter": units.add("data/real/clutter", "real", *clutter),
+    }
+    training = ("--views", f"uw:{folder}/objects", "--instances", REAL_INSTANCES, "--rename", REAL_NAMES)
+    background = ("--background", f"images:{folder}/background", "--camera", CAMERA)
+    return Source((*training, *background), {scene: "{" + name + "}" for scene, name in scenes.items()})

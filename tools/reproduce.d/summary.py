@@ -1,0 +1,134 @@
+"""The figures of the comparison as one dictionary. What was not measured is None and is listed under "missing"."""
+
+import paper
+from arithmetic import mean_of, ratio, relative
+from reliability import calibration_error, reliability
+from variants import FEATURE_SCENE, FEATURES, PROFILES, SCALE_SCENES, SCENES, SCENES_20, STRIDES, TIMINGS, forest_of
+
+CLASSIFY_AND_VOTE = ("detect.forest", "detect.voting")
+
+
+def all_auc(results):
+    auc = {what: {scene: results.auc(what, scene) for scene in SCENES} for what in PROFILES}
+    for what in FEATURES:
+        auc.setdefault(what, {FEATURE_SCENE: results.auc(forest_of(what), FEATURE_SCENE)})
+    return auc
+
+
+def operating_point(results, what):
+    """Precision and recall at the default threshold, over all objects of all scenes and runs."""
+    true = false = required = 0
+    for scene in SCENES:
+        facts = {"what": what, "scene": scene}
+        for name in results.objects(what, scene):
+            counts = results.values("required", object=name, **facts)
+            recalls = results.values("recall", object=name, **facts)
+            required += sum(counts)
+            true += sum(round(count * recall) for count, recall in zip(counts, recalls))
+        false += sum(results.values("false_detections", **facts))
+    return (true / (true + false) if true + false else None), (true / required if required else None)
+
+
+def real(results):
+    return {
+        "auc_mean": results.auc("real_realtime", "scenes"),
+        "auc_weighted": results.auc("real_realtime", "scenes", "weighted"),
+        "auc_gall_mean": results.auc("real_gall", "scenes"),
+        "auc_paper_mean": results.auc("real_paper", "scenes"),
+        "auc_linemod_mean": results.auc("real_linemod", "scenes"),
+        "auc_linemod_check_depth_mean": results.auc("real_linemod_check_depth", "scenes"),
+        "false_per_clutter_frame": results.mean("false_per_frame", what="real_realtime", scene="clutter"),
+    }
+
+
+def auc_of_twenty(results, what):
+    """Each object counts once, whether it is in one of the scenes or in both."""
+    found = {}
+    for scene in SCENES_20:
+        for name in results.objects(what, scene):
+            found.setdefault(name, []).append(results.auc(what, scene, name))
+    return mean_of(mean_of(values) for values in found.values())
+
+
+def twenty_objects(results):
+    """All None until both scenes are measured."""
+    what = "objects_20_realtime"
+    many = mean_of(results.milliseconds(what, scene) for scene in SCENES_20)
+    few = mean_of(results.milliseconds("realtime", scene) for scene in SCENES_20)
+    auc = None if many is None else auc_of_twenty(results, what)
+    return {"time_ratio": ratio(many, few), "auc_mean": auc, "ms_20": many, "ms_4": few}
+
+
+def strides(results):
+    auc_1 = results.auc("stride_1", FEATURE_SCENE)
+    ms_1 = results.milliseconds("stride_1", FEATURE_SCENE, CLASSIFY_AND_VOTE)
+    rows = []
+    for stride in STRIDES:
+        auc = results.auc(f"stride_{stride}", FEATURE_SCENE)
+        ms = results.milliseconds(f"stride_{stride}", FEATURE_SCENE, CLASSIFY_AND_VOTE)
+        rows.append(
+            {
+                "stride": stride,
+                "auc": auc,
+                "ms": ms,
+                "auc_change": relative(auc, auc_1),
+                "time_change": relative(ms, ms_1),
+            }
+        )
+    return rows
+
+
+def depth_normalisation(results):
+    scenes = {}
+    for scene in SCALE_SCENES:
+        auc = {what: results.auc(forest_of(what), scene) for what in ("five", "single", "normalised")}
+        times = {what: results.milliseconds(forest_of(what), scene) for what in ("five", "normalised")}
+        gain = relative(auc["normalised"], auc["five"])
+        scenes[scene] = {**auc, "gain": gain, "time_change": relative(times["normalised"], times["five"])}
+    return scenes
+
+
+def timings(results):
+    ms = {name: results.milliseconds(name, FEATURE_SCENE, kind="time") for name in TIMINGS}
+    return {
+        name: {"ms": value, "change": relative(value, ms["original"]), "paper": paper.SAVINGS.get(name)}
+        for name, value in ms.items()
+    }
+
+
+def missing(value, path=""):
+    """Paths of all that is None."""
+    if value is None:
+        return [path]
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [found for key, item in items for found in missing(item, f"{path}.{key}" if path else str(key))]
+
+
+def rounded(value):
+    """For people who read the file."""
+    if isinstance(value, float):
+        return round(value, 4)
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    return [rounded(item) for item in value] if isinstance(value, list) else value
+
+
+def summarise(results):
+    precision, recall = operating_point(results, "realtime")
+    bins = reliability([curve for scene in SCENES for curve in results.curve_files("realtime", scene)])
+    summary = {
+        "auc": all_auc(results),
+        "auc_linemod": {scene: results.auc("linemod", scene) for scene in SCENES},
+        "auc_linemod_check_depth": {scene: results.auc("linemod_check_depth", scene) for scene in SCENES},
+        "precision_at_default": precision,
+        "recall_at_default": recall,
+        "real": real(results),
+        "train_seconds": results.mean("train_seconds", what="realtime"),
+        "objects_20": twenty_objects(results),
+        "stride": strides(results),
+        "depth_normalisation": depth_normalisation(results),
+        "time": timings(results),
+        "reliability": {"bins": bins, "calibration_error": calibration_error(bins)},
+    }
+    summary["missing"] = [path for path in missing(summary) if not path.endswith(".paper")]
+    return summary

@@ -1,0 +1,64 @@
+"""The detectors that are compared: what hs-train is told for each, and how hs-evaluate asks it."""
+
+# Training options. The feature study adds one feature at a time to the intensity features (paper, Section 4).
+FEATURES = {
+    "intensity": ("--profile", "gall"),
+    "depth_value": ("--profile", "gall", "--features", "intensity,depth_value"),
+    "depth_derivatives_3": ("--profile", "gall", "--features", "intensity,depth_derivatives", "--depth-kernel", "3"),
+    "depth_derivatives_5": ("--profile", "gall", "--features", "intensity,depth_derivatives", "--depth-kernel", "5"),
+    "depth_derivatives_7": ("--profile", "gall", "--features", "intensity,depth_derivatives", "--depth-kernel", "7"),
+    "depth_derivatives_9": ("--profile", "gall", "--features", "intensity,depth_derivatives", "--depth-kernel", "9"),
+    "depth_hog": ("--profile", "gall", "--features", "intensity,depth_hog"),
+    "honv": ("--profile", "gall", "--features", "intensity,honv"),
+    "curvature": ("--profile", "gall", "--features", "intensity,curvature"),
+    "pfh": ("--profile", "gall", "--features", "intensity,pfh"),
+    "fpfh": ("--profile", "gall", "--features", "intensity,fpfh"),
+    "final": (
+        "--profile",
+        "gall",
+        "--features",
+        "intensity,depth_value,depth_derivatives,depth_hog",
+        "--depth-kernel",
+        "7",
+    ),
+}
+PROFILES = {name: ("--profile", name) for name in ("gall", "paper", "realtime")}
+SCALE_HANDLING = {
+    "single": ("--profile", "gall", "--scale-handling", "single"),
+    "normalised": ("--profile", "gall", "--scale-handling", "normalised"),
+}
+HALF_SIZE = {"half_size": ("--profile", "gall", "--image-scale", "0.5")}
+TRAINING = {**FEATURES, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
+
+# The same forest under two names: the study's baseline is the profile, as is the one with five scales.
+SAME_FOREST = {"intensity": "gall", "five": "gall"}
+
+SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1", "meeting_small_1")
+SCENES_20 = ("objects_20_a", "objects_20_b")  # each holds the four and half of sixteen others
+FEATURE_SCENE = "table_small_1"
+SCALE_SCENES = ("table_small_1", "desk_2", "table_small_2")
+STRIDES = (1, 2, 3, 4, 6, 8)
+
+
+def forest_of(what):
+    return SAME_FOREST.get(what, what)
+
+
+def detection_options(what):
+    """Section 4: detections above 0.1, every patch. The realtime profile scores by probability, not by votes: there
+    0.01 is what lets as much through. It and the paper's final version choose their own patch offset."""
+    if what == "realtime":
+        return ("--threshold", "0.01")
+    return ("--threshold", "0.1") if what == "paper" else ("--threshold", "0.1", "--stride", "1")
+
+
+TIMINGS = {  # name: forest, options; Section 5 gives each saving relative to the original
+    "original": ("gall", ("--stride", "1", "--threads", "1", "--readable")),
+    "half_size": ("half_size", ("--stride", "1", "--threads", "1", "--readable")),
+    "depth_normalisation": ("normalised", ("--stride", "1", "--threads", "1", "--readable")),
+    "stride_2": ("gall", ("--stride", "2", "--threads", "1", "--readable")),
+    "all_threads": ("gall", ("--stride", "1", "--readable")),
+    "fast_engine": ("gall", ("--stride", "1")),
+    "final": ("paper", ()),
+    "realtime": ("realtime", ()),
+}
