@@ -9,7 +9,9 @@
 
 #include "pipeline/checks.hpp"
 #include "tests/detector/toy_data.hpp"
+#include "tools/rivals/composed_examples.hpp"
 #include "tools/rivals/linemod_image.hpp"
+#include "tools/rivals/linemod_tuning.hpp"
 #include "tools/rivals/scaled_view.hpp"
 
 namespace houghstream {
@@ -212,6 +214,35 @@ TEST(LinemodImages, AreWholeStepsAndAlignedAndHoldTheLargestTemplate) {
     EXPECT_GE(image.rows, 319);
     EXPECT_TRUE(image.isContinuous());
   }
+}
+
+TEST(TuneLinemod, TriesSettingsOnViewsThatAreNotTaught) {
+  LinemodTemplateSettings settings = quick_templates();
+  settings.max_distance = 0.6F;
+  std::vector<TrainingView> views = toy::training_views();
+  const ComposedExamples examples = compose_examples(views, 0.5F, 0.6F, 8);
+  EXPECT_EQ(examples.taught.size(), 18U) << "24 views of two classes, one in four shown";
+  EXPECT_EQ(examples.frames.size(), 8U);
+  EXPECT_EQ(examples.truth.size(), 8U);
+  EXPECT_EQ(examples.class_names, (std::set<std::string>{"rings", "stripes"}));
+  views.erase(std::remove_if(views.begin(), views.end(), [](const TrainingView& v) { return v.class_id == 0; }),
+              views.end());
+  EXPECT_THROW(tune_linemod(views, settings, {}, 8, [](const LinemodTrial&) {}), InputError);
+}
+
+TEST(TuneLinemod, ReportsEachTrial) {
+  LinemodTemplateSettings settings = quick_templates();
+  settings.max_distance = 0.6F;
+  int trials = 0;
+  double best = 0.0;
+  tune_linemod(toy::training_views(), settings, {}, 8, [&](const LinemodTrial& trial) {
+    ++trials;
+    best = std::max(best, trial.auc);
+    EXPECT_GT(trial.template_count, 0);
+    EXPECT_LE(trial.best_f1, 1.0);
+  });
+  EXPECT_EQ(trials, 60);
+  EXPECT_GT(best, 0.4);
 }
 
 }  // namespace
