@@ -84,6 +84,8 @@ void evaluate_scenes(const LinemodOptions& options) {
                           {"refused_templates", training.refused_templates},
                           {"refused_views", training.refused_views},
                           {"check_depth", options.selection.check_depth},
+                          {"min_distance", options.templates.min_distance},
+                          {"max_distance", options.templates.max_distance},
                           {"every", options.every}};
     write_report(evaluation, summary, fs::path(options.out) / folder_name(scene.folder()));
   }
@@ -126,8 +128,8 @@ void add_options(CLI::App& app, LinemodOptions& options) {
   app.add_option("--weak-gradient", options.templates.weak_gradient, "colour gradients below are not looked at")
       ->capture_default_str();
   app.add_option("--distance-step", options.templates.distance_step, "factor")->capture_default_str();
-  app.add_option("--min-distance", options.templates.min_distance, "metres")->capture_default_str();
-  app.add_option("--max-distance", options.templates.max_distance, "metres")->capture_default_str();
+  app.add_option("--min-distance", options.templates.min_distance, "of the scenes, metres")->capture_default_str();
+  app.add_option("--max-distance", options.templates.max_distance, "of the scenes, metres")->capture_default_str();
   app.add_option("--threads", options.templates.threads)->capture_default_str();
   options.rules.operating_score = 0.96F;
   app.add_option("--operating-score", options.rules.operating_score,

@@ -10,7 +10,8 @@ namespace houghstream {
 //   match threshold 70, 80, 85, 90: 0.475, 0.474, 0.473, 0.452 without; 0.537, 0.533, 0.525, 0.487 with the check;
 //   339, 147, 91, 85 ms a frame. The best F1, 0.533 with the check, is at score 0.954 (0.476 at 0.970 without).
 
-/// Which templates are made.
+/// Which templates are made. The distances should be those of the scenes, no more: the small templates of farther ones
+/// fit almost anything.
 struct LinemodTemplateSettings {
   int features = 63;            ///< per modality, 4 to 63 (the most that cv::linemod can add up in a byte)
   float weak_gradient = 10.0F;  ///< colour gradients below are not looked at, grey levels (three-pixel Sobel)
