@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <set>
 
 #include "pipeline/checks.hpp"
@@ -36,6 +37,10 @@ std::vector<std::string> class_names(const std::vector<TrainingView>& views) {
 
 std::string folder_name(const fs::path& scene) {
   return fs::weakly_canonical(scene).filename().string();
+}
+
+double rounded(double value) {
+  return std::round(value * 1e3) / 1e3;
 }
 
 /// Every Nth frame of the scene: its truth, and what was detected.
@@ -79,13 +84,13 @@ void evaluate_scenes(const LinemodOptions& options) {
     const Evaluation evaluation = evaluate(frames, class_names(views), {}, options.rules);
     fmt::print("\n{}\n{}", scene.folder().string(), summary_table(evaluation, options.rules));
     OrderedJson summary = summary_json(evaluation, options.rules, {});
-    summary["linemod"] = {{"train_seconds", train_seconds},
+    summary["linemod"] = {{"train_seconds", rounded(train_seconds)},
                           {"templates", training.templates},
                           {"refused_templates", training.refused_templates},
                           {"refused_views", training.refused_views},
                           {"check_depth", options.selection.check_depth},
-                          {"min_distance", options.templates.min_distance},
-                          {"max_distance", options.templates.max_distance},
+                          {"min_distance", rounded(options.templates.min_distance)},
+                          {"max_distance", rounded(options.templates.max_distance)},
                           {"every", options.every}};
     write_report(evaluation, summary, fs::path(options.out) / folder_name(scene.folder()));
   }
