@@ -40,6 +40,8 @@ Profile gall() {
   profile.training.scoring = Scoring::kVotes;
   profile.training.max_leaf_votes = 64;
   profile.detection.stride = 1;
+  profile.detection.threshold = 0.1F;
+  profile.detection.min_mass_share = 0.1F;
   set_scale_handling(profile, "five");
   return profile;
 }

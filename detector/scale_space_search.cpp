@@ -102,6 +102,21 @@ std::vector<cv::Point> maxima_of(const cv::Mat& image, int reach_px, float least
   return maxima;
 }
 
+/// Patches up to so many pixels away; they stand in rows, every `stride` pixels.
+std::vector<std::uint32_t> patches_around(const SeenLevel& seen, cv::Point centre, int reach_px, int stride) {
+  const int first = stride / 2;
+  const int columns = (seen.camera.width - first + stride - 1) / stride;
+  const int rows = (seen.camera.height - first + stride - 1) / stride;
+  const auto index = [&](int px) { return (px - first) / stride; };
+  std::vector<std::uint32_t> patches;
+  for (int y = std::max(0, index(centre.y - reach_px)); y <= std::min(rows - 1, index(centre.y + reach_px)); ++y) {
+    for (int x = std::max(0, index(centre.x - reach_px)); x <= std::min(columns - 1, index(centre.x + reach_px)); ++x) {
+      patches.push_back(static_cast<std::uint32_t>(y * columns + x));
+    }
+  }
+  return patches;
+}
+
 /// The patches, and the views that they remember, whose votes meet at a maximum.
 Hypothesis gather_supporters(const Forest& forest, int class_index, const SeenLevel& seen, cv::Point centre,
                              const DetectionSettings& settings) {
@@ -110,8 +125,7 @@ Hypothesis gather_supporters(const Forest& forest, int class_index, const SeenLe
   const float reach = forest.classes[static_cast<std::size_t>(class_index)].radius * seen.px_per_offset + 3.0F * sigma;
   const int reach_px = static_cast<int>(std::ceil(reach));
   std::vector<float> by_view(forest.views.size(), 0.0F);
-  for (std::uint32_t p = 0; p < seen.grid.size(); ++p) {
-    if (std::abs(seen.grid.y[p] - centre.y) > reach_px || std::abs(seen.grid.x[p] - centre.x) > reach_px) continue;
+  for (const std::uint32_t p : patches_around(seen, centre, reach_px, settings.stride)) {
     if (!believes(forest, class_index, seen, p, settings.min_class_share)) continue;
     float support = 0.0F;
     for_votes_of(forest, class_index, seen, p, [&](float x, float y, float weight, const LeafClass& entry) {
