@@ -38,10 +38,11 @@ Profile gall() {
   profile.training.alone_share = 0.0;  // differences only
   profile.training.spare_background = 0;
   profile.training.scoring = Scoring::kVotes;
-  profile.training.max_leaf_votes = 64;
+  profile.training.max_leaf_votes = 32;
   profile.detection.stride = 1;
   profile.detection.threshold = 0.1F;
   profile.detection.min_mass_share = 0.1F;
+  profile.detection.min_class_share = 0.2F;
   set_scale_handling(profile, "five");
   return profile;
 }
@@ -84,7 +85,7 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
   features.scales = handling == "five" ? kFiveScales : std::array<float, kMaxScales>{1.0F};
   profile.patch.unit = 1.0F;
   // Offsets are counted as at 1 m: see FeatureSettings::handling.
-  profile.training.merge_radius = 1.5F / kUsualFocal;
+  profile.training.merge_radius = 2.0F / kUsualFocal;
   profile.detection.vote_sigma = 3.0F / (features.image_scale * kUsualFocal);
 }
 

@@ -41,11 +41,13 @@ SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureL
   return seen;
 }
 
-/// Calls visit(x, y, weight) for each vote of a patch for a class, in level pixels.
+/// Calls visit(x, y, weight, who) for each vote of a patch for a class that falls into the level's image, at its pixel.
 template <typename Visit>
 void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, std::size_t patch, const Visit& visit) {
   const std::size_t trees = forest.roots.size();
   const float share = 1.0F / static_cast<float>(trees);
+  const auto width = static_cast<float>(seen.camera.width);
+  const auto height = static_cast<float>(seen.camera.height);
   for (std::size_t tree = 0; tree < trees; ++tree) {
     const auto leaf = static_cast<std::size_t>(seen.leaves.leaves[patch * trees + tree]);
     for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
@@ -53,9 +55,11 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
       if (entry.class_index != class_index) continue;
       for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
         const LeafVote& vote = forest.votes[v];
-        visit(static_cast<float>(seen.grid.x[patch]) + vote.offset.x() * seen.px_per_offset,
-              static_cast<float>(seen.grid.y[patch]) + vote.offset.y() * seen.px_per_offset,
-              entry.probability * vote.weight * share, entry);
+        // rounded: positions inside the image are positive
+        const float x = static_cast<float>(seen.grid.x[patch]) + vote.offset.x() * seen.px_per_offset + 0.5F;
+        const float y = static_cast<float>(seen.grid.y[patch]) + vote.offset.y() * seen.px_per_offset + 0.5F;
+        if (x < 0.0F || y < 0.0F || x >= width || y >= height) continue;
+        visit(static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * share, entry);
       }
     }
   }
@@ -71,11 +75,8 @@ cv::Mat hough_image(const Forest& forest, int class_index, const SeenLevel& seen
   cv::Mat image = cv::Mat::zeros(seen.camera.height, seen.camera.width, CV_32FC1);
   for (std::size_t p = 0; p < seen.grid.size(); ++p) {
     if (!believes(forest, class_index, seen, p, settings.min_class_share)) continue;
-    for_votes_of(forest, class_index, seen, p, [&](float x, float y, float weight, const LeafClass&) {
-      const int column = static_cast<int>(std::lround(x));
-      const int row = static_cast<int>(std::lround(y));
-      if (column >= 0 && row >= 0 && column < image.cols && row < image.rows) image.at<float>(row, column) += weight;
-    });
+    for_votes_of(forest, class_index, seen, p,
+                 [&](int x, int y, float weight, const LeafClass&) { image.at<float>(y, x) += weight; });
   }
   const double sigma = static_cast<double>(settings.vote_sigma) * seen.px_per_offset;
   cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
@@ -102,50 +103,48 @@ std::vector<cv::Point> maxima_of(const cv::Mat& image, int reach_px, float least
   return maxima;
 }
 
-/// Patches up to so many pixels away; they stand in rows, every `stride` pixels.
-std::vector<std::uint32_t> patches_around(const SeenLevel& seen, cv::Point centre, int reach_px, int stride) {
-  const int first = stride / 2;
-  const int columns = (seen.camera.width - first + stride - 1) / stride;
-  const int rows = (seen.camera.height - first + stride - 1) / stride;
-  const auto index = [&](int px) { return (px - first) / stride; };
-  std::vector<std::uint32_t> patches;
-  for (int y = std::max(0, index(centre.y - reach_px)); y <= std::min(rows - 1, index(centre.y + reach_px)); ++y) {
-    for (int x = std::max(0, index(centre.x - reach_px)); x <= std::min(columns - 1, index(centre.x + reach_px)); ++x) {
-      patches.push_back(static_cast<std::uint32_t>(y * columns + x));
-    }
+/// Which maximum the votes at a pixel support: its number, or kNobody. The stronger of two that are near.
+constexpr std::int16_t kNobody = -1;
+cv::Mat supported_maximum(const std::vector<cv::Point>& maxima, cv::Size size, float reach_px) {
+  cv::Mat number(size, CV_16SC1, cv::Scalar(kNobody));
+  for (std::size_t i = maxima.size(); i-- > 0;) {
+    cv::circle(number, maxima[i], static_cast<int>(reach_px), cv::Scalar(static_cast<double>(i)), cv::FILLED);
   }
-  return patches;
+  return number;
 }
 
-/// The patches, and the views that they remember, whose votes meet at a maximum.
-Hypothesis gather_supporters(const Forest& forest, int class_index, const SeenLevel& seen, cv::Point centre,
-                             const DetectionSettings& settings) {
-  Hypothesis hypothesis;
+/// The patches, and the views that they remember, whose votes meet at each maximum.
+std::vector<Hypothesis> gather_supporters(const Forest& forest, int class_index, const SeenLevel& seen,
+                                          const std::vector<cv::Point>& maxima, const DetectionSettings& settings) {
   const float sigma = settings.vote_sigma * seen.px_per_offset;
-  const float reach = forest.classes[static_cast<std::size_t>(class_index)].radius * seen.px_per_offset + 3.0F * sigma;
-  const int reach_px = static_cast<int>(std::ceil(reach));
-  std::vector<float> by_view(forest.views.size(), 0.0F);
-  for (const std::uint32_t p : patches_around(seen, centre, reach_px, settings.stride)) {
+  const cv::Mat number = supported_maximum(maxima, cv::Size(seen.camera.width, seen.camera.height), kVoteReach * sigma);
+  std::vector<Hypothesis> hypotheses(maxima.size());
+  std::vector<std::vector<float>> by_view(maxima.size(), std::vector<float>(forest.views.size(), 0.0F));
+  for (std::uint32_t p = 0; p < seen.grid.size(); ++p) {
     if (!believes(forest, class_index, seen, p, settings.min_class_share)) continue;
-    float support = 0.0F;
-    for_votes_of(forest, class_index, seen, p, [&](float x, float y, float weight, const LeafClass& entry) {
-      const float dx = x - static_cast<float>(centre.x);
-      const float dy = y - static_cast<float>(centre.y);
+    for_votes_of(forest, class_index, seen, p, [&](int x, int y, float weight, const LeafClass& entry) {
+      const std::int16_t supported = number.at<std::int16_t>(y, x);
+      if (supported == kNobody) return;
+      const auto m = static_cast<std::size_t>(supported);
+      const auto dx = static_cast<float>(x - maxima[m].x);
+      const auto dy = static_cast<float>(y - maxima[m].y);
       const float share = weight * vote_kernel(dx * dx + dy * dy, sigma);
-      if (share <= 0.0F) return;
-      support += share;
+      Hypothesis& hypothesis = hypotheses[m];
+      hypothesis.weight += share;
       ++hypothesis.vote_count;
+      if (hypothesis.patches.empty() || hypothesis.patches.back().first != p) hypothesis.patches.emplace_back(p, 0.0F);
+      hypothesis.patches.back().second += share;
       for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
-        by_view[forest.leaf_views[v].view] += share * forest.leaf_views[v].weight;
+        by_view[m][forest.leaf_views[v].view] += share * forest.leaf_views[v].weight;
       }
     });
-    hypothesis.weight += support;
-    if (support > 0.0F) hypothesis.patches.emplace_back(p, support);
   }
-  for (std::uint32_t v = 0; v < by_view.size(); ++v) {
-    if (by_view[v] > 0.0F) hypothesis.views.emplace_back(v, by_view[v]);
+  for (std::size_t m = 0; m < maxima.size(); ++m) {
+    for (std::uint32_t v = 0; v < by_view[m].size(); ++v) {
+      if (by_view[m][v] > 0.0F) hypotheses[m].views.emplace_back(v, by_view[m][v]);
+    }
   }
-  return hypothesis;
+  return hypotheses;
 }
 
 /// All maxima of one class in one size.
@@ -153,11 +152,14 @@ std::vector<Candidate> level_candidates(const Forest& forest, int class_index, c
                                         const Camera& camera, const DetectionSettings& settings) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
   const cv::Mat image = hough_image(forest, class_index, seen, settings);
-  const std::size_t limit = static_cast<std::size_t>(settings.max_per_class) / kMaxScales;
-  const int reach_px = static_cast<int>(std::lround(2.0F * settings.vote_sigma * seen.px_per_offset));
+  const int reach_px = static_cast<int>(std::lround(kVoteReach * settings.vote_sigma * seen.px_per_offset));
+  const auto limit = static_cast<std::size_t>(settings.candidates_per_class);
+  const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
+  std::vector<Hypothesis> hypotheses = gather_supporters(forest, class_index, seen, maxima, settings);
   std::vector<Candidate> candidates;
-  for (const cv::Point& at : maxima_of(image, reach_px, settings.min_mass_share, limit)) {
-    Hypothesis hypothesis = gather_supporters(forest, class_index, seen, at, settings);
+  for (std::size_t m = 0; m < maxima.size(); ++m) {
+    const cv::Point at = maxima[m];
+    Hypothesis& hypothesis = hypotheses[m];
     hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
     Candidate candidate;
     candidate.evidence.mass_share = image.at<float>(at);
