@@ -8,7 +8,8 @@ FeatureImage::FeatureImage(int width, int height, int pixel_stride)
     : width_(width),
       height_(height),
       pixel_stride_(pixel_stride),
-      data_(static_cast<std::size_t>(width + 2 * kPad) * static_cast<std::size_t>(height + 2 * kPad) * pixel_stride) {}
+      data_(static_cast<std::size_t>(width + 2 * kPad) * static_cast<std::size_t>(height + 2 * kPad) * pixel_stride +
+            kSpare) {}
 
 void FeatureImage::replicate_border() {
   const auto pixel_bytes = static_cast<std::size_t>(pixel_stride_);

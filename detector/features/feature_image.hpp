@@ -19,7 +19,8 @@ struct PatchView {
 /// outwards, so that no test needs a clamp.
 class FeatureImage {
  public:
-  static constexpr int kPad = 24;  ///< pixels; test offsets are limited to this
+  static constexpr int kPad = 24;   ///< pixels; test offsets are limited to this
+  static constexpr int kSpare = 4;  ///< bytes behind the last pixel: it may be read as a 32-bit word
 
   FeatureImage() = default;
   /// `pixel_stride`: room per pixel, bytes; FeatureLayout says which are used.

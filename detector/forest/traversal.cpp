@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "detector/forest/wide_walk.hpp"
 #include "pipeline/parallel.hpp"
 
 namespace houghstream {
@@ -10,28 +11,49 @@ namespace {
 
 constexpr int kLanes = 8;  // patches in flight
 
-/// Walks up to kLanes patches down one tree in step. Lanes that have arrived wait.
-void walk_lanes(const Forest& forest, std::int32_t root, const std::vector<FeatureImage>& features,
-                const PatchGrid& patches, std::size_t first, int lanes, std::array<std::int32_t, kLanes>& at) {
-  std::array<PatchView, kLanes> views{};
-  for (int l = 0; l < lanes; ++l) {
-    const std::size_t p = first + static_cast<std::size_t>(l);
-    const FeatureImage& image = features[patches.level[p]];
-    views[static_cast<std::size_t>(l)] = image.patch(patches.x[p], patches.y[p], patches.scale[p]);
-    at[static_cast<std::size_t>(l)] = root;
-  }
+/// Walks the patches down one tree, kLanes of them in step. Lanes that have arrived wait.
+void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches& patches, std::size_t step,
+                   std::int32_t* leaves) {
   const TreeNode* nodes = forest.nodes.data();
-  bool walking = root >= 0;
-  while (walking) {
-    walking = false;
-    for (std::size_t l = 0; l < static_cast<std::size_t>(lanes); ++l) {
-      if (at[l] < 0) continue;
-      const TreeNode& node = nodes[at[l]];
-      const bool right = test_value(node.test, views[l]) >= node.test.threshold;
-      at[l] = right ? node.right : node.left;
-      walking = walking || at[l] >= 0;
+  for (int begin = 0; begin < patches.count; begin += kLanes) {
+    const auto lanes = static_cast<std::size_t>(std::min(kLanes, patches.count - begin));
+    std::array<PatchView, kLanes> views{};
+    std::array<std::int32_t, kLanes> at{};
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const std::size_t p = static_cast<std::size_t>(begin) + l;
+      views[l] = patches.image->patch(patches.x[p], patches.y[p], patches.scale[p]);
+      at[l] = root;
     }
+    bool walking = root >= 0;
+    while (walking) {
+      walking = false;
+      for (std::size_t l = 0; l < lanes; ++l) {
+        if (at[l] < 0) continue;
+        const TreeNode& node = nodes[at[l]];
+        at[l] = test_value(node.test, views[l]) >= node.test.threshold ? node.right : node.left;
+        walking = walking || at[l] >= 0;
+      }
+    }
+    for (std::size_t l = 0; l < lanes; ++l) leaves[(static_cast<std::size_t>(begin) + l) * step] = -1 - at[l];
   }
+}
+
+/// Patches of one level: their pixels stay in the cache from tree to tree.
+struct Band {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+std::vector<Band> make_bands(const PatchGrid& patches) {
+  constexpr std::size_t kPatches = 1024;
+  std::vector<Band> bands;
+  for (std::size_t begin = 0; begin < patches.size();) {
+    std::size_t end = begin;
+    while (end < patches.size() && end - begin < kPatches && patches.level[end] == patches.level[begin]) ++end;
+    bands.push_back({begin, end});
+    begin = end;
+  }
+  return bands;
 }
 
 void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index, int stride, PatchGrid& grid) {
@@ -78,19 +100,16 @@ std::vector<std::int32_t> assign_leaves(const Forest& forest, const std::vector<
                                         const PatchGrid& patches, int threads) {
   const std::size_t trees = forest.roots.size();
   std::vector<std::int32_t> leaves(patches.size() * trees);
-  constexpr std::size_t kBand = 1024;  // patches: their pixels stay in the cache from tree to tree
-  const int bands = static_cast<int>((patches.size() + kBand - 1) / kBand);
-  parallel_for(threads, bands, [&](int band) {
-    const std::size_t begin = static_cast<std::size_t>(band) * kBand;
-    const std::size_t end = std::min(begin + kBand, patches.size());
-    std::array<std::int32_t, kLanes> at{};
+  const std::vector<Band> bands = make_bands(patches);
+  parallel_for(threads, static_cast<int>(bands.size()), [&](int b) {
+    const Band& band = bands[static_cast<std::size_t>(b)];
+    const WalkingPatches walking{&features[patches.level[band.begin]], patches.x.data() + band.begin,
+                                 patches.y.data() + band.begin, patches.scale.data() + band.begin,
+                                 static_cast<int>(band.end - band.begin)};
     for (std::size_t tree = 0; tree < trees; ++tree) {
-      for (std::size_t first = begin; first < end; first += kLanes) {
-        const int lanes = static_cast<int>(std::min<std::size_t>(kLanes, end - first));
-        walk_lanes(forest, forest.roots[tree], features, patches, first, lanes, at);
-        for (int l = 0; l < lanes; ++l) {
-          leaves[(first + static_cast<std::size_t>(l)) * trees + tree] = -1 - at[static_cast<std::size_t>(l)];
-        }
+      std::int32_t* out = leaves.data() + band.begin * trees + tree;
+      if (!walk_wide(forest, static_cast<int>(tree), walking, trees, out)) {
+        walk_in_lanes(forest, forest.roots[tree], walking, trees, out);
       }
     }
   });

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "detector/features/feature_image.hpp"
+#include "detector/forest/forest.hpp"
+
+namespace houghstream {
+
+/// Patches of one image that walk down one tree together.
+struct WalkingPatches {
+  const FeatureImage* image = nullptr;
+  const std::int16_t* x = nullptr;  ///< working pixels
+  const std::int16_t* y = nullptr;
+  const std::int32_t* scale = nullptr;  ///< patch_scale
+  int count = 0;
+};
+
+/// Leaf of each patch to leaves[i * step], by gathering vector instructions. Returns false, having done nothing, where
+/// the processor has none (before AVX2) or the image is too large for 32-bit offsets. The leaves are those of
+/// find_leaf.
+bool walk_wide(const Forest& forest, int tree, const WalkingPatches& patches, std::size_t step, std::int32_t* leaves);
+
+}  // namespace houghstream
