@@ -14,6 +14,16 @@ std::uint8_t to_byte(double value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
 }
 
+/// The value below which `rank` of the counted pixels lie.
+double quantile(const std::array<int, 256>& counts, int rank) {
+  int sum = 0;
+  for (std::size_t v = 0; v < counts.size(); ++v) {
+    sum += counts[v];
+    if (sum > rank) return static_cast<double>(v);
+  }
+  return 255.0;
+}
+
 struct Patchwork {
   cv::Mat colour;
   cv::Mat depth;
@@ -73,6 +83,34 @@ double axial_noise(double z) {
   return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
 }
 
+void clear_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
+  constexpr double kMostHaze = 60.0;  // grey levels; more is the object's own brightness
+  constexpr int kBrightest = 245;
+  std::array<int, 256> darkest{};
+  std::array<int, 256> brightest{};
+  int count = 0;
+  for (int y = 0; y < colour.rows; ++y) {
+    for (int x = 0; x < colour.cols; ++x) {
+      if (mask.at<std::uint8_t>(y, x) == 0) continue;
+      const cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
+      ++darkest[std::min({pixel[0], pixel[1], pixel[2]})];
+      ++brightest[std::max({pixel[0], pixel[1], pixel[2]})];
+      ++count;
+    }
+  }
+  const double haze = random.uniform() * std::min(kMostHaze, quantile(darkest, count / 20));
+  const double top = std::max(haze + 1.0, quantile(brightest, count - count / 20));
+  const double gain = std::exp2(random.uniform() * std::log2(std::max(1.0, (kBrightest - 0.0) / (top - haze))));
+  const double saturation = std::exp2(random.uniform(-0.2, 0.5));
+  for (int y = 0; y < colour.rows; ++y) {
+    for (int x = 0; x < colour.cols; ++x) {
+      cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
+      const double grey = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+      for (int c = 0; c < 3; ++c) pixel[c] = to_byte(gain * (grey + saturation * (pixel[c] - grey) - haze));
+    }
+  }
+}
+
 void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
   const double gain = std::exp2(strength * random.uniform(darkest_stops, brightest_stops));
   const double gamma = std::exp2(strength * random.uniform(-0.25, 0.25));
@@ -120,6 +158,7 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   out.origin_px = cv::Point2d(kMargin - part.box_px.x * out.scale, kMargin - part.box_px.y * out.scale);
 
   Patchwork lit = part;
+  if (random.uniform() < 0.5 * settings.light_variation) clear_haze(lit.mask, lit.colour, random);
   vary_light(lit.colour, settings.light_variation, -0.4, 0.4, random);
   const double sigma_sq =
       axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
