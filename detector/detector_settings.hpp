@@ -57,6 +57,7 @@ struct TrainingSettings {
   float min_distance = 0.35F;    ///< nearest distance taught, metres
   float max_distance = 2.6F;     ///< farthest distance taught, metres
   double occluded_share = 0.5;   ///< of the composites in which something stands in front of the object
+  double cleared_share = 0.5;    ///< of the composites in which haze is taken from the object, see clear_haze
   double light_variation = 1.0;  ///< strength of the changes of exposure, colour cast and haze, 0 = none
   int max_leaf_votes = 12;       ///< offsets kept per leaf and class after merging
   int max_leaf_views = 12;       ///< remembered training views per leaf and class

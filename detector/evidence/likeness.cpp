@@ -1,8 +1,14 @@
 #include "detector/evidence/likeness.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace houghstream {
+namespace {
+
+constexpr int kFewest = 12;  // pairs from which a comparison means something
+
+}  // namespace
 
 void Likeness::add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3b& seen) {
   ++count_;
@@ -18,8 +24,23 @@ void Likeness::add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3
   }
 }
 
+float Likeness::foreign_colour() const {
+  constexpr double kNeutral = 128.0;
+  constexpr double kPalest = 0.5;  // strengths over the remembered one
+  constexpr double kStrongest = 2.5;
+  if (count_ < kFewest) return 0.0F;
+  const auto mean = [&](std::size_t channel, std::size_t which) {
+    return channels_[channel][which] / count_ - kNeutral;
+  };
+  const double remembered_sq = mean(1, 0) * mean(1, 0) + mean(2, 0) * mean(2, 0);
+  const double product = mean(1, 0) * mean(1, 1) + mean(2, 0) * mean(2, 1);
+  const double strength = std::clamp(product / std::max(remembered_sq, 1.0), kPalest, kStrongest);
+  const double a = mean(1, 1) - strength * mean(1, 0);
+  const double b = mean(2, 1) - strength * mean(2, 0);
+  return static_cast<float>(std::min(4.0, std::sqrt(a * a + b * b) / 10.0));
+}
+
 float Likeness::correlation() const {
-  constexpr int kFewest = 12;
   constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
   if (count_ < kFewest) return 0.0F;
   double covariance = 0.0;

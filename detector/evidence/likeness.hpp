@@ -6,14 +6,19 @@
 
 namespace houghstream {
 
-/// Correlation of two sets of colours, pair by pair: all three channels together, each about its own mean. So gain and
-/// offset of a channel, which the light decides, do not matter.
+/// Compares two sets of 8-bit L*a*b* colours, pair by pair. The correlation takes all three channels together, each
+/// about its own mean: gain and offset of a channel, which the light decides, do not matter.
 class Likeness {
  public:
   void add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3b& seen);
 
   /// -1 to 1; near 0 for plain surfaces, whose differences are noise, and 0 for fewer than a dozen pairs.
   float correlation() const;
+
+  /// How far the mean colour seen is from the remembered one at any strength that haze or a camera gives it: distance
+  /// in the a*b* plane in tens, at most 4; 0 for fewer than a dozen pairs. Tells plain surfaces apart, which
+  /// correlation cannot.
+  float foreign_colour() const;
 
  private:
   /// Sums of a, b, a * a, b * b and a * b.

@@ -30,7 +30,8 @@ ScoreTerms score_terms(const Evidence& evidence) {
           evidence.fit.seen_through,
           evidence.fit.unknown,
           evidence.fit.continued,
-          evidence.fit.likeness};
+          evidence.fit.likeness,
+          evidence.fit.foreign_colour};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {

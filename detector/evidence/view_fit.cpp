@@ -153,6 +153,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   }
   fit.continued = continued_share(comparison, shift, tolerance);
   fit.likeness = likeness.correlation();
+  fit.foreign_colour = likeness.foreign_colour();
   fit.visible_box_px = visible_box(comparison, columns, rows);
   return fit;
 }

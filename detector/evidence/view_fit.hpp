@@ -17,13 +17,14 @@ struct LabFrame {
 /// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
 /// surface, the first four of which sum to 1.
 struct ViewFit {
-  float visible = 0.0F;       ///< depth as remembered
-  float hidden = 0.0F;        ///< something is in front of it
-  float seen_through = 0.0F;  ///< what is there lies behind: the object cannot be there
-  float unknown = 0.0F;       ///< no depth
-  float continued = 0.0F;     ///< of the rim beside the outline: the surface goes on where the object ends
-  float likeness = 0.0F;      ///< correlation of the visible surface's colours with the remembered ones, -1 to 1
-  cv::Rect2f visible_box_px;  ///< of what is visible or unknown, frame pixels; empty where nothing is
+  float visible = 0.0F;         ///< depth as remembered
+  float hidden = 0.0F;          ///< something is in front of it
+  float seen_through = 0.0F;    ///< what is there lies behind: the object cannot be there
+  float unknown = 0.0F;         ///< no depth
+  float continued = 0.0F;       ///< of the rim beside the outline: the surface goes on where the object ends
+  float likeness = 0.0F;        ///< correlation of the visible surface's colours with the remembered ones, -1 to 1
+  float foreign_colour = 0.0F;  ///< see Likeness
+  cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is
 };
 
 /// The view's relief compared with the frame, pixel by pixel of the relief, after moving it along the ray by at most

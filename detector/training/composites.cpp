@@ -158,7 +158,7 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   out.origin_px = cv::Point2d(kMargin - part.box_px.x * out.scale, kMargin - part.box_px.y * out.scale);
 
   Patchwork lit = part;
-  if (random.uniform() < 0.5 * settings.light_variation) clear_haze(lit.mask, lit.colour, random);
+  if (random.uniform() < settings.cleared_share) clear_haze(lit.mask, lit.colour, random);
   vary_light(lit.colour, settings.light_variation, -0.4, 0.4, random);
   const double sigma_sq =
       axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
