@@ -29,7 +29,7 @@ class SplitSearch {
   static constexpr int kBins = 16;
   static constexpr std::size_t kFirstLook = 128;  ///< samples on which all tests are judged
   static constexpr int kPlaces = 64;              ///< pixels of a patch among which a node's tests choose
-  static constexpr std::size_t kFinalists = 64;  ///< tests that are judged on all samples
+  static constexpr std::size_t kFinalists = 64;   ///< tests that are judged on all samples
 
  private:
   /// Weighted sums of some samples of one label: of 1 and of the offset's coordinates.

@@ -16,10 +16,10 @@ namespace {
 class ForestFile : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    TrainingSettings settings = toy::quick_training();
-    settings.trees = 2;
-    settings.max_depth = 8;
-    forest_ = train_forest(toy::training_views(), {}, {}, settings, [](const auto&) {});
+    Profile profile = toy::quick_profile();
+    profile.training.trees = 2;
+    profile.training.max_depth = 8;
+    forest_ = train_forest(toy::training_views(), profile, [](const auto&) {});
   }
   void SetUp() override {
     file_ = std::filesystem::temp_directory_path() / "houghstream_forest_file_test.forest";
