@@ -96,6 +96,75 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
   }
 }
 
+/// How many of the set's samples the test sends to the wrong side, each looked at by test_value.
+int misplaced(const TrainingSet& set, const PixelTest& test) {
+  int object_right = 0;
+  int background_right = 0;
+  for (const TrainingSample& sample : set.samples) {
+    (sample.label != 0 ? object_right : background_right) += goes_right(set, test, sample) ? 1 : 0;
+  }
+  const int half = static_cast<int>(set.samples.size()) / 2;
+  return std::min(half - object_right + background_right, half - background_right + object_right);
+}
+
+std::optional<PixelTest> search_for_class(const TrainingSet& set, double alone_share) {
+  TrainingSettings settings;
+  settings.tests_per_node = 800;
+  settings.alone_share = alone_share;
+  const PatchSettings patch;
+  Random random(4);
+  return SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
+}
+
+TEST(SplitSearch, ADifferenceSeparatesAsTestValueDoesAtEveryPatchScale) {
+  TrainingSet set = toy::planted_set();
+  Random random(8);
+  for (TrainingSample& sample : set.samples) sample.scale = random.between(200, 400);
+  const auto test = search_for_class(set, 0.0);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->plane, toy::kClassPlane);
+  EXPECT_EQ(test->kind, PixelTest::kDifference);
+  EXPECT_EQ(misplaced(set, *test), 0);
+}
+
+TEST(SplitSearch, OnePixelAloneSeparatesByASingleStepOfGrey) {
+  TrainingSet set = toy::planted_set();
+  for (std::size_t i = 0; i < set.pictures.size(); ++i) {
+    for (int p = 0; p < 32 * 32; ++p) set.pictures[i].at(p % 32, p / 32)[toy::kClassPlane] = i % 2 == 1 ? 101 : 100;
+    set.pictures[i].replicate_border();
+  }
+  const auto test = search_for_class(set, 1.0);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->plane, toy::kClassPlane);
+  EXPECT_EQ(test->kind, PixelTest::kAlone);
+  EXPECT_EQ(test->threshold, 101);
+  EXPECT_EQ(misplaced(set, *test), 0);
+}
+
+TEST(SplitSearch, DepthIsComparedModulo256) {
+  TrainingSet set = toy::planted_set();
+  FeatureSettings features;
+  features.families = kDepthValue;
+  set.layout = FeatureLayout(features);
+  for (std::size_t i = 0; i < set.pictures.size(); ++i) {
+    FeatureImage picture(32, 32, set.layout.pixel_stride());
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) {  // the object's ramp runs over 256 in the middle of the samples
+        const int value = i % 2 == 1 ? 256 - 48 + 3 * x : 60;
+        for (const int plane : {0, 1}) picture.at(x, y)[plane] = static_cast<std::uint8_t>(value & 255);
+      }
+    }
+    picture.replicate_border();
+    set.pictures[i] = picture;
+  }
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto test = search(set, every_sample(set), Objective::kClass, seed);
+    ASSERT_TRUE(test);
+    EXPECT_EQ(test->kind, PixelTest::kWrapping);
+    EXPECT_EQ(misplaced(set, *test), 0);
+  }
+}
+
 TEST(SplitSearch, TestsStayInsideThePatchAndWrapDepthOnly) {
   TrainingSet set = toy::planted_set();
   for (const std::uint64_t seed : {5, 6, 7, 8}) {
