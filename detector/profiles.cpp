@@ -62,7 +62,9 @@ Profile make_profile(const std::string& name) {
 
 DetectionSettings detection_settings(const Forest& forest) {
   Profile profile = make_profile(forest.profile);
-  if (forest.features.handling == ScaleHandling::kDepthNormalised) set_scale_handling(profile, "normalised");
+  profile.features.image_scale = forest.features.image_scale;
+  const bool normalised = forest.features.handling == ScaleHandling::kDepthNormalised;
+  set_scale_handling(profile, normalised ? "normalised" : "five");  // how many scales makes no difference here
   return profile.detection;
 }
 

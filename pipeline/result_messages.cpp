@@ -73,8 +73,8 @@ Detection detection_from_message(const detection_t& message) {
   require(box_ok, "{}: box at ({}, {}) of {}x{} pixels, expected finite with positive size", message.class_name, box.x,
           box.y, box.width, box.height);
   const Eigen::Vector3f centre(message.centre_camera);
-  require(centre.allFinite(), "{}: centre ({}, {}, {}), expected finite metres", message.class_name, centre.x(),
-          centre.y(), centre.z());
+  require(centre.allFinite() || centre.array().isNaN().all(), "{}: centre ({}, {}, {}), expected metres or NaN",
+          message.class_name, centre.x(), centre.y(), centre.z());
   require(std::isfinite(message.score) && std::isfinite(message.vote_weight), "{}: score {} and vote weight {}",
           message.class_name, message.score, message.vote_weight);
   Detection out;

@@ -168,13 +168,18 @@ void check_settings(const Forest& forest, const std::string& source) {
       "{}: scale handling {}, expected depth normalisation or some scales", source,
       static_cast<std::uint32_t>(f.handling));
   for (const float scale : f.scales) {
-    require(scale >= 0.0F && scale <= 8.0F, "{}: image searched at scale {}, expected up to 8", source, scale);
+    require(scale == 0.0F || (scale >= 0.05F && scale <= 8.0F), "{}: image searched at scale {}, expected 0.05 to 8",
+            source, scale);
   }
   const std::vector<std::string> profiles = profile_names();
   require(std::find(profiles.begin(), profiles.end(), forest.profile) != profiles.end(),
           "{}: profile '{}', expected one of {}", source, forest.profile, fmt::join(profiles, ", "));
-  require(f.depth_sobel_px >= 3 && f.depth_sobel_px <= 31 && f.min_max_px >= 1 && f.min_max_px <= 31,
-          "{}: feature kernels {} and {}, expected up to 31 pixels", source, f.depth_sobel_px, f.min_max_px);
+  require(forest.scoring == Scoring::kEvidence || forest.scoring == Scoring::kVotes, "{}: scoring {}, expected 0 or 1",
+          source, static_cast<std::uint32_t>(forest.scoring));
+  require(f.depth_sobel_px >= 3 && f.depth_sobel_px <= 31 && f.depth_sobel_px % 2 == 1 && f.min_max_px >= 1 &&
+              f.min_max_px <= 31,
+          "{}: feature kernels {} and {}, expected up to 31 pixels, the first one odd", source, f.depth_sobel_px,
+          f.min_max_px);
   require(
       forest.patch.radius >= 1 && forest.patch.radius <= 127 && forest.patch.unit > 0.0F && forest.patch.unit <= 1.0F,
       "{}: patch of {} steps of {} m, expected 1 to 127 steps below 1 m", source, forest.patch.radius,

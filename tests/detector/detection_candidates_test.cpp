@@ -12,7 +12,7 @@ namespace houghstream {
 namespace {
 
 const Forest& toy_forest() {
-  static const Forest forest = train_forest(toy::training_views(), {}, {}, toy::quick_training(), [](const auto&) {});
+  static const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   return forest;
 }
 

@@ -18,7 +18,7 @@ inline TrainingSet planted_set() {
   set.views.resize(1);
   Random random(3);
   for (int i = 0; i < 16; ++i) {
-    FeatureImage picture(32, 32);
+    FeatureImage picture(32, 32, set.layout.pixel_stride());
     for (int y = 0; y < 32; ++y) {
       for (int x = 0; x < 32; ++x) {
         const auto ramp = static_cast<std::uint8_t>(4 * x);

@@ -79,8 +79,9 @@ std::vector<TrainingView> training_views() {
   return views;
 }
 
-TrainingSettings quick_training() {
-  TrainingSettings settings;
+Profile quick_profile() {
+  Profile profile = make_profile("realtime");
+  TrainingSettings& settings = profile.training;
   settings.trees = 5;
   settings.max_depth = 14;
   settings.tests_per_node = 80;
@@ -88,7 +89,7 @@ TrainingSettings quick_training() {
   settings.min_distance = 0.5F;
   settings.max_distance = 1.2F;
   settings.validation_frames = 24;
-  return settings;
+  return profile;
 }
 
 }  // namespace houghstream::toy

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "detector/detector_settings.hpp"
+#include "detector/profiles.hpp"
 #include "pipeline/training_view.hpp"
 
 namespace houghstream::toy {
@@ -17,7 +17,7 @@ cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame&
 /// A few views of both kinds (classes 1 "stripes" and 2 "rings") and background frames.
 std::vector<TrainingView> training_views();
 
-/// Settings that train in a second.
-TrainingSettings quick_training();
+/// The default profile with training settings that take a second.
+Profile quick_profile();
 
 }  // namespace houghstream::toy

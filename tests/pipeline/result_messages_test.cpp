@@ -98,6 +98,13 @@ TEST(ResultMessages, VotesAreCapped) {
   EXPECT_EQ(over_the_wire(to_message(many)).detections[0].vote_quat.size(), 64U);
 }
 
+TEST(ResultMessages, ACentreMayBeUnknown) {
+  Detections found = make_detections();
+  found.detections[0].centre_camera.setConstant(kNan);
+  const Detections back = detections_from_message(over_the_wire(to_message(found)));
+  EXPECT_TRUE(back.detections[0].centre_camera.array().isNaN().all());
+}
+
 TEST(ResultMessages, AbsurdDetectionsAreRefused) {
   const detections_t good = to_message(make_detections());
   const auto refused = [&](const auto& change) {
@@ -111,6 +118,7 @@ TEST(ResultMessages, AbsurdDetectionsAreRefused) {
   refused([](detection_t& d) { d.box_width = -1.0F; });
   refused([](detection_t& d) { d.box_x = std::numeric_limits<float>::infinity(); });
   refused([](detection_t& d) { d.centre_camera[2] = kNan; });
+  refused([](detection_t& d) { d.centre_camera[0] = std::numeric_limits<float>::infinity(); });
   refused([](detection_t& d) { d.vote_quat[0] = {0, 0, 0, 0}; });
   refused([](detection_t& d) { d.vote_quat_weight[0] = -1.0F; });
 }

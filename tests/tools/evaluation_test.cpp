@@ -141,6 +141,23 @@ TEST(EvaluatedFrames, ResultsFindTheirFrameOrAreRefused) {
   EXPECT_THROW(add_poses(frames, {ObjectPoses{20, "", {pose}, {}}}, "test"), InputError) << "no such detection";
 }
 
+TEST(EvaluatedFrames, EveryNthBeginsWithTheFirst) {
+  std::vector<EvaluatedFrame> frames;
+  for (std::int64_t utime = 0; utime < 7; ++utime) frames.push_back(frame({object("mug", kLeft)}, {}, utime));
+  const auto chosen = [&](int every) {
+    std::vector<std::int64_t> utimes;
+    for (const EvaluatedFrame& kept : every_nth(frames, every)) {
+      EXPECT_EQ(kept.objects.size(), 1U);
+      utimes.push_back(kept.utime);
+    }
+    return utimes;
+  };
+  EXPECT_EQ(chosen(1), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(chosen(3), (std::vector<std::int64_t>{0, 3, 6}));
+  EXPECT_EQ(chosen(7), (std::vector<std::int64_t>{0}));
+  EXPECT_TRUE(every_nth({}, 2).empty());
+}
+
 const Points kCorners = {{0.1F, 0, 0}, {-0.1F, 0, 0}, {0, 0.1F, 0}, {0, -0.1F, 0}};
 
 TEST(PoseMetrics, AShiftIsItsOwnAdd) {

@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-enum Plane : std::size_t { kDepth, kDx, kDy, kDxx, kDyy, kHog };
+enum Plane : std::size_t { kDx, kDy, kDxx, kDyy, kHog };
 constexpr int kNeutral = 128;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
@@ -28,10 +28,13 @@ WorkingFrame see(double distance, const Surface& surface) {
 }
 
 std::vector<int> at_centre(const WorkingFrame& frame) {
-  const std::vector<cv::Mat> planes = depth_planes(frame, {});
-  EXPECT_EQ(planes.size(), static_cast<std::size_t>(FeatureLayout::kDepth));
-  std::vector<int> values{0};
-  for (std::size_t p = 1; p < planes.size(); ++p) values.push_back(planes[p].at<std::uint8_t>(20, 20));
+  const DepthPlanes planes = depth_planes(frame, {});
+  EXPECT_EQ(planes.derivatives.size(), static_cast<std::size_t>(FeatureLayout().block(kDepthDerivatives).count));
+  EXPECT_EQ(planes.hog.size(), static_cast<std::size_t>(FeatureLayout().block(kDepthHog).count));
+  std::vector<int> values;
+  for (const auto* family : {&planes.derivatives, &planes.hog}) {
+    for (const cv::Mat& plane : *family) values.push_back(plane.at<std::uint8_t>(20, 20));
+  }
   return values;
 }
 
@@ -65,7 +68,7 @@ TEST(DepthFeatures, AnOccludingEdgeIsLimited) {
 TEST(DepthFeatures, MissingDepthIsNeutral) {
   WorkingFrame frame = see(0.8, [](double x, double) { return 2.0 * x; });
   frame.filled_depth.at<float>(20, 21) = kNone;  // beside the pixel: its derivatives are unknown too
-  std::vector<int> expected(FeatureLayout::kDepth, 0);
+  std::vector<int> expected(13, 0);
   for (const std::size_t p : {kDx, kDy, kDxx, kDyy}) expected[p] = kNeutral;
   std::vector<int> found = at_centre(frame);
   EXPECT_EQ(std::vector<int>(found.begin(), found.begin() + kHog),

@@ -25,32 +25,34 @@ WorkingFrame flat_frame(float depth) {
 }
 
 TEST(Features, MinimaLieBelowMaximaAndDiffer) {
-  const FeatureImage image = compute_features(toy_frame(), {}, 1);
-  int upside_down = 0;
-  int different = 0;
-  const auto compare = [&](const std::uint8_t* pixel, int first, int count, int skip) {
-    for (int p = first + skip; p < first + count; ++p) {
-      upside_down += pixel[p] < pixel[p + count] ? 1 : 0;
-      different += pixel[p] > pixel[p + count] ? 1 : 0;
+  FeatureSettings settings;
+  settings.families = kIntensity | kDepthDerivatives | kDepthHog | kCurvature;  // depth itself wraps
+  const FeatureImage image = compute_features(toy_frame(), settings, 1);
+  const FeatureLayout layout(settings);
+  for (const FeatureBlock& block : layout.blocks()) {
+    ASSERT_TRUE(block.min_max);
+    int upside_down = 0;
+    int different = 0;
+    for (int i = 0; i < image.height() * image.width(); ++i) {
+      const std::uint8_t* pixel = image.at(i % image.width(), i / image.width()) + block.first;
+      for (int p = 0; p < block.count; ++p) {
+        upside_down += pixel[p] < pixel[p + block.count] ? 1 : 0;
+        different += pixel[p] > pixel[p + block.count] ? 1 : 0;
+      }
     }
-  };
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      compare(image.at(x, y), 0, FeatureLayout::kIntensity, 0);
-      compare(image.at(x, y), FeatureLayout::kDepthMax, FeatureLayout::kDepth, 1);  // depth itself wraps
-    }
+    EXPECT_EQ(upside_down, 0) << family_names(block.family);
+    EXPECT_GT(different, image.width() * image.height()) << family_names(block.family);
   }
-  EXPECT_EQ(upside_down, 0);
-  EXPECT_GT(different, image.width() * image.height());
 }
 
 TEST(Features, MinimumAndMaximumReachTwoPixels) {
   WorkingFrame frame = flat_frame(0.4F);
   frame.filled_depth.at<float>(10, 10) = 0.6F;
   const FeatureImage image = compute_features(frame, {}, 1);
-  EXPECT_EQ(image.at(12, 12)[FeatureLayout::kDepthMax], 150);
-  EXPECT_EQ(image.at(13, 12)[FeatureLayout::kDepthMax], 100);
-  EXPECT_EQ(image.at(10, 10)[FeatureLayout::kDepthMin], 100);
+  const int largest = FeatureLayout().block(kDepthValue).first;
+  EXPECT_EQ(image.at(12, 12)[largest], 150);
+  EXPECT_EQ(image.at(13, 12)[largest], 100);
+  EXPECT_EQ(image.at(10, 10)[largest + 1], 100);
 }
 
 TEST(Features, DepthWrapsSoThatDifferencesStayExactAtAnyDistance) {
@@ -58,8 +60,9 @@ TEST(Features, DepthWrapsSoThatDifferencesStayExactAtAnyDistance) {
     WorkingFrame frame = flat_frame(near);
     frame.filled_depth.colRange(20, 40).setTo(near + 0.2F);
     const FeatureImage image = compute_features(frame, {}, 1);
-    for (const int plane : {FeatureLayout::kDepthMax, FeatureLayout::kDepthMin}) {
-      ASSERT_TRUE(FeatureLayout::wraps(plane));
+    const int first = FeatureLayout().block(kDepthValue).first;
+    for (const int plane : {first, first + 1}) {
+      ASSERT_EQ(FeatureLayout().kind(plane), PlaneKind::kWrappedDepth);
       const int difference = image.at(30, 15)[plane] - image.at(10, 15)[plane];
       EXPECT_EQ(static_cast<std::int8_t>(difference & 255), 50) << near << " m, plane " << plane;
     }
@@ -68,11 +71,11 @@ TEST(Features, DepthWrapsSoThatDifferencesStayExactAtAnyDistance) {
 
 TEST(Features, WithoutDepthTheDepthPlanesAreNeutral) {
   const FeatureImage image = compute_features(flat_frame(std::numeric_limits<float>::quiet_NaN()), {}, 1);
-  for (const int first : {FeatureLayout::kDepthMax, FeatureLayout::kDepthMin}) {
-    for (int p = 0; p < FeatureLayout::kDepth; ++p) {
-      const int expected = p >= 1 && p <= 4 ? 128 : 0;
-      EXPECT_EQ(image.at(20, 15)[first + p], expected) << first + p;
-    }
+  const FeatureLayout layout;
+  for (const FeatureFamily family : {kDepthValue, kDepthDerivatives, kDepthHog}) {
+    const FeatureBlock& block = layout.block(family);
+    const int expected = family == kDepthDerivatives ? 128 : 0;
+    for (int p = block.first; p < block.first + block.planes(); ++p) EXPECT_EQ(image.at(20, 15)[p], expected) << p;
   }
 }
 
@@ -80,8 +83,9 @@ TEST(Features, TheBorderIsReplicated) {
   const FeatureImage image = compute_features(toy_frame(), {}, 1);
   const int w = image.width() - 1;
   const int h = image.height() - 1;
-  EXPECT_EQ(std::memcmp(image.at(-24, -24), image.at(0, 0), FeatureLayout::kPlanes), 0);
-  EXPECT_EQ(std::memcmp(image.at(w + 24, h + 24), image.at(w, h), FeatureLayout::kPlanes), 0);
+  const auto planes = static_cast<std::size_t>(FeatureLayout().planes());
+  EXPECT_EQ(std::memcmp(image.at(-24, -24), image.at(0, 0), planes), 0);
+  EXPECT_EQ(std::memcmp(image.at(w + 24, h + 24), image.at(w, h), planes), 0);
 }
 
 TEST(Features, AnyNumberOfThreadsGivesTheSameImage) {

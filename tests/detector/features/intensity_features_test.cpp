@@ -15,7 +15,7 @@ std::vector<int> at_centre(const cv::Mat& picture) {
     EXPECT_EQ(plane.type(), CV_8UC1);
     values.push_back(plane.at<std::uint8_t>(picture.rows / 2, picture.cols / 2));
   }
-  EXPECT_EQ(values.size(), static_cast<std::size_t>(FeatureLayout::kIntensity));
+  EXPECT_EQ(values.size(), static_cast<std::size_t>(FeatureLayout().block(kIntensity).count));
   return values;
 }
 

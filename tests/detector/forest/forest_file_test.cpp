@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
+#include "detector/features/feature_families.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/checks.hpp"
 #include "toy_data.hpp"
@@ -16,10 +18,10 @@ namespace {
 class ForestFile : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    TrainingSettings settings = toy::quick_training();
-    settings.trees = 2;
-    settings.max_depth = 8;
-    forest_ = train_forest(toy::training_views(), {}, {}, settings, [](const auto&) {});
+    Profile profile = toy::quick_profile();
+    profile.training.trees = 2;
+    profile.training.max_depth = 8;
+    forest_ = train_forest(toy::training_views(), profile, [](const auto&) {});
   }
   void SetUp() override {
     file_ = std::filesystem::temp_directory_path() / "houghstream_forest_file_test.forest";
@@ -55,6 +57,9 @@ TEST_F(ForestFile, ComesBackWhole) {
   EXPECT_EQ(loaded.leaves, forest_.leaves);
   EXPECT_EQ(loaded.classes[1].name, "rings");
   EXPECT_EQ(loaded.patch.radius, forest_.patch.radius);
+  EXPECT_EQ(loaded.profile, "realtime");
+  EXPECT_EQ(loaded.features.families, forest_.features.families);
+  EXPECT_EQ(loaded.scoring, Scoring::kEvidence);
   save_forest(loaded, file_);
   std::ostringstream again;
   again << std::ifstream(file_, std::ios::binary).rdbuf();
@@ -95,6 +100,51 @@ TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
   EXPECT_THROW(load_forest(file_), InputError);
   bad = forest_;
   bad.leaf_classes[0].first_vote = 1U << 31U;
+  save_forest(bad, file_);
+  EXPECT_THROW(load_forest(file_), InputError);
+}
+
+TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
+  const auto expect_refused = [&](const std::string& what, const auto& change) {
+    Forest bad = forest_;
+    change(bad);
+    save_forest(bad, file_);
+    try {
+      load_forest(file_);
+      ADD_FAILURE() << "accepted: " << what;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  expect_refused("profile 'other'", [](Forest& f) { f.profile = "other"; });
+  expect_refused("profile ''", [](Forest& f) { f.profile.clear(); });
+  expect_refused("feature families 0x0", [](Forest& f) { f.features.families = 0; });
+  expect_refused("feature families 0x101", [](Forest& f) { f.features.families = 0x101; });
+  expect_refused("scale handling 2", [](Forest& f) { f.features.handling = static_cast<ScaleHandling>(2); });
+  expect_refused("some scales", [](Forest& f) { f.features.handling = ScaleHandling::kScaleSpace; });
+  expect_refused("scoring 7", [](Forest& f) { f.scoring = static_cast<Scoring>(7); });
+  for (const float scale : {nan, -1.0F, 0.001F, 100.0F}) {
+    expect_refused("image searched at scale", [&](Forest& f) { f.features.scales[2] = scale; });
+    expect_refused("image scale", [&](Forest& f) { f.features.image_scale = scale; });
+  }
+  expect_refused("feature kernels 8 and 5", [](Forest& f) { f.features.depth_sobel_px = 8; });
+  expect_refused("feature kernels 7 and 0", [](Forest& f) { f.features.min_max_px = 0; });
+  expect_refused("patch of 0 steps", [](Forest& f) { f.patch.radius = 0; });
+  expect_refused("patch of", [&](Forest& f) { f.patch.unit = nan; });
+}
+
+TEST_F(ForestFile, TestsOfPlanesThatTheFamiliesLackAreRefused) {
+  Forest bad = forest_;
+  bad.features.families = kDepthValue;  // two planes; the forest looks at more
+  save_forest(bad, file_);
+  EXPECT_THROW(load_forest(file_), InputError);
+  bad = forest_;
+  bad.nodes[0].test.dy2 = static_cast<std::int8_t>(-forest_.patch.radius - 1);
+  save_forest(bad, file_);
+  EXPECT_THROW(load_forest(file_), InputError);
+  bad = forest_;
+  bad.nodes[0].test.kind = 3;
   save_forest(bad, file_);
   EXPECT_THROW(load_forest(file_), InputError);
 }

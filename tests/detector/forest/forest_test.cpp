@@ -27,7 +27,7 @@ TEST(PixelTest, DepthNormalisationKeepsTheTestOnTheObject) {
 }
 
 TEST(PixelTest, ComparesOnePlaneAtTwoPlacesAndWrapsDepth) {
-  FeatureImage image(20, 20);
+  FeatureImage image(20, 20, 64);
   image.at(8, 10)[3] = 200;
   image.at(12, 10)[3] = 30;
   image.at(8, 10)[32] = 250;
@@ -40,7 +40,7 @@ TEST(PixelTest, ComparesOnePlaneAtTwoPlacesAndWrapsDepth) {
 }
 
 TEST(PixelTest, AloneItComparesOnePixelOnly) {
-  FeatureImage image(20, 20);
+  FeatureImage image(20, 20, 64);
   image.at(8, 10)[3] = 200;
   image.at(12, 10)[3] = 30;
   const PixelTest test{-2, 0, 2, 0, 3, PixelTest::kAlone, 0};
@@ -51,7 +51,7 @@ TEST(FindLeaf, WalksRightFromTheThresholdOn) {
   Forest forest;
   forest.roots = {0};
   forest.nodes = {{PixelTest{0, 0, 1, 0, 0, 0, 5}, -1, -2}};
-  FeatureImage image(4, 4);
+  FeatureImage image(4, 4, 32);
   image.at(1, 1)[0] = 5;
   EXPECT_EQ(find_leaf(forest, 0, image.patch(1, 1, 256)), 1);
   image.at(1, 1)[0] = 4;

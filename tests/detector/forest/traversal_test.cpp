@@ -12,13 +12,13 @@ namespace houghstream {
 namespace {
 
 TEST(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
-  const Forest forest = train_forest(toy::training_views(), {}, {}, toy::quick_training(), [](const auto&) {});
+  const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   RgbdFrame room = toy::room(5);
   toy::put_tile(1, 150, 100, 0.8, room);
   std::vector<FeatureImage> features;
   PatchGrid patches;
   for (const FeatureLevel& level : feature_levels(forest.features)) {
-    const WorkingFrame frame = make_working_frame(room, level.scale, forest.features);
+    const WorkingFrame frame = make_working_frame(room, level, forest.features);
     add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, 2, patches);
     features.push_back(compute_features(frame, forest.features, 2));
   }
@@ -29,8 +29,8 @@ TEST(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
     for (std::size_t p = 0; p < patches.size(); ++p) {
       for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
         const FeatureImage& image = features[patches.level[p]];
-        const std::int32_t leaf = find_leaf(forest, static_cast<int>(tree), image.at(patches.x[p], patches.y[p]),
-                                            patches.scale[p], image.row_stride());
+        const std::int32_t leaf =
+            find_leaf(forest, static_cast<int>(tree), image.patch(patches.x[p], patches.y[p], patches.scale[p]));
         ASSERT_EQ(leaves[p * forest.roots.size() + tree], leaf) << "patch " << p << " tree " << tree;
       }
     }
@@ -43,9 +43,9 @@ TEST(PatchGrid, StandsOnDepthThatItsLevelHolds) {
   frame.filled_depth = cv::Mat(48, 64, CV_32FC1, cv::Scalar(2.0));
   frame.filled_depth(cv::Rect(0, 0, 32, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
   PatchGrid grid;
-  add_patches(frame, {0.5F, 0.0F, 1.9F}, 0, PatchSettings{}, 2, grid);
+  add_patches(frame, {0.5F, 1.0F, 0.0F, 1.9F}, 0, PatchSettings{}, 2, grid);
   EXPECT_EQ(grid.size(), 0U);
-  add_patches(frame, {0.5F, 1.9F, 3.0F}, 1, PatchSettings{}, 2, grid);
+  add_patches(frame, {0.5F, 1.0F, 1.9F, 3.0F}, 1, PatchSettings{}, 2, grid);
   ASSERT_EQ(grid.size(), 16U * 24U);
   EXPECT_GE(*std::min_element(grid.x.begin(), grid.x.end()), 32);
   EXPECT_EQ(grid.level[0], 1);

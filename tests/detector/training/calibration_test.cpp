@@ -17,7 +17,7 @@ TrainingSet set_of(int pictures) {
   set.classes.resize(2);
   set.visible_areas = {kArea, 0.5F};
   for (int i = 0; i < pictures; ++i) {
-    set.pictures.emplace_back(2, 2);
+    set.pictures.emplace_back(2, 2, set.layout.pixel_stride());
     TrainingSample sample;
     sample.picture = i;
     sample.label = 1;

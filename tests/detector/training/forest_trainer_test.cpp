@@ -27,10 +27,10 @@ std::string file_bytes(const Forest& forest, const std::string& name) {
 }
 
 std::string trained_bytes(int threads, std::uint64_t seed) {
-  TrainingSettings settings = toy::quick_training();
-  settings.threads = threads;
-  settings.seed = seed;
-  return file_bytes(train_forest(toy::training_views(), {}, {}, settings, kQuiet), "houghstream_forest_trainer_test");
+  Profile profile = toy::quick_profile();
+  profile.training.threads = threads;
+  profile.training.seed = seed;
+  return file_bytes(train_forest(toy::training_views(), profile, kQuiet), "houghstream_forest_trainer_test");
 }
 
 TEST(ForestTrainer, SameSeedGivesTheSameFileForAnyNumberOfThreads) {
@@ -41,7 +41,7 @@ TEST(ForestTrainer, SameSeedGivesTheSameFileForAnyNumberOfThreads) {
 }
 
 TEST(ForestTrainer, LeavesHoldProbabilitiesAndSharesOfVotes) {
-  const Forest forest = train_forest(toy::training_views(), {}, {}, toy::quick_training(), kQuiet);
+  const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), kQuiet);
   EXPECT_EQ(forest.roots.size(), 5U);
   ASSERT_EQ(forest.classes.size(), 2U);
   EXPECT_NEAR(forest.classes[0].radius, 0.085F, 0.015F);  // half the diagonal of a 0.12 m tile
@@ -62,17 +62,17 @@ TEST(ForestTrainer, LeavesHoldProbabilitiesAndSharesOfVotes) {
 TEST(ForestTrainer, DataThatCannotTeachIsRefused) {
   std::vector<TrainingView> views = toy::training_views();
   std::vector<TrainingView> no_background(views.begin(), views.begin() + 24);
-  EXPECT_THROW(train_forest(no_background, {}, {}, toy::quick_training(), kQuiet), InputError);
+  EXPECT_THROW(train_forest(no_background, toy::quick_profile(), kQuiet), InputError);
   std::vector<TrainingView> no_object(views.begin() + 24, views.end());
-  EXPECT_THROW(train_forest(no_object, {}, {}, toy::quick_training(), kQuiet), InputError);
+  EXPECT_THROW(train_forest(no_object, toy::quick_profile(), kQuiet), InputError);
   views[3].mask.setTo(0);
-  EXPECT_THROW(train_forest(views, {}, {}, toy::quick_training(), kQuiet), InputError);
+  EXPECT_THROW(train_forest(views, toy::quick_profile(), kQuiet), InputError);
 }
 
 TEST(ForestTrainer, AnObjectWithoutDepthIsRefused) {
   std::vector<TrainingView> views = toy::training_views();
   for (TrainingView& view : views) view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
-  EXPECT_THROW(train_forest(views, {}, {}, toy::quick_training(), kQuiet), InputError);
+  EXPECT_THROW(train_forest(views, toy::quick_profile(), kQuiet), InputError);
 }
 
 }  // namespace

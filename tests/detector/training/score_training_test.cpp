@@ -19,17 +19,16 @@ struct Toys {
 };
 
 Forest with_score_trained(const Toys& toys, Forest forest, int threads) {
-  TrainingSettings settings = toy::quick_training();
-  settings.validation_frames = 16;
-  settings.threads = threads;
-  train_score_model(toys.objects, toys.rooms, settings, forest);
+  Profile profile = toy::quick_profile();
+  profile.training.validation_frames = 16;
+  profile.training.threads = threads;
+  train_score_model(toys.objects, toys.rooms, profile, forest);
   return forest;
 }
 
 TEST(ScoreTraining, GivesAFullySeenObjectMuchAndNothingLittle) {
   const Toys toys;
-  const Forest forest =
-      with_score_trained(toys, train_forest(toys.views, {}, {}, toy::quick_training(), [](auto&) {}), 2);
+  const Forest forest = with_score_trained(toys, train_forest(toys.views, toy::quick_profile(), [](auto&) {}), 2);
   Evidence whole;
   whole.mass_share = 1.0F;
   whole.fit.visible = 1.0F;
@@ -46,7 +45,7 @@ TEST(ScoreTraining, GivesAFullySeenObjectMuchAndNothingLittle) {
 
 TEST(ScoreTraining, AnyNumberOfThreadsGivesTheSameModel) {
   const Toys toys;
-  const Forest forest = train_forest(toys.views, {}, {}, toy::quick_training(), [](auto&) {});
+  const Forest forest = train_forest(toys.views, toy::quick_profile(), [](auto&) {});
   const Forest serial = with_score_trained(toys, forest, 1);
   const Forest parallel = with_score_trained(toys, forest, 3);
   for (std::size_t c = 0; c < serial.classes.size(); ++c) {

@@ -51,7 +51,7 @@ TEST(SplitSearch, FindsThePlaneThatSeparatesTheOffsets) {
 
 TEST(SplitSearch, WhereAllValuesAreEqualThereIsNoTest) {
   TrainingSet set = toy::planted_set();
-  for (FeatureImage& picture : set.pictures) picture = FeatureImage(32, 32);
+  for (FeatureImage& picture : set.pictures) picture = FeatureImage(32, 32, set.layout.pixel_stride());
   EXPECT_FALSE(search(set, every_sample(set), Objective::kClass, 1));
   EXPECT_FALSE(search(set, every_sample(set), Objective::kOffset, 1));
 }
@@ -63,12 +63,17 @@ TEST(SplitSearch, BothSidesKeepEnoughSamples) {
   for (std::uint32_t i = 50; i < 60; ++i) few.push_back(i);   // object
   EXPECT_FALSE(search(set, few, Objective::kClass, 1));       // 19 samples: no two sides of 10
   for (std::uint32_t i = 60; i < 100; ++i) few.push_back(i);  // separating the labels would leave 9
-  const auto test = search(set, few, Objective::kClass, 1);
-  ASSERT_TRUE(test);
-  const auto right =
-      std::count_if(few.begin(), few.end(), [&](std::uint32_t s) { return goes_right(set, *test, set.samples[s]); });
-  EXPECT_GE(right, SplitSearch::kMinSide);
-  EXPECT_LE(right, static_cast<std::ptrdiff_t>(few.size()) - SplitSearch::kMinSide);
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {  // few samples try few tests, of which most see nothing
+    const auto test = search(set, few, Objective::kClass, seed);
+    if (!test) continue;
+    ++found;
+    const auto right =
+        std::count_if(few.begin(), few.end(), [&](std::uint32_t s) { return goes_right(set, *test, set.samples[s]); });
+    EXPECT_GE(right, SplitSearch::kMinSide);
+    EXPECT_LE(right, static_cast<std::ptrdiff_t>(few.size()) - SplitSearch::kMinSide);
+  }
+  EXPECT_GT(found, 5);
 }
 
 TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
@@ -88,6 +93,75 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
         SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
     ASSERT_TRUE(trusting);
     EXPECT_EQ(trusting->kind, PixelTest::kAlone);
+  }
+}
+
+/// How many of the set's samples the test sends to the wrong side, each looked at by test_value.
+int misplaced(const TrainingSet& set, const PixelTest& test) {
+  int object_right = 0;
+  int background_right = 0;
+  for (const TrainingSample& sample : set.samples) {
+    (sample.label != 0 ? object_right : background_right) += goes_right(set, test, sample) ? 1 : 0;
+  }
+  const int half = static_cast<int>(set.samples.size()) / 2;
+  return std::min(half - object_right + background_right, half - background_right + object_right);
+}
+
+std::optional<PixelTest> search_for_class(const TrainingSet& set, double alone_share) {
+  TrainingSettings settings;
+  settings.tests_per_node = 800;
+  settings.alone_share = alone_share;
+  const PatchSettings patch;
+  Random random(4);
+  return SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
+}
+
+TEST(SplitSearch, ADifferenceSeparatesAsTestValueDoesAtEveryPatchScale) {
+  TrainingSet set = toy::planted_set();
+  Random random(8);
+  for (TrainingSample& sample : set.samples) sample.scale = random.between(200, 400);
+  const auto test = search_for_class(set, 0.0);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->plane, toy::kClassPlane);
+  EXPECT_EQ(test->kind, PixelTest::kDifference);
+  EXPECT_EQ(misplaced(set, *test), 0);
+}
+
+TEST(SplitSearch, OnePixelAloneSeparatesByASingleStepOfGrey) {
+  TrainingSet set = toy::planted_set();
+  for (std::size_t i = 0; i < set.pictures.size(); ++i) {
+    for (int p = 0; p < 32 * 32; ++p) set.pictures[i].at(p % 32, p / 32)[toy::kClassPlane] = i % 2 == 1 ? 101 : 100;
+    set.pictures[i].replicate_border();
+  }
+  const auto test = search_for_class(set, 1.0);
+  ASSERT_TRUE(test);
+  EXPECT_EQ(test->plane, toy::kClassPlane);
+  EXPECT_EQ(test->kind, PixelTest::kAlone);
+  EXPECT_EQ(test->threshold, 101);
+  EXPECT_EQ(misplaced(set, *test), 0);
+}
+
+TEST(SplitSearch, DepthIsComparedModulo256) {
+  TrainingSet set = toy::planted_set();
+  FeatureSettings features;
+  features.families = kDepthValue;
+  set.layout = FeatureLayout(features);
+  for (std::size_t i = 0; i < set.pictures.size(); ++i) {
+    FeatureImage picture(32, 32, set.layout.pixel_stride());
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) {  // the object's ramp runs over 256 in the middle of the samples
+        const int value = i % 2 == 1 ? 256 - 48 + 3 * x : 60;
+        for (const int plane : {0, 1}) picture.at(x, y)[plane] = static_cast<std::uint8_t>(value & 255);
+      }
+    }
+    picture.replicate_border();
+    set.pictures[i] = picture;
+  }
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto test = search(set, every_sample(set), Objective::kClass, seed);
+    ASSERT_TRUE(test);
+    EXPECT_EQ(test->kind, PixelTest::kWrapping);
+    EXPECT_EQ(misplaced(set, *test), 0);
   }
 }
 

@@ -23,13 +23,13 @@ std::vector<TrainingView> flat_tile() {
 }
 
 TrainingSet teach(const std::vector<TrainingView>& views, float distance, int threads = 2) {
-  TrainingSettings settings = toy::quick_training();
-  settings.min_distance = distance;
-  settings.max_distance = distance;
-  settings.threads = threads;
+  Profile profile = toy::quick_profile();
+  profile.training.min_distance = distance;
+  profile.training.max_distance = distance;
+  profile.training.threads = threads;
   std::vector<const TrainingView*> pointers;
   for (const TrainingView& view : views) pointers.push_back(&view);
-  return make_training_set(pointers, {}, {}, settings);
+  return make_training_set(pointers, profile);
 }
 
 TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
@@ -89,7 +89,7 @@ TEST(TrainingSet, EachLevelLearnsBackgroundOfItsOwnDistances) {
     depth.col(x).setTo(kDepths[static_cast<std::size_t>(x / 20 % 3)]);
   }
   const TrainingSet set = teach(views, 0.7F);
-  const TrainingSettings settings = toy::quick_training();
+  const TrainingSettings settings = toy::quick_profile().training;
   std::array<int, 2> counts{};
   for (const auto* list : {&set.samples, &set.spare_background}) {
     for (const TrainingSample& sample : *list) {

@@ -53,8 +53,7 @@ TEST(TreeTrainer, ATreeTellsHeldOutPicturesApart) {
     if (in_bag(settings, 0, sample.picture)) continue;
     ++held_out;
     const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
-    const auto leaf = static_cast<std::size_t>(
-        find_leaf(tree, 0, picture.patch(sample.x, sample.y, sample.scale)));
+    const auto leaf = static_cast<std::size_t>(find_leaf(tree, 0, picture.patch(sample.x, sample.y, sample.scale)));
     const bool is_object = tree.leaves[leaf] < tree.leaves[leaf + 1];
     ASSERT_EQ(is_object, sample.label != 0);
     if (!is_object) continue;

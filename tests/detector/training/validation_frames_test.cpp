@@ -20,7 +20,7 @@ struct Toys {
 };
 
 ValidationFrame compose(const Toys& toys, std::uint64_t seed, double occluded_share) {
-  TrainingSettings settings = toy::quick_training();
+  TrainingSettings settings = toy::quick_profile().training;
   settings.occluded_share = occluded_share;
   Random random(seed);
   return make_validation_frame(toys.objects, toy::room(9), settings, random);
@@ -63,7 +63,7 @@ TEST(ValidationFrames, TheRoomItselfStaysAsItIs) {
   const Toys toys;
   const RgbdFrame room = toy::room(9);
   const cv::Mat colour = room.colour.clone();
-  TrainingSettings settings = toy::quick_training();
+  TrainingSettings settings = toy::quick_profile().training;
   Random random(1);
   make_validation_frame(toys.objects, room, settings, random);
   EXPECT_EQ(cv::norm(colour, room.colour, cv::NORM_INF), 0.0);

@@ -1,0 +1,57 @@
+#include "tools/common/search_options.hpp"
+
+#include <gtest/gtest.h>
+
+#include "detector/forest/forest.hpp"
+
+namespace houghstream {
+namespace {
+
+Forest forest_of(const std::string& profile) {
+  Forest forest;
+  forest.profile = profile;
+  forest.features = make_profile(profile).features;
+  return forest;
+}
+
+SearchOptions parsed(const std::string& arguments) {
+  SearchOptions options;
+  CLI::App app;
+  add_search_options(app, options);
+  app.parse(arguments);
+  return options;
+}
+
+TEST(SearchOptions, WithoutOptionsAForestIsSearchedAsItsProfileSays) {
+  for (const std::string& name : profile_names()) {
+    const DetectionSettings expected = make_profile(name).detection;
+    const DetectionSettings settings = parsed("").settings_for(forest_of(name));
+    EXPECT_EQ(settings.stride, expected.stride) << name;
+    EXPECT_EQ(settings.threshold, expected.threshold) << name;
+    EXPECT_EQ(settings.min_mass_share, expected.min_mass_share) << name;
+    EXPECT_EQ(settings.min_class_share, expected.min_class_share) << name;
+    EXPECT_EQ(settings.vote_sigma, expected.vote_sigma) << name;
+    EXPECT_FALSE(settings.readable);
+  }
+}
+
+TEST(SearchOptions, WhatIsAskedForReplacesTheProfilesOwn) {
+  SearchOptions options = parsed("--threads 3 --stride 4 --threshold 0.25");
+  options.min_mass_share = 0.07F;
+  options.readable = true;
+  const DetectionSettings settings = options.settings_for(forest_of("gall"));
+  EXPECT_EQ(settings.threads, 3);
+  EXPECT_EQ(settings.stride, 4);
+  EXPECT_EQ(settings.threshold, 0.25F);
+  EXPECT_EQ(settings.min_mass_share, 0.07F);
+  EXPECT_TRUE(settings.readable);
+}
+
+TEST(SearchOptions, AbsurdValuesAreRefused) {
+  for (const char* arguments : {"--stride 0", "--stride 100", "--threads 0", "--threshold high"}) {
+    EXPECT_THROW(parsed(arguments), CLI::ParseError) << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace houghstream
