@@ -53,7 +53,7 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
     const TrainingView& room = *rooms[static_cast<std::size_t>(f) % rooms.size()];
     const ValidationFrame validation = make_validation_frame(objects, room.frame, settings, random);
     StageClock clock;
-    std::vector<std::uint32_t> shown;
+    std::vector<std::uint32_t> shown = validation.look_alikes;
     for (const ValidationFrame::Object& object : validation.objects) shown.push_back(object.view);
     by_frame[static_cast<std::size_t>(f)] =
         judge(find_candidates(forest, validation.frame, detection, clock, shown), validation);

@@ -9,6 +9,10 @@
 namespace houghstream {
 namespace {
 
+double draw_distance(const TrainingSettings& settings, Random& random) {
+  return std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
+}
+
 /// Copies the composite into the whole frame it was cut from; `labels` says which object each pixel shows.
 void put_back(const Composite& composite, std::uint8_t label, RgbdFrame& frame, cv::Mat& labels) {
   const cv::Rect place(static_cast<int>(std::lround(frame.camera.cx - composite.frame.camera.cx)),
@@ -20,11 +24,49 @@ void put_back(const Composite& composite, std::uint8_t label, RgbdFrame& frame, 
   labels(place).setTo(label, composite.mask);
 }
 
+/// The view of a thing that has the object's shape and pattern, but other colours: hues turned, and where there are
+/// none, some put on.
+TrainingView recoloured(const TrainingView& view, Random& random) {
+  constexpr double kNeutral = 128.0;
+  const double angle = random.uniform(0.5 * M_PI, 1.5 * M_PI);
+  const double cast_angle = random.uniform(0.0, 2.0 * M_PI);
+  const double cast = random.uniform(10.0, 30.0);
+  TrainingView out = view;
+  cv::Mat lab;
+  cv::cvtColor(view.frame.colour, lab, cv::COLOR_BGR2Lab);
+  for (int y = 0; y < lab.rows; ++y) {
+    for (int x = 0; x < lab.cols; ++x) {
+      cv::Vec3b& pixel = lab.at<cv::Vec3b>(y, x);
+      const double a = pixel[1] - kNeutral;
+      const double b = pixel[2] - kNeutral;
+      pixel[1] = cv::saturate_cast<std::uint8_t>(kNeutral + std::cos(angle) * a - std::sin(angle) * b +
+                                                 cast * std::cos(cast_angle));
+      pixel[2] = cv::saturate_cast<std::uint8_t>(kNeutral + std::sin(angle) * a + std::cos(angle) * b +
+                                                 cast * std::sin(cast_angle));
+    }
+  }
+  cv::cvtColor(lab, out.frame.colour, cv::COLOR_Lab2BGR);
+  return out;
+}
+
+/// Puts `count` things that look nearly like objects into the frame.
+void add_look_alikes(const std::vector<const TrainingView*>& objects, int count, const TrainingSettings& settings,
+                     ValidationFrame& out, cv::Mat& labels, Random& random) {
+  for (int i = 0; i < count; ++i) {
+    const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
+    out.look_alikes.push_back(static_cast<std::uint32_t>(index));
+    const std::optional<Composite> composite = make_composite(recoloured(*objects[index], random), out.frame,
+                                                              draw_distance(settings, random), settings, random);
+    if (composite) put_back(*composite, 0, out.frame, labels);
+  }
+}
+
 }  // namespace
 
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
                                       const TrainingSettings& settings, Random& random) {
   constexpr std::uint8_t kObjects = 4;
+  constexpr int kLookAlikes = 2;
   TrainingSettings even_light = settings;
   even_light.light_variation = 0.0;  // one light for the whole frame
   ValidationFrame out;
@@ -33,11 +75,12 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   out.frame.depth = room.depth.clone();
   cv::Mat labels = cv::Mat::zeros(room.colour.size(), CV_8UC1);
   std::vector<int> whole_px;
+  add_look_alikes(objects, kLookAlikes, even_light, out, labels, random);
   for (std::uint8_t label = 1; label <= kObjects; ++label) {
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     const TrainingView& view = *objects[index];
-    const double distance = std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
-    const std::optional<Composite> composite = make_composite(view, out.frame, distance, even_light, random);
+    const std::optional<Composite> composite =
+        make_composite(view, out.frame, draw_distance(settings, random), even_light, random);
     out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
     whole_px.push_back(composite ? composite->whole_px : 1);
     if (composite) put_back(*composite, label, out.frame, labels);

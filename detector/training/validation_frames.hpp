@@ -17,10 +17,12 @@ struct ValidationFrame {
     double visible_fraction = 0.0;
   };
   RgbdFrame frame;
-  std::vector<Object> objects;  ///< those of which anything is seen
+  std::vector<Object> objects;             ///< those of which anything is seen
+  std::vector<std::uint32_t> look_alikes;  ///< training views whose recoloured copies stand there too: not objects
 };
 
-/// Up to four random views in one room, each as in a composite: other distance, light, half of them partly hidden.
+/// Up to four random views in one room, each as in a composite: other distance, light, half of them partly hidden;
+/// behind them two look-alikes, which have an object's shape and pattern in other colours.
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
                                       const TrainingSettings& settings, Random& random);
 
