@@ -12,20 +12,25 @@ namespace {
 
 constexpr int kRings = 1;
 
-Forest trained(Profile profile) {
-  const Scoring scoring = profile.training.scoring;
-  profile.training = toy::quick_training();
-  profile.training.scoring = scoring;
+Forest quickly_trained(const std::string& profile_name) {
+  Profile profile = make_profile(profile_name);
+  profile.training.trees = 5;
+  profile.training.max_depth = 14;
+  profile.training.tests_per_node = 80;
+  profile.training.patches_per_view = 150;
+  profile.training.min_distance = 0.5F;
+  profile.training.max_distance = 1.2F;
+  profile.training.validation_frames = 24;
   return train_forest(toy::training_views(), profile, [](const auto&) {});
 }
 
 const Forest& normalised_forest() {
-  static const Forest forest = trained(make_profile("realtime"));
+  static const Forest forest = quickly_trained("realtime");
   return forest;
 }
 
 const Forest& scale_space_forest() {
-  static const Forest forest = trained(make_profile("gall"));
+  static const Forest forest = quickly_trained("gall");
   return forest;
 }
 
