@@ -8,9 +8,9 @@
 
 namespace houghstream {
 
-/// The Hough space of one class as a picture (paper, Figure 3): CV_32FC1 of the frame's size, larger where more votes
-/// for the object's centre meet. Of a scale space it is the largest share of a whole object's vote mass over all sizes,
-/// otherwise the sum of smoothed votes in which maxima are looked for. Values of different forests do not compare.
+/// The Hough space of one class as a picture (paper, Figure 3): CV_32FC1 of the frame's size, the vote mass that meets
+/// around each pixel as a share of what a wholly visible object is expected to have. Of a scale space, the largest over
+/// all sizes; of a depth-normalised forest only about, since votes of all distances are smoothed alike.
 cv::Mat hough_image(const Forest& forest, int class_index, const RgbdFrame& frame, const DetectionSettings& settings);
 
 }  // namespace houghstream
