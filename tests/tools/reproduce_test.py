@@ -75,6 +75,9 @@ class WholeQuickPlan(Case):
         for profile in ("gall", "paper", "realtime"):
             self.assertEqual(set(summary["auc"][profile]), SCENES)
         self.assertEqual(summary["auc"]["intensity"]["table_small_1"], summary["auc"]["gall"]["table_small_1"])
+        for left_out in ("depth_derivatives_3", "pfh"):
+            self.assertNotIn(left_out, summary["auc"])
+            self.assertIn(left_out, summary["settings"]["left_out"])
         self.assertEqual(set(summary["auc_linemod"]), SCENES)
         self.assertEqual([row["stride"] for row in summary["stride"]], [1, 2, 3, 4, 6, 8])
         self.assertAlmostEqual(summary["stride"][1]["time_change"], -0.5)
@@ -97,6 +100,7 @@ class WholeQuickPlan(Case):
         ):
             self.assertIn(f"<h2>{name}", report)
         self.assertNotIn("Not measured", report)
+        self.assertRegex(report, "Left out: [^<]*PFH")
         self.assertEqual(re.findall(r'(?:src|href)="(?!data:)', report), [])
         self.assertEqual(report.count("data:image/png;base64"), 2)
 

@@ -10,7 +10,7 @@ CLASSIFY_AND_VOTE = ("detect.forest", "detect.voting")
 
 def all_auc(results):
     auc = {what: {scene: results.auc(what, scene) for scene in SCENES} for what in PROFILES}
-    for what in FEATURES:
+    for what in (name for name in FEATURES if name not in results.left_out):
         auc.setdefault(what, {FEATURE_SCENE: results.auc(forest_of(what), FEATURE_SCENE)})
     return auc
 
@@ -36,7 +36,7 @@ def real(results):
         "auc_gall_mean": results.auc("real_gall", "scenes"),
         "auc_paper_mean": results.auc("real_paper", "scenes"),
         "auc_linemod_mean": results.auc("real_linemod", "scenes"),
-        "auc_linemod_check_depth_mean": results.auc("real_linemod_check_depth", "scenes"),
+        "auc_linemod_no_check_mean": results.auc("real_linemod_no_check", "scenes"),
         "false_per_clutter_frame": results.mean("false_per_frame", what="real_realtime", scene="clutter"),
     }
 
@@ -119,7 +119,7 @@ def summarise(results):
     summary = {
         "auc": all_auc(results),
         "auc_linemod": {scene: results.auc("linemod", scene) for scene in SCENES},
-        "auc_linemod_check_depth": {scene: results.auc("linemod_check_depth", scene) for scene in SCENES},
+        "auc_linemod_no_check": {scene: results.auc("linemod_no_check", scene) for scene in SCENES},
         "precision_at_default": precision,
         "recall_at_default": recall,
         "real": real(results),
