@@ -47,7 +47,8 @@ def quickly(settings):
     """What a quick run does less."""
     if not settings["quick"]:
         return ""
-    names = "; ".join(figures.FEATURE_NAMES[feature] for feature in settings["left_out"])
+    words = {**figures.FEATURE_NAMES, **texts.LEFT_OUT}
+    names = "; ".join(words[name].removeprefix("+ ") for name in settings["left_out"])
     return f"<p>{html.escape(texts.QUICK)} Left out: {html.escape(names)}.</p>"
 
 
@@ -74,7 +75,7 @@ def further_sections(summary, results):
     found = summary["reliability"]
     return [
         section("time", tables.timings(summary)),
-        section("twenty", further_tables.twenty(summary)),
+        *([] if "objects_20" in results.left_out else [section("twenty", further_tables.twenty(summary))]),
         section("real", further_tables.real(summary)),
         section(
             "reliability", side_by_side(figures.reliability_chart(found["bins"]), further_tables.reliability(found))

@@ -20,8 +20,9 @@ def add_studies(planner, source, seed):
             planner.evaluate(what, source, scene, seed, "6")
 
 
-def add_twenty_objects(planner, source, twenty):
+def add_twenty_objects(planner, few):
     """Both forests look at the same frames, so that only the number of objects differs."""
+    source, twenty = sources.twenty(planner.units, few)
     for scene in SCENES_20:
         planner.evaluate("realtime", source, scene, 1, "objects")
         planner.evaluate("realtime", twenty, scene, 1, "objects", prefix="objects_20_")
@@ -41,9 +42,9 @@ def add_comparison(planner, source):
 
 
 def add_real(planner, source):
-    """Few pictures: even a quick run looks at all, but for gall."""
+    """Few pictures: even a quick run looks at all."""
     for seed in planner.protocol.seeds:
-        for what in PROFILES:
+        for what in (name for name in PROFILES if "real_" + name not in planner.protocol.left_out):
             planner.evaluate(what, source, "scenes", seed, "real", prefix="real_", every=1)
         planner.evaluate("realtime", source, "clutter", seed, "real", prefix="real_", every=1)
     planner.linemod("real_linemod", source, ["scenes"], "real", 1, CHECK_DEPTH)
@@ -54,9 +55,10 @@ def make_plan(dataset, folder, real, protocol):
     """`dataset` is rendered, uw or real; `real` is the folder of recorded pictures, or empty."""
     planner = Planner(protocol)
     if dataset == "rendered":
-        source, twenty = sources.rendered(planner.units)
+        source = sources.rendered(planner.units)
         add_comparison(planner, source)
-        add_twenty_objects(planner, source, twenty)
+        if "objects_20" not in protocol.left_out:
+            add_twenty_objects(planner, source)
     elif dataset == "uw":
         add_comparison(planner, sources.uw(planner.units, folder))
     if real:

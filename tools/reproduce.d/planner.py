@@ -16,13 +16,13 @@ class Protocol:
     seeds: tuple = (1, 2, 3, 4, 5)
     every: int = 1  # Nth frame of a scene is evaluated
     gall_every: int = 1  # Nth of these by forests of the family of gall
-    left_out: tuple = ()  # features
+    left_out: tuple = ()  # see NOT_IN_QUICK
     timing_every: int = 20
     threads: int = 2
 
 
 def quick(protocol):
-    return dataclasses.replace(protocol, seeds=(1,), every=3, gall_every=2, timing_every=30, left_out=NOT_IN_QUICK)
+    return dataclasses.replace(protocol, seeds=(1,), every=3, gall_every=2, timing_every=60, left_out=NOT_IN_QUICK)
 
 
 def every_nth(folder, every):

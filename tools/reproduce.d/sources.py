@@ -21,20 +21,30 @@ class Source:
     scenes: dict  # "{NAME}" of the unit that makes it, by scene
 
 
+def rendered_scenes(units, names, figure):
+    """Frames are spread over the camera's whole way through each scene."""
+    way = ("--frames", WAY, "--every", WAY // FRAMES)
+    scenes = {}
+    for scene in names:
+        name = f"data/scene/{scene}"
+        scenes[scene] = "{" + units.add(name, figure, "hs-render", "scene", scene, *way, "--out", "{out}") + "}"
+    return scenes
+
+
 def rendered(units):
-    """Four objects, and twenty on the same scenes. Frames are spread over the camera's whole way through each scene."""
+    """Four objects."""
     views = units.add("data/training", "data", "hs-render", "training", "--out", "{out}")
     rooms = units.add("data/background", "data", "hs-render", "background", "--count", "215", "--out", "{out}")
-    more = units.add("data/training_20", "objects", "hs-render", "training", "--objects", "all_20", "--out", "{out}")
-    scenes = {}
-    for scene in (*SCENES, *SCENES_20):
-        name = f"data/scene/{scene}"
-        way = ("--frames", WAY, "--every", WAY // FRAMES)
-        units.add(name, "data", "hs-render", "scene", scene, *way, "--out", "{out}")
-        scenes[scene] = "{" + name + "}"
-    background = ("--background", f"bop:{{{rooms}}}")
-    taught = (("--views", f"bop:{{{folder}}}", *background) for folder in (views, more))
-    return tuple(Source(training, RENDERED_DISTANCES, scenes) for training in taught)
+    training = ("--views", f"bop:{{{views}}}", "--background", f"bop:{{{rooms}}}")
+    return Source(training, RENDERED_DISTANCES, rendered_scenes(units, SCENES, "data"))
+
+
+def twenty(units, few):
+    """The few objects and twenty, each with the scenes in which the twenty stand."""
+    views = units.add("data/training_20", "objects", "hs-render", "training", "--objects", "all_20", "--out", "{out}")
+    scenes = rendered_scenes(units, SCENES_20, "objects")
+    training = ("--views", f"bop:{{{views}}}", *few.training[2:])
+    return dataclasses.replace(few, scenes=scenes), dataclasses.replace(few, training=training, scenes=scenes)
 
 
 def located(folder, name):

@@ -12,8 +12,13 @@ PROTOCOL = """A detection is true if its box overlaps the object's by IoU 0.5 or
     the training runs; whiskers reach from the worst run to the best. Objects of which less than a tenth is visible do not
     count. The paper measured on camera pictures of the UW RGB-D datasets, on another machine: compare changes rather than
     levels."""
-QUICK = """A quick run: one training run; every third frame of a scene, every sixth by the forests of the family of gall, which
-    are slow (of recorded pictures: all, and every second)."""
+QUICK = """A quick run: one training run; every third frame of a scene, every sixth by gall and its variants, which are
+    slow."""
+LEFT_OUT = {
+    "objects_20": "twenty objects",
+    "real_gall": "gall on recorded pictures",
+    "real_paper": "paper on recorded pictures",
+}
 
 SECTIONS = {
     "features curves": (

@@ -30,8 +30,11 @@ SCALE_HANDLING = {
 HALF_SIZE = {"half_size": ("--profile", "gall", "--image-scale", "0.5")}
 TRAINING = {**FEATURES, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 
-# What a quick run does without.
-NOT_IN_QUICK = ("depth_derivatives_3", "depth_derivatives_5", "depth_derivatives_9", "pfh")
+# What a quick run does without: features, the study of twenty objects, two of the profiles on recorded pictures.
+NOT_IN_QUICK = (
+    *("depth_derivatives_3", "depth_derivatives_5", "depth_derivatives_9", "honv", "curvature", "pfh", "fpfh"),
+    *("objects_20", "real_gall", "real_paper"),
+)
 
 # The same forest under two names: the study's baseline is the profile, as is the one with five scales.
 SAME_FOREST = {"intensity": "gall", "five": "gall"}
