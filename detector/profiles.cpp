@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/checks.hpp"
@@ -68,6 +71,15 @@ DetectionSettings detection_settings(const Forest& forest) {
   return profile.detection;
 }
 
+void set_image_scale(Profile& profile, float image_scale) {
+  FeatureSettings& features = profile.features;
+  if (features.handling == ScaleHandling::kScaleSpace) {  // counts patches in pixels
+    const float ratio = image_scale / features.image_scale;
+    profile.patch.radius = std::max(1, static_cast<int>(std::lround(ratio * static_cast<float>(profile.patch.radius))));
+  }
+  features.image_scale = image_scale;
+}
+
 void set_scale_handling(Profile& profile, const std::string& handling) {
   FeatureSettings& features = profile.features;
   if (handling == "normalised") {
@@ -88,7 +100,7 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
   profile.patch.unit = 1.0F;
   // Offsets are counted as at 1 m: see FeatureSettings::handling.
   profile.training.merge_radius = 2.0F / kUsualFocal;
-  profile.detection.vote_sigma = 3.0F / (features.image_scale * kUsualFocal);
+  profile.detection.vote_sigma = 3.0F / kUsualFocal;
 }
 
 }  // namespace houghstream

@@ -35,6 +35,10 @@ std::vector<std::string> profile_names();
 /// How a forest wants to be searched: the detection settings of the profile that it was trained by.
 DetectionSettings detection_settings(const Forest& forest);
 
+/// Working size over frame size (paper, Section 5.1.1). What is counted in pixels, patches above all, is adjusted, so
+/// that it covers as much of the frame as before; lengths in metres stay. To be called before set_scale_handling.
+void set_image_scale(Profile& profile, float image_scale);
+
 /// How distances are handled: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by depth,
 /// Section 5.1.2; patches as large as at `reference_distance`). Throws InputError for another word.
 void set_scale_handling(Profile& profile, const std::string& handling);

@@ -97,6 +97,47 @@ class Plan(unittest.TestCase):
         ):
             plan.make_plan("uw", folder, "", planner.Protocol())
 
+    def quick_and_full(self):
+        plans = (planner.quick(planner.Protocol()), planner.Protocol())
+        return [{unit.name: unit for unit in plan.make_plan("rendered", "", "/recorded", each)} for each in plans]
+
+    def test_a_quick_run_leaves_features_out_and_looks_at_few_frames(self):
+        quick, full = self.quick_and_full()
+        trained = {name.split("/")[1] for name in quick if name.startswith("train/")}
+        for feature in set(variants.NOT_IN_QUICK) & set(variants.FEATURES):
+            self.assertNotIn(feature, trained)
+            self.assertIn(f"train/{feature}/seed1", full)
+        self.assertFalse({"objects_20_realtime", "real_gall", "real_paper"} & trained)
+        self.assertFalse([name for name in quick if "_20" in name])
+        self.assertIn("train/objects_20_realtime/seed1", full)
+        self.assertIn("evaluate_every_6/final/table_small_1/seed1", quick)
+        self.assertIn("evaluate_every_6/normalised/desk_2/seed1", quick)
+        self.assertIn("evaluate_every_3/realtime/desk_1/seed1", quick)
+        self.assertIn("evaluate/real_realtime/scenes/seed1", quick)
+        self.assertIn("evaluate/real_gall/scenes/seed1", full)
+        self.assertFalse([name for name in full if name.startswith("evaluate_")])
+
+    def options(self, unit, *names):
+        return [unit.command[unit.command.index(name) + 1] if name in unit.command else None for name in names]
+
+    def test_each_score_has_its_threshold(self):
+        _, full = self.quick_and_full()
+        names = ("--threshold", "--min-mass", "--operating-score")
+        for what in ("gall", "final", "single"):
+            unit = full[f"evaluate/{what}/table_small_1/seed1"]
+            self.assertEqual(self.options(unit, *names), ["0.1", None, None], what)
+        for what in ("paper", "realtime", "stride_4"):
+            unit = full[f"evaluate/{what}/table_small_1/seed1"]
+            self.assertEqual(self.options(unit, *names), ["0", "0.1", "0.5"], what)
+
+    def test_linemod_is_taught_the_distances_of_the_scenes(self):
+        _, full = self.quick_and_full()
+        for name, distances in (("linemod", ["0.75", "2.1"]), ("real_linemod", ["0.3", "0.8"])):
+            for ending, checks in (("", True), ("_no_check", False)):
+                unit = full[f"linemod/{name}{ending}"]
+                self.assertEqual(self.options(unit, "--min-distance", "--max-distance"), distances)
+                self.assertEqual("--check-depth" in unit.command, checks)
+
     def test_no_two_units_share_a_name(self):
         collected = units.Units()
         collected.add("train/a", "1", "hs-train", "--seed", 1)

@@ -75,11 +75,14 @@ class WholeQuickPlan(Case):
         for profile in ("gall", "paper", "realtime"):
             self.assertEqual(set(summary["auc"][profile]), SCENES)
         self.assertEqual(summary["auc"]["intensity"]["table_small_1"], summary["auc"]["gall"]["table_small_1"])
+        for left_out in ("depth_derivatives_3", "pfh"):
+            self.assertNotIn(left_out, summary["auc"])
+            self.assertIn(left_out, summary["settings"]["left_out"])
         self.assertEqual(set(summary["auc_linemod"]), SCENES)
         self.assertEqual([row["stride"] for row in summary["stride"]], [1, 2, 3, 4, 6, 8])
         self.assertAlmostEqual(summary["stride"][1]["time_change"], -0.5)
         self.assertEqual(set(summary["depth_normalisation"]), {"table_small_1", "table_small_2", "desk_2"})
-        self.assertEqual((summary["train_seconds"], summary["objects_20"]["time_ratio"]), (101.5, 1.0))
+        self.assertEqual((summary["train_seconds"], summary["objects_20"]["time_ratio"]), (101.5, None))
         # Of 20 each time there, 18 were found by four objects in six scenes, and 8 false ones a scene.
         self.assertEqual((summary["recall_at_default"], summary["precision_at_default"]), (0.9, 0.9))
         self.assertEqual(summary["real"]["false_per_clutter_frame"], 0.4)
@@ -97,6 +100,7 @@ class WholeQuickPlan(Case):
         ):
             self.assertIn(f"<h2>{name}", report)
         self.assertNotIn("Not measured", report)
+        self.assertRegex(report, "Left out: [^<]*PFH")
         self.assertEqual(re.findall(r'(?:src|href)="(?!data:)', report), [])
         self.assertEqual(report.count("data:image/png;base64"), 2)
 
@@ -160,6 +164,11 @@ class Choosing(Case):
         self.assertIsNone(summary["auc"]["gall"]["desk_1"])
         self.assertIn("auc.gall.desk_1", summary["missing"])
         self.assertNotIn("auc.paper.desk_1", summary["missing"])
+
+    def test_twenty_objects_are_compared_with_four_on_the_same_frames(self):
+        for only in ("evaluate/realtime/objects_20", "evaluate/objects_20_realtime"):
+            self.assertEqual(self.run_it("--only", only).returncode, 0)
+        self.assertEqual(self.summary()["objects_20"]["time_ratio"], 1.0)
 
     def test_list_runs_nothing(self):
         listed = self.run_it("--list")

@@ -23,8 +23,8 @@ FEATURE_NAMES = {
 # Figure 1 of the paper shows these; the other kernels of the derivatives are in Figure 2.
 CURVES = ("intensity", "depth_value", "depth_derivatives_7", "depth_hog", "honv", "curvature", "pfh", "fpfh", "final")
 DETECTORS = {  # of Figure 6, with their colours
-    "linemod": ("LINEMOD", "#bbbbbb"),
-    "linemod_check_depth": ("LINEMOD with depth check", "#777777"),
+    "linemod": ("LINEMOD with depth check", "#777777"),
+    "linemod_no_check": ("LINEMOD without it", "#bbbbbb"),
     "gall": ("gall (RGB Hough Forest)", COLOURS[0]),
     "paper": ("paper (its final version)", COLOURS[1]),
     "realtime": ("realtime (ours)", COLOURS[4]),
@@ -53,7 +53,7 @@ def feature_curves(results):
 
 def feature_bars(results):
     rows = []
-    for feature in FEATURES:
+    for feature in (name for name in FEATURES if name not in results.left_out):
         what = forest_of(feature)
         ours = results.auc(what, FEATURE_SCENE)
         rows.append((FEATURE_NAMES[feature], ours, results.spread(what, FEATURE_SCENE), paper.feature_auc(feature)))

@@ -25,8 +25,8 @@ def real(summary):
         ("realtime, weighted by objects", show(found["auc_weighted"])),
         ("paper", show(found["auc_paper_mean"])),
         ("gall", show(found["auc_gall_mean"])),
-        ("LINEMOD", show(found["auc_linemod_mean"])),
-        ("LINEMOD with depth check", show(found["auc_linemod_check_depth_mean"])),
+        ("LINEMOD with depth check", show(found["auc_linemod_mean"])),
+        ("LINEMOD without it", show(found["auc_linemod_no_check_mean"])),
         (
             "false detections of realtime a frame of clutter, default threshold",
             show(found["false_per_clutter_frame"], "{:.2f}"),

@@ -37,7 +37,7 @@ def time_rows(summary):
 
 
 def final_rows(summary):
-    auc = {"LINEMOD": summary["auc_linemod"], "the original (gall)": summary["auc"]["gall"]}
+    auc = {"LINEMOD with depth check": summary["auc_linemod"], "the original (gall)": summary["auc"]["gall"]}
     auc |= {"the final version (paper)": summary["auc"]["paper"], "the realtime profile": summary["auc"]["realtime"]}
     return [
         (f"AUC over six scenes, {name}", "curves only", show(mean_of(found.values()))) for name, found in auc.items()

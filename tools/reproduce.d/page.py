@@ -36,11 +36,20 @@ def side_by_side(*content):
 
 def about(settings):
     """What ran, how far, and where."""
-    runs = "one training run, every third frame" if settings["quick"] else "five training runs, 60 frames a scene"
+    runs = "one training run" if settings["quick"] else "five training runs, 60 frames a scene"
     if settings["units_done"] < settings["units"]:
         runs += f"; so far {settings['units_done']} of {settings['units']} units of work"
     work = f"{settings['dataset']} data, {runs}, {settings['hours']:.1f} h of work"
     return f"{settings['command']}; {work}; {settings['cpu']}; commit {settings['commit']}"
+
+
+def quickly(settings):
+    """What a quick run does less."""
+    if not settings["quick"]:
+        return ""
+    words = {**figures.FEATURE_NAMES, **texts.LEFT_OUT}
+    names = "; ".join(words[name].removeprefix("+ ") for name in settings["left_out"])
+    return f"<p>{html.escape(texts.QUICK)} Left out: {html.escape(names)}.</p>"
 
 
 def head(settings):
@@ -66,7 +75,7 @@ def further_sections(summary, results):
     found = summary["reliability"]
     return [
         section("time", tables.timings(summary)),
-        section("twenty", further_tables.twenty(summary)),
+        *([] if "objects_20" in results.left_out else [section("twenty", further_tables.twenty(summary))]),
         section("real", further_tables.real(summary)),
         section(
             "reliability", side_by_side(figures.reliability_chart(found["bins"]), further_tables.reliability(found))
@@ -78,7 +87,7 @@ def further_sections(summary, results):
 def render(summary, results):
     missing = "".join(f"<li>{html.escape(path)}</li>" for path in summary["missing"])
     parts = [head(summary["settings"]), "<h2>At a glance</h2>", glance(summary)]
-    parts.append(f"<h2>How it was measured</h2><p>{html.escape(texts.PROTOCOL)}</p>")
+    parts.append(f"<h2>How it was measured</h2><p>{html.escape(texts.PROTOCOL)}</p>{quickly(summary['settings'])}")
     parts += study_sections(summary, results) + further_sections(summary, results)
     parts += [f'<h2>Not measured</h2><ul class="missing">{missing}</ul>'] if missing else []
     parts += [f"<h2>Settings</h2><pre>{html.escape(json.dumps(summary['settings'], indent=2))}</pre></html>"]

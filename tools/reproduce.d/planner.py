@@ -4,7 +4,7 @@ import dataclasses
 
 import variants
 from units import Units
-from variants import FEATURE_SCENE, forest_of
+from variants import FEATURE_SCENE, NOT_IN_QUICK, forest_of, is_gall
 
 HOUGH_FRAME = 0
 
@@ -15,12 +15,14 @@ class Protocol:
 
     seeds: tuple = (1, 2, 3, 4, 5)
     every: int = 1  # Nth frame of a scene is evaluated
+    gall_every: int = 1  # Nth of these by forests of the family of gall
+    left_out: tuple = ()  # see NOT_IN_QUICK
     timing_every: int = 20
     threads: int = 2
 
 
 def quick(protocol):
-    return dataclasses.replace(protocol, seeds=(1,), every=3, timing_every=30)
+    return dataclasses.replace(protocol, seeds=(1,), every=3, gall_every=2, timing_every=60, left_out=NOT_IN_QUICK)
 
 
 def every_nth(folder, every):
@@ -44,11 +46,12 @@ class Planner:
         what = forest_of(what)
         forest = self.train(what, source, seed, figure, prefix)
         options = variants.detection_options(what)
-        self._evaluation(prefix + what, forest, source, scene, options, figure, every or self.protocol.every)
+        every = (every or self.protocol.every) * (self.protocol.gall_every if is_gall(what) else 1)
+        self._evaluation(prefix + what, forest, source, scene, options, figure, every)
 
     def stride(self, source, stride, seed):
         forest = self.train("paper", source, seed, "5")
-        options = ("--threshold", "0.1", "--stride", stride)
+        options = (*variants.detection_options("paper"), "--stride", stride)
         self._evaluation(f"stride_{stride}", forest, source, FEATURE_SCENE, options, "5", self.protocol.every)
 
     def _evaluation(self, what, forest, source, scene, options, figure, every):
@@ -65,7 +68,7 @@ class Planner:
     def linemod(self, what, source, scenes, figure, every, extra=()):
         """Learns its templates without chance: one run stands for all."""
         listed = [word for scene in scenes for word in ("--scene", source.scenes[scene])]
-        command = ("hs-linemod", *source.training, *listed, "--every", every, *extra)
+        command = ("hs-linemod", *source.training, *source.distances, *listed, "--every", every, *extra)
         self.units.add(
             f"{every_nth('linemod', every)}/{what}",
             figure,

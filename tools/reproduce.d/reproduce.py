@@ -39,11 +39,15 @@ def parse(words):
     return parser.parse_args(words)
 
 
-def planned(arguments):
+def chosen_protocol(arguments):
     protocol = dataclasses.replace(Protocol(), threads=arguments.threads)
+    return quick(protocol) if arguments.quick else protocol
+
+
+def planned(arguments):
     dataset, _, folder = arguments.dataset.partition(":")
     real = folder if dataset == "real" else arguments.real
-    return make_plan(dataset, folder, real, quick(protocol) if arguments.quick else protocol)
+    return make_plan(dataset, folder, real, chosen_protocol(arguments))
 
 
 def require_executables(store, units):
@@ -80,6 +84,7 @@ def settings(arguments, units, store):
         "command": command_in_words(arguments),
         "dataset": arguments.dataset.partition(":")[0],
         "quick": arguments.quick,
+        "left_out": list(chosen_protocol(arguments).left_out),
         "threads": arguments.threads,
         "commit": arguments.commit,
         "cpu": cpu_name(),
@@ -90,7 +95,7 @@ def settings(arguments, units, store):
 
 
 def write_report(arguments, store, units):
-    results = Results(store, units)
+    results = Results(store, units, chosen_protocol(arguments).left_out)
     summary = {**summarise(results), "settings": settings(arguments, units, store)}
     write_atomically(arguments.out / "results.csv", results.csv())
     write_atomically(arguments.out / "results.json", results.json())

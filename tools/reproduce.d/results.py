@@ -28,8 +28,8 @@ def time_rows(summary):
 
 
 class Results:
-    def __init__(self, store, units):
-        self.store = store
+    def __init__(self, store, units, left_out=()):
+        self.store, self.left_out = store, left_out
         self.units = [unit for unit in units if store.is_current(unit)]
         self.rows = []
         self.curves = {}  # folder of each evaluation's curves by (what, scene), in order of the seeds

@@ -6,6 +6,8 @@ import sys
 
 from variants import SCENES, SCENES_20
 
+RENDERED_DISTANCES = ("--min-distance", "0.75", "--max-distance", "2.1")
+RECORDED_DISTANCES = ("--min-distance", "0.3", "--max-distance", "0.8")
 CAMERA = "640x480,525,525,319.5,239.5"
 WAY, FRAMES = 300, 60  # frames along the camera's way, and those that are looked at
 REAL_INSTANCES = "ornament_3,ornament_1,koaramarch_1,pack_2,bottle_2,can_1,can_2"
@@ -15,22 +17,34 @@ REAL_NAMES = "can_1=can,can_2=can"
 @dataclasses.dataclass(frozen=True)
 class Source:
     training: tuple  # options of hs-train and hs-linemod
+    distances: tuple  # at which objects stand in the scenes, options of hs-linemod
     scenes: dict  # "{NAME}" of the unit that makes it, by scene
 
 
+def rendered_scenes(units, names, figure):
+    """Frames are spread over the camera's whole way through each scene."""
+    way = ("--frames", WAY, "--every", WAY // FRAMES)
+    scenes = {}
+    for scene in names:
+        name = f"data/scene/{scene}"
+        scenes[scene] = "{" + units.add(name, figure, "hs-render", "scene", scene, *way, "--out", "{out}") + "}"
+    return scenes
+
+
 def rendered(units):
-    """Four objects, and twenty on the same scenes. Frames are spread over the camera's whole way through each scene."""
+    """Four objects."""
     views = units.add("data/training", "data", "hs-render", "training", "--out", "{out}")
     rooms = units.add("data/background", "data", "hs-render", "background", "--count", "215", "--out", "{out}")
-    more = units.add("data/training_20", "objects", "hs-render", "training", "--objects", "all_20", "--out", "{out}")
-    scenes = {}
-    for scene in (*SCENES, *SCENES_20):
-        name = f"data/scene/{scene}"
-        way = ("--frames", WAY, "--every", WAY // FRAMES)
-        units.add(name, "data", "hs-render", "scene", scene, *way, "--out", "{out}")
-        scenes[scene] = "{" + name + "}"
-    background = ("--background", f"bop:{{{rooms}}}")
-    return tuple(Source(("--views", f"bop:{{{taught}}}", *background), scenes) for taught in (views, more))
+    training = ("--views", f"bop:{{{views}}}", "--background", f"bop:{{{rooms}}}")
+    return Source(training, RENDERED_DISTANCES, rendered_scenes(units, SCENES, "data"))
+
+
+def twenty(units, few):
+    """The few objects and twenty, each with the scenes in which the twenty stand."""
+    views = units.add("data/training_20", "objects", "hs-render", "training", "--objects", "all_20", "--out", "{out}")
+    scenes = rendered_scenes(units, SCENES_20, "objects")
+    training = ("--views", f"bop:{{{views}}}", *few.training[2:])
+    return dataclasses.replace(few, scenes=scenes), dataclasses.replace(few, training=training, scenes=scenes)
 
 
 def located(folder, name):
@@ -53,7 +67,7 @@ def uw(units, folder):
     objects = located(folder, "soda_can").parent
     views = units.add("data/uw/views", "data", "uw_views.py", objects, "{out}", *scenes.values())
     background = ("--background", f"images:{located(folder, 'background')}", "--camera", CAMERA)
-    return Source(("--views", f"uw:{{{views}}}", *background), scenes)
+    return Source(("--views", f"uw:{{{views}}}", *background), (), scenes)
 
 
 def recorded(units, folder):
@@ -65,4 +79,5 @@ def recorded(units, folder):
     }
     training = ("--views", f"uw:{folder}/objects", "--instances", REAL_INSTANCES, "--rename", REAL_NAMES)
     background = ("--background", f"images:{folder}/background", "--camera", CAMERA)
-    return Source((*training, *background), {scene: "{" + name + "}" for scene, name in scenes.items()})
+    made = {scene: "{" + name + "}" for scene, name in scenes.items()}
+    return Source((*training, *background), RECORDED_DISTANCES, made)

@@ -10,7 +10,7 @@ CLASSIFY_AND_VOTE = ("detect.forest", "detect.voting")
 
 def all_auc(results):
     auc = {what: {scene: results.auc(what, scene) for scene in SCENES} for what in PROFILES}
-    for what in FEATURES:
+    for what in (name for name in FEATURES if name not in results.left_out):
         auc.setdefault(what, {FEATURE_SCENE: results.auc(forest_of(what), FEATURE_SCENE)})
     return auc
 
@@ -36,7 +36,7 @@ def real(results):
         "auc_gall_mean": results.auc("real_gall", "scenes"),
         "auc_paper_mean": results.auc("real_paper", "scenes"),
         "auc_linemod_mean": results.auc("real_linemod", "scenes"),
-        "auc_linemod_check_depth_mean": results.auc("real_linemod_check_depth", "scenes"),
+        "auc_linemod_no_check_mean": results.auc("real_linemod_no_check", "scenes"),
         "false_per_clutter_frame": results.mean("false_per_frame", what="real_realtime", scene="clutter"),
     }
 
@@ -96,6 +96,11 @@ def timings(results):
     }
 
 
+def was_left_out(path, left_out):
+    of_real = {f"real.auc_{name.removeprefix('real_')}_mean" for name in left_out if name.startswith("real_")}
+    return path.split(".")[0] in left_out or path in of_real
+
+
 def missing(value, path=""):
     """Paths of all that is None."""
     if value is None:
@@ -119,7 +124,7 @@ def summarise(results):
     summary = {
         "auc": all_auc(results),
         "auc_linemod": {scene: results.auc("linemod", scene) for scene in SCENES},
-        "auc_linemod_check_depth": {scene: results.auc("linemod_check_depth", scene) for scene in SCENES},
+        "auc_linemod_no_check": {scene: results.auc("linemod_no_check", scene) for scene in SCENES},
         "precision_at_default": precision,
         "recall_at_default": recall,
         "real": real(results),
@@ -130,5 +135,6 @@ def summarise(results):
         "time": timings(results),
         "reliability": {"bins": bins, "calibration_error": calibration_error(bins)},
     }
-    summary["missing"] = [path for path in missing(summary) if not path.endswith(".paper")]
+    paths = [path for path in missing(summary) if not path.endswith(".paper")]
+    summary["missing"] = [path for path in paths if not was_left_out(path, results.left_out)]
     return summary

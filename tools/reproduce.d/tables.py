@@ -22,7 +22,8 @@ TIME_NAMES = {
 def features(results):
     baseline = results.auc("gall", FEATURE_SCENE)
     rows = []
-    for feature, name in FEATURE_NAMES.items():
+    for feature in (feature for feature in FEATURE_NAMES if feature not in results.left_out):
+        name = FEATURE_NAMES[feature]
         ours = results.auc(forest_of(feature), FEATURE_SCENE)
         stated = paper.FEATURES.get(feature, {})
         here = (show(ours), percent(relative(ours, baseline)))

@@ -18,6 +18,7 @@ struct Overrides {
   std::string profile = "realtime";
   std::string features;
   std::string scale_handling;
+  std::optional<float> image_scale;
   std::optional<int> depth_kernel;
   std::optional<int> trees;
   std::optional<int> max_depth;
@@ -36,6 +37,8 @@ void add_overrides(CLI::App& app, Overrides& overrides) {
   app.add_option("--features", overrides.features, "instead of the profile's: " + family_names(255));
   app.add_option("--depth-kernel", overrides.depth_kernel, "of the depth derivatives, working pixels")
       ->check(CLI::IsMember({3, 5, 7, 9}));
+  app.add_option("--image-scale", overrides.image_scale, "working size over frame size, instead of the profile's")
+      ->check(CLI::Range(0.1, 2.0));
   app.add_option("--scale-handling", overrides.scale_handling, "instead of the profile's: five, single or normalised");
   app.add_option("--seed", overrides.seed, "same seed, same data: same forest")->capture_default_str();
   app.add_option("--threads", overrides.threads, "any number gives the same forest")->capture_default_str();
@@ -56,6 +59,7 @@ void take(const std::optional<T>& from, T& to) {
 Profile overridden(const Overrides& overrides) {
   Profile profile = make_profile(overrides.profile);
   if (!overrides.features.empty()) profile.features.families = parse_families(overrides.features);
+  if (overrides.image_scale) set_image_scale(profile, *overrides.image_scale);
   if (!overrides.scale_handling.empty()) set_scale_handling(profile, overrides.scale_handling);
   take(overrides.depth_kernel, profile.features.depth_sobel_px);
   TrainingSettings& training = profile.training;

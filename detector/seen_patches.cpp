@@ -1,0 +1,37 @@
+#include "detector/seen_patches.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "detector/features/features.hpp"
+#include "detector/features/working_frame.hpp"
+
+namespace houghstream {
+
+SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
+                             StageClock& clock) {
+  const auto levels = feature_levels(forest.features);
+  std::vector<WorkingFrame> working;
+  for (const FeatureLevel& level : levels) {  // Section 5.1.1
+    working.push_back(make_working_frame(frame, level, forest.features));
+  }
+  clock.mark("detect.resize");
+  std::vector<FeatureImage> features;
+  for (const WorkingFrame& view : working) {  // Section 3
+    features.push_back(compute_features(view, forest.features, settings.threads));
+  }
+  clock.mark("detect.features");
+  SeenPatches seen;
+  seen.hough_camera = working[0].camera;
+  cv::cvtColor(working[0].colour, seen.lab, cv::COLOR_BGR2Lab);
+  for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
+    add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
+  }
+  seen.leaves.leaves = settings.readable ? assign_leaves_readably(forest, features, seen.grid)  // Section 5.1.2
+                                         : assign_leaves(forest, features, seen.grid, settings.threads);
+  seen.leaves.probabilities = class_probabilities(forest, seen.leaves.leaves, settings.threads);
+  clock.mark("detect.forest");
+  return seen;
+}
+
+}  // namespace houghstream

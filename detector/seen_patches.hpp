@@ -1,0 +1,23 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "detector/forest/traversal.hpp"
+#include "detector/voting.hpp"
+#include "pipeline/frame.hpp"
+
+namespace houghstream {
+
+/// Patches of a frame at both levels with the leaves that they reach; for depth-normalised forests.
+struct SeenPatches {
+  PatchGrid grid;
+  PatchLeaves leaves;
+  Camera hough_camera;  ///< in whose pixels Hough spaces are laid out: that of the level for near surfaces
+  cv::Mat lab;          ///< of the working frame for near surfaces
+};
+
+/// Closes the stages "detect.resize", "detect.features" and "detect.forest" on the clock.
+SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
+                             StageClock& clock);
+
+}  // namespace houghstream
