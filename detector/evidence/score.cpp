@@ -21,6 +21,16 @@ Vector to_vector(const Values& values) {
   return out;
 }
 
+/// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
+double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights, const Vector& believed) {
+  double loss = 0.5 * (weights - believed).squaredNorm();
+  for (const ScoreExample& example : examples) {
+    const double x = weights.dot(to_vector(example.terms)) * (example.is_object ? 1.0 : -1.0);
+    loss += x > 0.0 ? std::log1p(std::exp(-x)) : -x + std::log1p(std::exp(x));
+  }
+  return loss;
+}
+
 }  // namespace
 
 ScoreTerms score_terms(const Evidence& evidence) {
@@ -42,6 +52,7 @@ ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const Scor
   constexpr int kSteps = 30;  // of Newton's method, which needs about eight
   const Vector believed = to_vector(prior.weights);
   Vector weights = believed;
+  double loss = loss_of(examples, weights, believed);
   for (int step = 0; step < kSteps; ++step) {
     Vector gradient = believed - weights;
     Matrix curvature = Matrix::Identity();
@@ -51,7 +62,11 @@ ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const Scor
       gradient += ((example.is_object ? 1.0 : 0.0) - p) * x;
       curvature += p * (1.0 - p) * x * x.transpose();
     }
-    weights += curvature.ldlt().solve(gradient);
+    Vector change = curvature.ldlt().solve(gradient);
+    // Far from the minimum a whole step may lead away from it.
+    while (loss_of(examples, weights + change, believed) > loss && change.norm() > 1e-9) change *= 0.5;
+    weights += change;
+    loss = loss_of(examples, weights, believed);
   }
   ScoreModel model;
   for (std::size_t i = 0; i < kScoreTerms; ++i)

@@ -45,6 +45,7 @@ TrainingView recoloured(const TrainingView& view, Random& random) {
                                                  cast * std::sin(cast_angle));
     }
   }
+  out.frame.colour = cv::Mat();  // the view's own pixels stay as they are
   cv::cvtColor(lab, out.frame.colour, cv::COLOR_Lab2BGR);
   return out;
 }

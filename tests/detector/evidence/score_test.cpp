@@ -51,6 +51,7 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
     evidence.fit.unknown = static_cast<float>(random.uniform(0.0, 0.5));
     evidence.fit.continued = static_cast<float>(random.uniform(0.0, 1.0));
     evidence.fit.likeness = static_cast<float>(random.uniform(-0.2, 1.0));
+    evidence.fit.foreign_colour = static_cast<float>(random.uniform(0.0, 2.0));
     examples.push_back({score_terms(evidence), random.uniform() < score(truth, evidence)});
   }
   return examples;
@@ -58,13 +59,25 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
 
 TEST(Score, TheModelThatMadeTheExamplesComesBack) {
   ScoreModel truth;
-  truth.weights = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F};
+  truth.weights = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F, -1.2F};
   const ScoreModel fitted = fit_score_model(drawn_from(truth, 20000), ScoreModel{});
   for (std::size_t i = 0; i < kScoreTerms; ++i) EXPECT_NEAR(fitted.weights[i], truth.weights[i], 0.35F) << i;
 }
 
+TEST(Score, ExamplesThatAreToldApartWithoutErrorMoveTheWeightsOnlySoFar) {
+  std::vector<ScoreExample> examples;
+  for (int i = 0; i < 400; ++i) {
+    Evidence evidence = with_mass(i % 2 == 0 ? 1.0F : 0.001F);
+    examples.push_back({score_terms(evidence), i % 2 == 0});
+  }
+  const ScoreModel fitted = fit_score_model(examples, ScoreModel{});
+  for (const float weight : fitted.weights) EXPECT_LT(std::abs(weight), 20.0F);
+  EXPECT_GT(score(fitted, with_mass(1.0F)), 0.95F);
+  EXPECT_LT(score(fitted, with_mass(0.001F)), 0.05F);
+}
+
 TEST(Score, WithoutExamplesThePriorStays) {
-  const ScoreModel prior{{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F}};
+  const ScoreModel prior{{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F, 8.0F}};
   EXPECT_EQ(fit_score_model({}, prior).weights, prior.weights);
 }
 

@@ -59,14 +59,19 @@ TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
   EXPECT_LT(occluded, 0.85 * open);
 }
 
-TEST(ValidationFrames, TheRoomItselfStaysAsItIs) {
+TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
   const Toys toys;
+  const Toys untouched;
   const RgbdFrame room = toy::room(9);
   const cv::Mat colour = room.colour.clone();
   TrainingSettings settings = toy::quick_profile().training;
   Random random(1);
   make_validation_frame(toys.objects, room, settings, random);
   EXPECT_EQ(cv::norm(colour, room.colour, cv::NORM_INF), 0.0);
+  for (std::size_t v = 0; v < toys.objects.size(); ++v) {
+    const cv::Mat& view = toys.objects[v]->frame.colour;
+    EXPECT_EQ(cv::norm(view, untouched.objects[v]->frame.colour, cv::NORM_INF), 0.0) << "view " << v;
+  }
 }
 
 }  // namespace
