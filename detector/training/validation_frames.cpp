@@ -68,6 +68,7 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
                                       const TrainingSettings& settings, Random& random) {
   constexpr std::uint8_t kObjects = 4;
   constexpr int kLookAlikes = 2;
+  constexpr double kOtherLight = 2.0;  // colours must not be trusted further than light lets them
   TrainingSettings even_light = settings;
   even_light.light_variation = 0.0;  // one light for the whole frame
   ValidationFrame out;
@@ -94,7 +95,7 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   }
   const auto unseen = [](const ValidationFrame::Object& object) { return object.box_visible_px.empty(); };
   out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());
-  vary_exposure(out.frame.colour, settings.light_variation, random);
+  vary_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
   return out;
 }
 
