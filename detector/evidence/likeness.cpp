@@ -24,7 +24,13 @@ void Likeness::add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3
   }
 }
 
+double Likeness::seen_variance(std::size_t channel) const {
+  const double mean = channels_[channel][1] / count_;
+  return channels_[channel][3] / count_ - mean * mean;
+}
+
 float Likeness::foreign_colour() const {
+  constexpr double kPlain = 100.0;  // variance of a and b that plain surfaces have in changing light
   constexpr double kNeutral = 128.0;
   constexpr double kPalest = 0.5;  // strengths over the remembered one
   constexpr double kStrongest = 2.5;
@@ -37,7 +43,7 @@ float Likeness::foreign_colour() const {
   const double strength = std::clamp(product / std::max(remembered_sq, 1.0), kPalest, kStrongest);
   const double a = mean(1, 1) - strength * mean(1, 0);
   const double b = mean(2, 1) - strength * mean(2, 0);
-  return static_cast<float>(std::min(4.0, std::sqrt(a * a + b * b) / 10.0));
+  return static_cast<float>(std::min(4.0, std::sqrt((a * a + b * b) / (kPlain + seen_variance(1) + seen_variance(2)))));
 }
 
 float Likeness::correlation() const {

@@ -15,14 +15,16 @@ class Likeness {
   /// -1 to 1; near 0 for plain surfaces, whose differences are noise, and 0 for fewer than a dozen pairs.
   float correlation() const;
 
-  /// How far the mean colour seen is from the remembered one at any strength that haze or a camera gives it: distance
-  /// in the a*b* plane in tens, at most 4; 0 for fewer than a dozen pairs. Tells plain surfaces apart, which
-  /// correlation cannot.
+  /// How far the mean colour seen is from the remembered one, at any strength that haze or a camera gives it: distance
+  /// in the a*b* plane over the spread of the colours seen, at most 4; 0 for fewer than a dozen pairs. Tells plain
+  /// surfaces apart, which correlation cannot.
   float foreign_colour() const;
 
  private:
   /// Sums of a, b, a * a, b * b and a * b.
   using Sums = std::array<double, 5>;
+
+  double seen_variance(std::size_t channel) const;
 
   int count_ = 0;
   std::array<Sums, 3> channels_{};
