@@ -81,6 +81,7 @@ struct Forest {
   std::vector<std::int32_t> roots;  ///< per tree: a node, or -1 - leaf
   std::vector<TreeNode> nodes;
   std::vector<std::uint32_t> leaves;  ///< number of leaves + 1
+  std::vector<float> leaf_weights;    ///< per leaf: share of what its tree learnt from; a tree's sum to 1
   std::vector<LeafClass> leaf_classes;
   std::vector<LeafVote> votes;
   std::vector<LeafView> leaf_views;

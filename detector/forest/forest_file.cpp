@@ -32,6 +32,7 @@ void archive_members(Archive& archive, ForestType& forest) {
   archive(forest.roots);
   archive(forest.nodes);
   archive(forest.leaves);
+  archive(forest.leaf_weights);
   archive(forest.leaf_classes);
   archive(forest.votes);
   archive(forest.leaf_views);
@@ -129,6 +130,8 @@ void check_indices(const Forest& forest, const std::string& source) {
   };
   require(leaves >= 1 && forest.leaves.back() == forest.leaf_classes.size(), "{}: {} leaves, expected at least one",
           source, leaves);
+  require(static_cast<std::int64_t>(forest.leaf_weights.size()) == leaves, "{}: {} leaf weights, expected {}", source,
+          forest.leaf_weights.size(), leaves);
   for (const std::int32_t root : forest.roots) check_child(root, -1);
   for (std::int64_t n = 0; n < nodes; ++n) {
     const TreeNode& node = forest.nodes[static_cast<std::size_t>(n)];

@@ -9,7 +9,8 @@
 namespace houghstream {
 namespace {
 
-constexpr int kLanes = 8;  // patches in flight
+constexpr int kLanes = 8;    // patches in flight
+constexpr int kSquare = 32;  // patches a side
 
 /// Walks the patches down one tree, kLanes of them in step. Lanes that have arrived wait.
 void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches& patches, std::size_t step,
@@ -45,7 +46,7 @@ struct Band {
 };
 
 std::vector<Band> make_bands(const PatchGrid& patches) {
-  constexpr std::size_t kPatches = 1024;
+  constexpr std::size_t kPatches = kSquare * kSquare;
   std::vector<Band> bands;
   for (std::size_t begin = 0; begin < patches.size();) {
     std::size_t end = begin;
@@ -54,6 +55,20 @@ std::vector<Band> make_bands(const PatchGrid& patches) {
     begin = end;
   }
   return bands;
+}
+
+/// Visits a place every `stride` pixels, square by square: the patches of a square share their pixels, so that a
+/// square's worth of planes stays in the cache from tree to tree.
+template <typename Visit>
+void for_places(cv::Size size, int stride, const Visit& visit) {
+  const int side = kSquare * stride;
+  for (int top = stride / 2; top < size.height; top += side) {
+    for (int left = stride / 2; left < size.width; left += side) {
+      for (int y = top; y < std::min(size.height, top + side); y += stride) {
+        for (int x = left; x < std::min(size.width, left + side); x += stride) visit(x, y);
+      }
+    }
+  }
 }
 
 void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index, int stride, PatchGrid& grid) {
@@ -72,28 +87,23 @@ void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
                  const PatchSettings& patch, int stride, PatchGrid& grid) {
   const auto side_per_metre = static_cast<float>(stride * frame.camera.metres_per_px(1.0));
-  for (int y = stride / 2; y < frame.filled_depth.rows; y += stride) {
-    const auto* depth = frame.filled_depth.ptr<float>(y);
-    for (int x = stride / 2; x < frame.filled_depth.cols; x += stride) {
-      const float z = depth[x];
-      if (!level.holds(z)) continue;
-      add_place(x, y, level, level_index, stride, grid);
-      grid.scale.push_back(patch_scale(patch, frame.camera.fx, z));
-      grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
-      grid.area.push_back(side_per_metre * z * side_per_metre * z);
-    }
-  }
+  for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
+    const float z = frame.filled_depth.at<float>(y, x);
+    if (!level.holds(z)) return;
+    add_place(x, y, level, level_index, stride, grid);
+    grid.scale.push_back(patch_scale(patch, frame.camera.fx, z));
+    grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
+    grid.area.push_back(side_per_metre * z * side_per_metre * z);
+  });
 }
 
 void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
                             int stride, PatchGrid& grid) {
   const std::int32_t scale = limited_scale(patch, patch.unit);
-  for (int y = stride / 2; y < frame.filled_depth.rows; y += stride) {
-    for (int x = stride / 2; x < frame.filled_depth.cols; x += stride) {
-      add_place(x, y, level, 0, stride, grid);
-      grid.scale.push_back(scale);
-    }
-  }
+  for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
+    add_place(x, y, level, 0, stride, grid);
+    grid.scale.push_back(scale);
+  });
 }
 
 std::vector<std::int32_t> assign_leaves(const Forest& forest, const std::vector<FeatureImage>& features,

@@ -21,7 +21,7 @@ struct PatchGrid {
   std::size_t size() const { return x.size(); }
 };
 
-/// Appends a patch every `stride` working pixels (paper, Section 5.1.3) whose depth the level holds.
+/// Appends a patch every `stride` working pixels (paper, Section 5.1.3) whose depth the level holds, square by square.
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
                  const PatchSettings& patch, int stride, PatchGrid& grid);
 

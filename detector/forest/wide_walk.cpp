@@ -76,7 +76,7 @@ HWY_INLINE bool all_arrived(const Walkers& w) {
 constexpr std::size_t kMaxLanes = 64;
 
 bool walk(const Forest& forest, int tree, const WalkingPatches& patches, std::size_t step, std::int32_t* leaves) {
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2  // better targets have lower numbers
   const Int d;
   const std::size_t lanes = hn::Lanes(d);
   constexpr std::size_t kVectors = 4;  // in flight, so that their cache misses overlap

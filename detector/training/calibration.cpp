@@ -8,12 +8,13 @@ namespace houghstream {
 namespace {
 
 /// Weight that a leaf's votes give to the true centre.
-float support_of_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample, float vote_sigma) {
+float support_of_truth(const Forest& forest, std::int32_t leaf, const TrainingSample& sample, std::size_t class_index,
+                       float vote_sigma) {
   float support = 0.0F;
   const auto l = static_cast<std::size_t>(leaf);
   for (std::uint32_t e = forest.leaves[l]; e < forest.leaves[l + 1]; ++e) {
     const LeafClass& entry = forest.leaf_classes[e];
-    if (entry.class_index + 1 != sample.label) continue;
+    if (entry.class_index != class_index) continue;
     for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
       const float distance_sq = (forest.votes[v].offset - sample.offset).squaredNorm();
       support += entry.probability * forest.votes[v].weight * vote_kernel(distance_sq, vote_sigma);
@@ -36,7 +37,7 @@ std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSett
     const FeatureImage& picture = set.pictures[static_cast<std::size_t>(sample.picture)];
     const std::int32_t leaf = find_leaf(forest, tree, picture.patch(sample.x, sample.y, sample.scale));
     Tally& tally = tallies[sample.label - 1U];
-    tally.support += support_of_truth(forest, leaf, sample, vote_sigma);
+    tally.support += support_of_truth(forest, leaf, sample, set.first_class + sample.label - 1U, vote_sigma);
     tally.count += 1.0;
   }
   return tallies;
@@ -50,7 +51,7 @@ void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, 
   parallel_for(settings.threads, trees, [&](int t) {
     by_tree[static_cast<std::size_t>(t)] = out_of_bag_support(set, settings, vote_sigma, forest, t);
   });
-  for (std::size_t c = 0; c < forest.classes.size(); ++c) {
+  for (std::size_t c = 0; c < set.classes.size(); ++c) {
     Tally sum;
     for (const std::vector<Tally>& tallies : by_tree) {
       sum.support += tallies[c].support;
@@ -58,7 +59,7 @@ void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, 
     }
     // Where nothing was left out, or nothing found its centre, the visible area alone is the measure.
     const double mean_support = sum.support > 0.0 ? sum.support / sum.count : 1.0;
-    forest.classes[c].expected_mass = static_cast<float>(set.visible_areas[c] * mean_support);
+    forest.classes[set.first_class + c].expected_mass = static_cast<float>(set.visible_areas[c] * mean_support);
   }
 }
 

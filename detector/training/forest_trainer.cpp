@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <mutex>
 
 #include "detector/training/calibration.hpp"
 #include "detector/training/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
 #include "detector/training/tree_trainer.hpp"
+#include "pipeline/checks.hpp"
 #include "pipeline/parallel.hpp"
 
 namespace houghstream {
@@ -30,6 +32,7 @@ void append_tree(const Forest& tree, Forest& forest) {
     node.right = moved(node.right, first_node, first_leaf);
     forest.nodes.push_back(node);
   }
+  forest.leaf_weights.insert(forest.leaf_weights.end(), tree.leaf_weights.begin(), tree.leaf_weights.end());
   for (std::size_t l = 1; l < tree.leaves.size(); ++l) forest.leaves.push_back(tree.leaves[l] + first_class);
   for (LeafClass entry : tree.leaf_classes) {
     entry.first_vote += first_vote;
@@ -64,18 +67,35 @@ Rooms share_rooms(const std::vector<TrainingView>& views, Scoring scoring) {
   return rooms;
 }
 
-std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, const Progress& progress) {
+/// `old`: forest whose trees go on growing, or nullptr.
+std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, const Forest* old,
+                               const Progress& progress) {
   const TrainingSettings& settings = profile.training;
   std::vector<Forest> trees(static_cast<std::size_t>(settings.trees));
   std::mutex progress_mutex;
   int done = 0;
   parallel_for(settings.threads, settings.trees, [&](int t) {
     Forest& tree = trees[static_cast<std::size_t>(t)];
-    tree = grow_tree(set, profile.patch, settings, t);
+    tree = old != nullptr ? regrow_tree(set, profile.patch, settings, t, *old)
+                          : grow_tree(set, profile.patch, settings, t);
     const std::lock_guard lock(progress_mutex);
     progress(fmt::format("tree {} of {}: {} leaves", ++done, settings.trees, tree.leaves.size() - 1));
   });
   return trees;
+}
+
+/// Gives the views class numbers that the forest has not used yet. Throws InputError for a name that it knows.
+void number_after(const Forest& old, std::vector<TrainingView>& views) {
+  int largest = 0;
+  for (const ObjectClass& known : old.classes) largest = std::max(largest, known.class_id);
+  for (TrainingView& view : views) {
+    if (view.class_id == 0) continue;
+    for (const ObjectClass& known : old.classes) {
+      require(known.name != view.class_name, "{}: the forest knows '{}' already, expected a new object", view.source,
+              view.class_name);
+    }
+    view.class_id += largest;
+  }
 }
 
 }  // namespace
@@ -99,12 +119,42 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   forest.classes = set.classes;
   forest.views = set.views;
   forest.leaves.push_back(0);
-  for (const Forest& tree : grow_trees(set, profile, progress)) append_tree(tree, forest);
+  for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
   calibrate_masses(set, settings, profile.detection.vote_sigma, forest);
   if (settings.scoring == Scoring::kVotes) return forest;
   train_score_model(rooms.objects, rooms.for_score, profile, forest);
   progress(
       fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
+  return forest;
+}
+
+Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile,
+                   const Progress& progress) {
+  require(profile.training.trees == static_cast<int>(old.roots.size()),
+          "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
+  number_after(old, views);
+  const Rooms rooms = share_rooms(views, profile.training.scoring);
+  TrainingSet set = make_training_set(rooms.for_trees, profile);
+  set.first_class = static_cast<std::uint16_t>(old.classes.size());
+  set.first_view = static_cast<std::uint32_t>(old.views.size());
+  progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.pictures.size(),
+                       set.classes.size(), old.classes.size()));
+  Forest forest = old;
+  forest.classes.insert(forest.classes.end(), set.classes.begin(), set.classes.end());
+  for (TrainedView view : set.views) {
+    view.class_index += set.first_class;
+    forest.views.push_back(view);
+  }
+  forest.roots.clear();
+  forest.nodes.clear();
+  forest.leaves.assign(1, 0);
+  forest.leaf_weights.clear();
+  forest.leaf_classes.clear();
+  forest.votes.clear();
+  forest.leaf_views.clear();
+  for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
+  calibrate_masses(set, profile.training, profile.detection.vote_sigma, forest);
+  if (forest.scoring == Scoring::kEvidence) train_score_model(rooms.objects, rooms.for_score, profile, forest);
   return forest;
 }
 

@@ -16,4 +16,11 @@ namespace houghstream {
 using Progress = std::function<void(const std::string&)>;
 Forest train_forest(const std::vector<TrainingView>& views, const Profile& profile, const Progress& progress);
 
+/// Teaches the objects in `views` to a forest that keeps what it knows: patches of the new objects follow the old trees
+/// and leaves that they reach go on growing; nothing of the old objects' training is needed. `profile` must be that
+/// of the forest, with its features, patches and number of trees. Classes are numbered after those that are there.
+/// Throws InputError for an object that the forest knows already.
+Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile,
+                   const Progress& progress);
+
 }  // namespace houghstream

@@ -40,7 +40,7 @@ std::vector<LeafVote> merged_votes(const TrainingSet& set, const std::vector<std
 std::vector<LeafView> counted_views(const TrainingSet& set, const std::vector<std::uint32_t>& samples,
                                     const TrainingSettings& settings) {
   std::map<std::uint32_t, int> counts;
-  for (const std::uint32_t s : samples) ++counts[set.samples[s].view];
+  for (const std::uint32_t s : samples) ++counts[set.first_view + set.samples[s].view];
   std::vector<LeafView> views;
   views.reserve(counts.size());
   for (const auto& [view, count] : counts) {
@@ -56,7 +56,8 @@ std::vector<LeafView> counted_views(const TrainingSet& set, const std::vector<st
 }  // namespace
 
 std::int32_t add_leaf(const TrainingSet& set, const std::vector<std::uint32_t>& samples,
-                      const std::vector<float>& label_weights, const TrainingSettings& settings, Forest& forest) {
+                      const std::vector<float>& label_weights, float bag_weight, const TrainingSettings& settings,
+                      Forest& forest) {
   std::vector<std::vector<std::uint32_t>> by_label(label_weights.size());
   for (const std::uint32_t s : samples) by_label[set.samples[s].label].push_back(s);
   float total = 0.0F;
@@ -67,7 +68,7 @@ std::int32_t add_leaf(const TrainingSet& set, const std::vector<std::uint32_t>& 
     const std::vector<LeafVote> votes = merged_votes(set, by_label[l], settings);
     const std::vector<LeafView> views = counted_views(set, by_label[l], settings);
     LeafClass entry;
-    entry.class_index = static_cast<std::uint16_t>(l - 1);
+    entry.class_index = static_cast<std::uint16_t>(set.first_class + l - 1);
     entry.vote_count = static_cast<std::uint8_t>(votes.size());
     entry.view_count = static_cast<std::uint8_t>(views.size());
     entry.first_vote = static_cast<std::uint32_t>(forest.votes.size());
@@ -78,6 +79,7 @@ std::int32_t add_leaf(const TrainingSet& set, const std::vector<std::uint32_t>& 
     forest.leaf_views.insert(forest.leaf_views.end(), views.begin(), views.end());
   }
   forest.leaves.push_back(static_cast<std::uint32_t>(forest.leaf_classes.size()));
+  forest.leaf_weights.push_back(total / bag_weight);
   return static_cast<std::int32_t>(forest.leaves.size()) - 2;
 }
 

@@ -47,6 +47,7 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
   const TrainingSettings& settings = profile.training;
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
+  const auto first_view = static_cast<std::uint32_t>(forest.views.size() - objects.size());
   std::vector<Examples> by_frame(static_cast<std::size_t>(settings.validation_frames));
   parallel_for(settings.threads, settings.validation_frames, [&](int f) {
     Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(f));
@@ -55,6 +56,7 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
     StageClock clock;
     std::vector<std::uint32_t> shown = validation.look_alikes;
     for (const ValidationFrame::Object& object : validation.objects) shown.push_back(object.view);
+    for (std::uint32_t& view : shown) view += first_view;
     by_frame[static_cast<std::size_t>(f)] =
         judge(find_candidates(forest, validation.frame, detection, clock, shown), validation);
   });
@@ -68,7 +70,11 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
     }
   }
   const ScoreModel common = fit_score_model(all, ScoreModel{});
-  for (ObjectClass& object : forest.classes) object.score_model = fit_score_model(by_class[object.class_id], common);
+  for (ObjectClass& object : forest.classes) {
+    const auto shows = [&](const TrainingView* view) { return view->class_id == object.class_id; };
+    if (std::none_of(objects.begin(), objects.end(), shows)) continue;  // an older object, judged before
+    object.score_model = fit_score_model(by_class[object.class_id], common);
+  }
 }
 
 }  // namespace houghstream

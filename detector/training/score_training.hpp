@@ -6,9 +6,9 @@
 
 namespace houghstream {
 
-/// Sets the score model of each class, beginning from one for all of them: objects are put into rooms that the trees
-/// have not seen, the forest looks for them, and what it finds is compared with what is there. Same result for any
-/// number of threads.
+/// Sets the score model of each class in `objects`, whose views are the last of the forest's, beginning from one for
+/// all of them: objects are put into rooms that the trees have not seen, the forest looks for them, and what it finds
+/// is compared with what is there. Same result for any number of threads.
 void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
                        const Profile& profile, Forest& forest);
 

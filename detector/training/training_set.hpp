@@ -32,6 +32,8 @@ struct TrainingSet {
   std::vector<TrainingSample> spare_background;  ///< more background patches, from which the hard ones are chosen
   std::vector<ObjectClass> classes;              ///< by class id
   std::vector<TrainedView> views;
+  std::uint16_t first_class = 0;  ///< classes and views that the forest has already
+  std::uint32_t first_view = 0;
   std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
 };
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "detector/training/leaf_builder.hpp"
+#include "detector/training/leaf_mixer.hpp"
 #include "detector/training/split_search.hpp"
 #include "pipeline/random.hpp"
 
@@ -23,6 +24,13 @@ class TreeGrower {
     // Single pixels' colours tell objects apart, until the light is another one: only every other tree relies on them.
     const bool trusts_light = tree % 2 == 0;
     search_.emplace(set, patch, settings, label_weights_, trusts_light);
+  }
+
+  /// The old tree with the new samples in it: they follow its tests and go on growing where they end.
+  Forest grow_onto(const Forest& old, int tree) {
+    forest_.leaves.push_back(0);
+    forest_.roots.push_back(follow(old, old.roots[static_cast<std::size_t>(tree)], bag_, 0));
+    return std::move(forest_);
   }
 
   Forest grow() {
@@ -83,7 +91,10 @@ class TreeGrower {
   }
 
   std::int32_t make_leaf(const Samples& samples) {
-    return -1 - add_leaf(set_, samples, label_weights_, settings_, forest_);
+    const std::int32_t leaf =
+        add_leaf(set_, samples, label_weights_, static_cast<float>(bag_.size()), settings_, forest_);
+    if (known_) mix_in(*known_, static_cast<float>(samples.size()) / static_cast<float>(known_samples_), forest_);
+    return -1 - leaf;
   }
 
   std::int32_t grow_node(const Samples& samples, int depth) {
@@ -92,14 +103,7 @@ class TreeGrower {
     const std::optional<PixelTest> test = search_->best_test(subset(samples), choose_objective(samples), random_);
     if (!test) return make_leaf(samples);
 
-    Samples left;
-    Samples right;
-    for (const std::uint32_t s : samples) {
-      const TrainingSample& sample = set_.samples[s];
-      const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
-      const int value = test_value(*test, picture.patch(sample.x, sample.y, sample.scale));
-      (value >= test->threshold ? right : left).push_back(s);
-    }
+    const auto [left, right] = split(*test, samples);
     const std::size_t index = forest_.nodes.size();
     forest_.nodes.push_back({*test, 0, 0});
     const std::int32_t left_child = grow_node(left, depth + 1);
@@ -109,11 +113,45 @@ class TreeGrower {
     return static_cast<std::int32_t>(index);
   }
 
+  std::pair<Samples, Samples> split(const PixelTest& test, const Samples& samples) const {
+    std::pair<Samples, Samples> sides;
+    for (const std::uint32_t s : samples) {
+      const TrainingSample& sample = set_.samples[s];
+      const FeatureImage& picture = set_.pictures[static_cast<std::size_t>(sample.picture)];
+      const int value = test_value(test, picture.patch(sample.x, sample.y, sample.scale));
+      (value >= test.threshold ? sides.second : sides.first).push_back(s);
+    }
+    return sides;
+  }
+
+  std::int32_t follow(const Forest& old, std::int32_t at, const Samples& samples, int depth) {
+    if (at < 0) return follow_leaf(old, -1 - at, samples, depth);
+    const TreeNode& node = old.nodes[static_cast<std::size_t>(at)];
+    const auto [left, right] = split(node.test, samples);
+    const std::size_t index = forest_.nodes.size();
+    forest_.nodes.push_back({node.test, 0, 0});
+    const std::int32_t left_child = follow(old, node.left, left, depth + 1);
+    const std::int32_t right_child = follow(old, node.right, right, depth + 1);
+    forest_.nodes[index].left = left_child;
+    forest_.nodes[index].right = right_child;
+    return static_cast<std::int32_t>(index);
+  }
+
+  std::int32_t follow_leaf(const Forest& old, std::int32_t leaf, const Samples& samples, int depth) {
+    const auto known_classes = static_cast<float>(old.classes.size());
+    known_ = KnownLeaf{&old, leaf, known_classes / (known_classes + static_cast<float>(set_.classes.size()))};
+    known_samples_ = std::max<std::size_t>(samples.size(), 1);
+    if (samples.empty()) return -1 - copy_leaf(*known_, forest_);
+    return grow_node(samples, depth);
+  }
+
   const TrainingSet& set_;
   const TrainingSettings& settings_;
   Random random_;
   Samples bag_;
   std::vector<float> label_weights_;
+  std::optional<KnownLeaf> known_;  // that the samples have reached
+  std::size_t known_samples_ = 1;
   std::optional<SplitSearch> search_;
   Forest forest_;
 };
@@ -124,6 +162,11 @@ bool in_bag(const TrainingSettings& settings, int tree, std::int32_t picture) {
   Random random =
       Random::for_item(settings.seed + static_cast<std::uint64_t>(tree), static_cast<std::uint64_t>(picture));
   return random.uniform() < settings.in_bag;
+}
+
+Forest regrow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree,
+                   const Forest& old) {
+  return TreeGrower(set, patch, settings, tree).grow_onto(old, tree);
 }
 
 Forest grow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree) {

@@ -75,7 +75,21 @@ Profile overridden(const Overrides& overrides) {
   return profile;
 }
 
-void train(const TrainingSources& sources, const Profile& profile, const std::string& out) {
+/// The profile by which a forest was trained; only seed and threads can be chosen.
+Profile profile_of(const Forest& forest, const Overrides& overrides) {
+  Profile profile = make_profile(forest.profile);
+  profile.features = forest.features;
+  profile.patch = forest.patch;
+  profile.detection = detection_settings(forest);
+  profile.training.scoring = forest.scoring;
+  profile.training.trees = static_cast<int>(forest.roots.size());
+  profile.training.seed = overrides.seed;
+  profile.training.threads = overrides.threads;
+  return profile;
+}
+
+void train(const TrainingSources& sources, const Profile& profile, const std::optional<Forest>& old,
+           const std::string& out) {
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const auto progress = [&](const std::string& line) {
@@ -83,7 +97,7 @@ void train(const TrainingSources& sources, const Profile& profile, const std::st
   };
   const std::vector<TrainingView> views = read_training_sources(sources, profile.training.threads);
   progress(fmt::format("{} views and backgrounds read", views.size()));
-  const Forest forest = train_forest(views, profile, progress);
+  const Forest forest = old ? add_objects(*old, views, profile, progress) : train_forest(views, profile, progress);
   save_forest(forest, out);
   fmt::print("train_seconds {:.1f}\n", seconds());
 }
@@ -97,6 +111,7 @@ int main(int argc, char** argv) {
   TrainingSources sources;
   Overrides overrides;
   std::string out;
+  std::string add_to;
   app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR")->required();
   app.add_option("--background", sources.backgrounds,
                  "rooms without the objects: bop:DIR or images:DIR, with the folders below it")
@@ -105,10 +120,13 @@ int main(int argc, char** argv) {
   app.add_option("--rename", sources.renames, "can_1=can: what an instance is called")->delimiter(',');
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
   app.add_option("--out", out, "forest file to write")->required();
+  app.add_option("--add-to", add_to, "forest that learns the objects beside those it knows; it decides the profile");
   add_overrides(app, overrides);
   CLI11_PARSE(app, argc, argv);
   try {
-    train(sources, overridden(overrides), out);
+    std::optional<Forest> old;
+    if (!add_to.empty()) old = load_forest(add_to);
+    train(sources, old ? profile_of(*old, overrides) : overridden(overrides), old, out);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "hs-train: {}\n", error.what());

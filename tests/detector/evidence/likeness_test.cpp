@@ -48,5 +48,42 @@ TEST(Likeness, PlainSurfacesAndFewPairsSayNothing) {
   EXPECT_EQ(few.correlation(), 0.0F);
 }
 
+/// Foreign colour of plain surfaces, as a* and b* about neutral.
+float between_plain(cv::Point remembered, cv::Point seen) {
+  Likeness likeness;
+  for (int i = 0; i < 100; ++i) {
+    likeness.add({120, static_cast<std::uint8_t>(128 + remembered.x), static_cast<std::uint8_t>(128 + remembered.y)},
+                 {120, static_cast<std::uint8_t>(128 + seen.x), static_cast<std::uint8_t>(128 + seen.y)});
+  }
+  return likeness.foreign_colour();
+}
+
+TEST(ForeignColour, IsTheDistanceInTensThatNoStrengthExplains) {
+  EXPECT_NEAR(between_plain({0, 0}, {30, 0}), 3.0F, 1e-3F);
+  EXPECT_NEAR(between_plain({20, 0}, {20, 10}), 1.0F, 1e-3F);
+  EXPECT_NEAR(between_plain({20, 0}, {-20, 0}), 3.0F, 1e-3F) << "no paler than half";
+}
+
+TEST(ForeignColour, HazeAndStrongColoursAreStillTheSameColour) {
+  EXPECT_NEAR(between_plain({10, 20}, {5, 10}), 0.0F, 0.05F);
+  EXPECT_NEAR(between_plain({10, 20}, {25, 50}), 0.0F, 0.05F);
+}
+
+TEST(ForeignColour, SaysLittleWhereTheColoursSeenVary) {
+  Random random(8);
+  Likeness likeness;
+  for (int i = 0; i < 400; ++i) {
+    const auto value = [&] { return static_cast<std::uint8_t>(random.between(68, 188)); };
+    likeness.add({120, 148, 128}, {120, value(), static_cast<std::uint8_t>(value() + 20)});
+  }
+  EXPECT_LT(likeness.foreign_colour(), 0.6F);
+}
+
+TEST(ForeignColour, FewPairsSayNothing) {
+  Likeness few;
+  for (int i = 0; i < 5; ++i) few.add({120, 128, 128}, {120, 190, 128});
+  EXPECT_EQ(few.foreign_colour(), 0.0F);
+}
+
 }  // namespace
 }  // namespace houghstream

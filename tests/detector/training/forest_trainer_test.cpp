@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 
+#include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/checks.hpp"
 #include "toy_data.hpp"
@@ -73,6 +75,53 @@ TEST(ForestTrainer, AnObjectWithoutDepthIsRefused) {
   std::vector<TrainingView> views = toy::training_views();
   for (TrainingView& view : views) view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   EXPECT_THROW(train_forest(views, toy::quick_profile(), kQuiet), InputError);
+}
+
+/// Views of one class, under the number that a folder of its own would give it, and the rooms.
+std::vector<TrainingView> only(const std::string& name) {
+  std::vector<TrainingView> chosen;
+  for (TrainingView& view : toy::training_views()) {
+    if (view.class_id != 0 && view.class_name != name) continue;
+    if (view.class_id != 0) view.class_id = 1;
+    chosen.push_back(std::move(view));
+  }
+  return chosen;
+}
+
+Forest stripes_then_rings(int threads) {
+  Profile profile = toy::quick_profile();
+  profile.training.threads = threads;
+  const Forest stripes = train_forest(only("stripes"), profile, kQuiet);
+  return add_objects(stripes, only("rings"), profile, kQuiet);
+}
+
+TEST(AddObjects, BothTheOldAndTheNewObjectAreFound) {
+  const Detector detector(stripes_then_rings(2), DetectionSettings{});
+  ASSERT_EQ(detector.forest().classes.size(), 2U);
+  EXPECT_EQ(detector.forest().classes[1].class_id, 2);
+  for (const int kind : {0, 1}) {
+    RgbdFrame frame = toy::room(77);
+    const cv::Mat mask = toy::put_tile(kind, 150, 110, 0.7, frame);
+    const Detections found = detector.detect(frame);
+    ASSERT_FALSE(found.detections.empty()) << kind;
+    EXPECT_EQ(found.detections[0].class_name, kind == 0 ? "stripes" : "rings");
+    EXPECT_GT(box_iou(found.detections[0].box_px, cv::Rect2f(cv::boundingRect(mask))), 0.5F);
+  }
+}
+
+TEST(AddObjects, AnyNumberOfThreadsGivesTheSameFileAndItLoads) {
+  const std::string name = "houghstream_add_objects_test";
+  const Forest forest = stripes_then_rings(1);
+  EXPECT_TRUE(file_bytes(forest, name) == file_bytes(stripes_then_rings(3), name));
+  const auto file = std::filesystem::temp_directory_path() / (name + "_load");
+  save_forest(forest, file);
+  EXPECT_EQ(load_forest(file).views.size(), forest.views.size());
+  std::filesystem::remove(file);
+}
+
+TEST(AddObjects, AnObjectThatIsKnownIsRefused) {
+  const Forest stripes = train_forest(only("stripes"), toy::quick_profile(), kQuiet);
+  EXPECT_THROW(add_objects(stripes, only("stripes"), toy::quick_profile(), kQuiet), InputError);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ Leaf build(const std::vector<TrainingSample>& samples, const std::vector<float>&
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
   Leaf leaf;
   leaf.forest.leaves.push_back(0);
-  leaf.number = add_leaf(set, all, weights, settings, leaf.forest);
+  leaf.number = add_leaf(set, all, weights, 16.0F, settings, leaf.forest);
   return leaf;
 }
 
@@ -47,6 +47,7 @@ TEST(LeafBuilder, ProbabilitiesFollowTheLabelWeights) {
   const std::vector<LeafClass>& classes = leaf.forest.leaf_classes;
   ASSERT_EQ(classes.size(), 2U);
   EXPECT_EQ(classes[0].class_index, 0);
+  EXPECT_FLOAT_EQ(leaf.forest.leaf_weights.back(), 0.5F) << "8 of 16";
   EXPECT_FLOAT_EQ(classes[0].probability, 0.25F);
   EXPECT_EQ(classes[1].class_index, 1);
   EXPECT_FLOAT_EQ(classes[1].probability, 0.5F);
@@ -87,8 +88,8 @@ TEST(LeafBuilder, TheSecondLeafFollowsTheFirst) {
   set.samples = {sample(1, 0.0F), sample(1, 0.3F, 5)};
   Forest forest;
   forest.leaves.push_back(0);
-  EXPECT_EQ(add_leaf(set, {0}, {1, 1}, {}, forest), 0);
-  EXPECT_EQ(add_leaf(set, {1}, {1, 1}, {}, forest), 1);
+  EXPECT_EQ(add_leaf(set, {0}, {1, 1}, 1.0F, {}, forest), 0);
+  EXPECT_EQ(add_leaf(set, {1}, {1, 1}, 1.0F, {}, forest), 1);
   const LeafClass& second = forest.leaf_classes[forest.leaves[1]];
   EXPECT_FLOAT_EQ(forest.votes[second.first_vote].offset.x(), 0.3F);
   EXPECT_EQ(forest.leaf_views[second.first_view].view, 5U);
