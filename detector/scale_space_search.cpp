@@ -34,9 +34,7 @@ SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureL
   seen.size_ratio = level.size_ratio;
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
   add_patches_everywhere(working, level, forest.patch, settings.stride, seen.grid);
-  seen.leaves.leaves = settings.readable ? assign_leaves_readably(forest, features, seen.grid)
-                                         : assign_leaves(forest, features, seen.grid, settings.threads);
-  seen.leaves.probabilities = class_probabilities(forest, seen.leaves.leaves, settings.threads);
+  seen.leaves = classify(forest, features, seen.grid, settings);
   clock.mark("detect.forest");
   return seen;
 }

@@ -89,6 +89,15 @@ std::vector<float> class_probabilities(const Forest& forest, const std::vector<s
   return probabilities;
 }
 
+PatchLeaves classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+                     const DetectionSettings& settings) {
+  PatchLeaves found;
+  found.leaves = settings.readable ? assign_leaves_readably(forest, features, patches)
+                                   : assign_leaves(forest, features, patches, settings.threads);
+  found.probabilities = class_probabilities(forest, found.leaves, settings.threads);
+  return found;
+}
+
 HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchLeaves& leaves,
                       const Camera& working_camera, const DetectionSettings& settings) {
   HoughSpace space;

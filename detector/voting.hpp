@@ -44,6 +44,10 @@ struct PatchLeaves {
   std::vector<float> probabilities;  ///< see class_probabilities
 };
 
+/// Where the patches end up, by the engine that the settings name. `features`: see assign_leaves.
+PatchLeaves classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+                     const DetectionSettings& settings);
+
 /// p(class | patch), the mean over the trees: element [patch * classes + class].
 std::vector<float> class_probabilities(const Forest& forest, const std::vector<std::int32_t>& leaves, int threads);
 

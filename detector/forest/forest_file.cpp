@@ -19,7 +19,16 @@ namespace {
 
 constexpr char kName[] = "HOUGHSTREAM FOREST ";
 
-/// One list of members for writing and reading, so that the two cannot drift apart.
+template <typename Archive, typename ClassType>
+void archive_class(Archive& archive, ClassType& object) {
+  archive(object.class_id);
+  archive(object.name);
+  archive(object.radius);
+  archive(object.expected_mass);
+  archive(object.score_model);
+}
+
+/// One list of members for writing and reading, so that the two cannot drift apart; for classes the one above.
 template <typename Archive, typename ForestType>
 void archive_members(Archive& archive, ForestType& forest) {
   archive(forest.profile);
@@ -57,13 +66,7 @@ struct Writer {
   }
   void operator()(const std::vector<ObjectClass>& classes) {
     (*this)(static_cast<std::uint64_t>(classes.size()));
-    for (const ObjectClass& c : classes) {
-      (*this)(c.class_id);
-      (*this)(c.name);
-      (*this)(c.radius);
-      (*this)(c.expected_mass);
-      (*this)(c.score_model);
-    }
+    for (const ObjectClass& c : classes) archive_class(*this, c);
   }
   template <typename T>
   void operator()(const std::vector<T>& values) {
@@ -99,13 +102,7 @@ struct Reader {
   }
   void operator()(std::vector<ObjectClass>& classes) {
     classes.resize(count(1));
-    for (ObjectClass& c : classes) {
-      (*this)(c.class_id);
-      (*this)(c.name);
-      (*this)(c.radius);
-      (*this)(c.expected_mass);
-      (*this)(c.score_model);
-    }
+    for (ObjectClass& c : classes) archive_class(*this, c);
   }
   template <typename T>
   void operator()(std::vector<T>& values) {

@@ -19,6 +19,18 @@ std::int32_t moved(std::int32_t child, std::int32_t first_node, std::int32_t fir
   return child >= 0 ? child + first_node : child - first_leaf;
 }
 
+/// What a profile says of a forest; classes, views and trees are to follow.
+Forest without_trees(const Profile& profile) {
+  Forest forest;
+  forest.profile = profile.name;
+  forest.features = profile.features;
+  forest.patch = profile.patch;
+  forest.scoring = profile.training.scoring;
+  forest.seed = profile.training.seed;
+  forest.leaves.push_back(0);
+  return forest;
+}
+
 /// Appends a tree grown on its own, moving its indices behind those already there.
 void append_tree(const Forest& tree, Forest& forest) {
   const auto first_node = static_cast<std::int32_t>(forest.nodes.size());
@@ -110,15 +122,9 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   add_hard_negatives(profile.patch, settings, set);
   progress(fmt::format("{} background patches added that scout trees mistook", set.samples.size() - before));
 
-  Forest forest;
-  forest.profile = profile.name;
-  forest.features = profile.features;
-  forest.patch = profile.patch;
-  forest.scoring = settings.scoring;
-  forest.seed = settings.seed;
+  Forest forest = without_trees(profile);
   forest.classes = set.classes;
   forest.views = set.views;
-  forest.leaves.push_back(0);
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
   calibrate_masses(set, settings, profile.detection.vote_sigma, forest);
   if (settings.scoring == Scoring::kVotes) return forest;
@@ -139,19 +145,15 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   set.first_view = static_cast<std::uint32_t>(old.views.size());
   progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.pictures.size(),
                        set.classes.size(), old.classes.size()));
-  Forest forest = old;
+  Forest forest = without_trees(profile);
+  forest.seed = old.seed;
+  forest.classes = old.classes;
   forest.classes.insert(forest.classes.end(), set.classes.begin(), set.classes.end());
+  forest.views = old.views;
   for (TrainedView view : set.views) {
     view.class_index += set.first_class;
     forest.views.push_back(view);
   }
-  forest.roots.clear();
-  forest.nodes.clear();
-  forest.leaves.assign(1, 0);
-  forest.leaf_weights.clear();
-  forest.leaf_classes.clear();
-  forest.votes.clear();
-  forest.leaf_views.clear();
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
   calibrate_masses(set, profile.training, profile.detection.vote_sigma, forest);
   if (forest.scoring == Scoring::kEvidence) train_score_model(rooms.objects, rooms.for_score, profile, forest);

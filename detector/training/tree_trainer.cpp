@@ -103,11 +103,18 @@ class TreeGrower {
     const std::optional<PixelTest> test = search_->best_test(subset(samples), choose_objective(samples), random_);
     if (!test) return make_leaf(samples);
 
-    const auto [left, right] = split(*test, samples);
+    const auto grow = [&](const Samples& side) { return grow_node(side, depth + 1); };
+    return add_node(*test, samples, grow, grow);
+  }
+
+  /// Appends a node; its children are what the two functions make of the samples on their sides.
+  template <typename Left, typename Right>
+  std::int32_t add_node(const PixelTest& test, const Samples& samples, const Left& make_left, const Right& make_right) {
+    const auto [left, right] = split(test, samples);
     const std::size_t index = forest_.nodes.size();
-    forest_.nodes.push_back({*test, 0, 0});
-    const std::int32_t left_child = grow_node(left, depth + 1);
-    const std::int32_t right_child = grow_node(right, depth + 1);
+    forest_.nodes.push_back({test, 0, 0});
+    const std::int32_t left_child = make_left(left);
+    const std::int32_t right_child = make_right(right);
     forest_.nodes[index].left = left_child;
     forest_.nodes[index].right = right_child;
     return static_cast<std::int32_t>(index);
@@ -127,14 +134,9 @@ class TreeGrower {
   std::int32_t follow(const Forest& old, std::int32_t at, const Samples& samples, int depth) {
     if (at < 0) return follow_leaf(old, -1 - at, samples, depth);
     const TreeNode& node = old.nodes[static_cast<std::size_t>(at)];
-    const auto [left, right] = split(node.test, samples);
-    const std::size_t index = forest_.nodes.size();
-    forest_.nodes.push_back({node.test, 0, 0});
-    const std::int32_t left_child = follow(old, node.left, left, depth + 1);
-    const std::int32_t right_child = follow(old, node.right, right, depth + 1);
-    forest_.nodes[index].left = left_child;
-    forest_.nodes[index].right = right_child;
-    return static_cast<std::int32_t>(index);
+    return add_node(
+        node.test, samples, [&](const Samples& left) { return follow(old, node.left, left, depth + 1); },
+        [&](const Samples& right) { return follow(old, node.right, right, depth + 1); });
   }
 
   std::int32_t follow_leaf(const Forest& old, std::int32_t leaf, const Samples& samples, int depth) {
