@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "detector/forest/square_forest.hpp"
+#include "detector/forest/square_planes.hpp"
+#include "detector/forest/square_walk.hpp"
 #include "detector/forest/wide_walk.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -10,7 +13,6 @@ namespace houghstream {
 namespace {
 
 constexpr int kLanes = 8;    // patches in flight
-constexpr int kSquare = 32;  // patches a side
 
 /// Walks the patches down one tree, kLanes of them in step. Lanes that have arrived wait.
 void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches& patches, std::size_t step,
@@ -46,7 +48,7 @@ struct Band {
 };
 
 std::vector<Band> make_bands(const PatchGrid& patches) {
-  constexpr std::size_t kPatches = kSquare * kSquare;
+  constexpr std::size_t kPatches = kSquareSide * kSquareSide;
   std::vector<Band> bands;
   for (std::size_t begin = 0; begin < patches.size();) {
     std::size_t end = begin;
@@ -61,7 +63,7 @@ std::vector<Band> make_bands(const PatchGrid& patches) {
 /// square's worth of planes stays in the cache from tree to tree.
 template <typename Visit>
 void for_places(cv::Size size, int stride, const Visit& visit) {
-  const int side = kSquare * stride;
+  const int side = kSquareSide * stride;
   for (int top = stride / 2; top < size.height; top += side) {
     for (int left = stride / 2; left < size.width; left += side) {
       for (int y = top; y < std::min(size.height, top + side); y += stride) {
@@ -80,6 +82,39 @@ void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index
   const float left = (static_cast<float>(x) + 0.5F) * to_frame - 0.5F * side_px;
   const float top = (static_cast<float>(y) + 0.5F) * to_frame - 0.5F * side_px;
   grid.cell_px.emplace_back(left, top, side_px, side_px);
+}
+
+/// Where for_places goes from square to square, at every pixel.
+void list_squares(cv::Size size, PatchGrid& grid) {
+  std::size_t first = 0;
+  for (int top = 0; top < size.height; top += kSquareSide) {
+    for (int left = 0; left < size.width; left += kSquareSide) {
+      const int width = std::min(kSquareSide, size.width - left);
+      const int height = std::min(kSquareSide, size.height - top);
+      grid.squares.push_back({first, width, height});
+      first += static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    }
+  }
+}
+
+/// Square by square, for patches that all have one scale.
+std::vector<std::int32_t> walk_squares(const Forest& forest, const FeatureImage& image, const PatchGrid& patches,
+                                       int threads) {
+  const std::size_t trees = forest.roots.size();
+  std::vector<std::int32_t> leaves(patches.size() * trees);
+  const SquareForest ready(forest, patches.scale[0], image.pixel_stride());
+  parallel_for(threads, static_cast<int>(patches.squares.size()), [&](int s) {
+    static thread_local std::vector<std::uint8_t> planes;
+    const PatchGrid::Square& found = patches.squares[static_cast<std::size_t>(s)];
+    const PatchSquare square{patches.x[found.first], patches.y[found.first], found.width, found.height};
+    copy_planes(image, square, ready.layout, planes);
+    std::vector<std::int32_t> reached(static_cast<std::size_t>(square.width * square.height));
+    for (std::size_t tree = 0; tree < trees; ++tree) {
+      walk_square(ready, static_cast<int>(tree), square, planes, reached.data());
+      for (std::size_t i = 0; i < reached.size(); ++i) leaves[(found.first + i) * trees + tree] = reached[i];
+    }
+  });
+  return leaves;
 }
 
 }  // namespace
@@ -104,10 +139,12 @@ void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level
     add_place(x, y, level, 0, stride, grid);
     grid.scale.push_back(scale);
   });
+  if (stride == 1) list_squares(frame.filled_depth.size(), grid);
 }
 
 std::vector<std::int32_t> assign_leaves(const Forest& forest, const std::vector<FeatureImage>& features,
                                         const PatchGrid& patches, int threads) {
+  if (!patches.squares.empty()) return walk_squares(forest, features[0], patches, threads);
   const std::size_t trees = forest.roots.size();
   std::vector<std::int32_t> leaves(patches.size() * trees);
   const std::vector<Band> bands = make_bands(patches);

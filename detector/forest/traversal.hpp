@@ -18,6 +18,13 @@ struct PatchGrid {
   std::vector<Eigen::Vector3f> point_camera;  ///< the surface point seen at the centre, metres
   std::vector<cv::Rect2f> cell_px;            ///< the part of the frame that the patch stands for, frame pixels
   std::vector<float> area;                    ///< the same on the surface, facing the camera, square metres
+  /// Patches first .. first + width * height - 1, row by row: neighbours of one scale, one at every pixel.
+  struct Square {
+    std::size_t first = 0;
+    int width = 0;
+    int height = 0;
+  };
+  std::vector<Square> squares;  ///< all patches, or none where they have gaps or several scales
   std::size_t size() const { return x.size(); }
 };
 

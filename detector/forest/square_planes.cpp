@@ -1,0 +1,71 @@
+// Compiled once for each instruction set, see foreach_target.h of Highway.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detector/forest/square_planes.cpp"
+#include "detector/forest/square_planes.hpp"
+
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+HWY_BEFORE_NAMESPACE();
+namespace houghstream::HWY_NAMESPACE {
+
+/// Pixels to planes, in steps of as many as are turned at once; returns how many pixels that were.
+HWY_INLINE int turn_blocks(const std::uint8_t* pixels, int count, int pixel_stride, const SquareLayout& layout,
+                           std::uint8_t* out) {
+#if HWY_TARGET == HWY_SCALAR
+  (void)pixels, (void)count, (void)pixel_stride, (void)layout, (void)out;
+  return 0;
+#else
+  namespace hn = hwy::HWY_NAMESPACE;
+  constexpr int kSide = 16;
+  const hn::FixedTag<std::uint8_t, kSide> d;
+  using Bytes = hn::Vec<decltype(d)>;
+  const int whole = layout.planes % kSide == 0 ? count / kSide * kSide : 0;
+  for (int x = 0; x < whole; x += kSide) {
+    for (int p = 0; p < layout.planes; p += kSide) {
+      Bytes rows[kSide];
+      for (int i = 0; i < kSide; ++i) rows[i] = hn::LoadU(d, pixels + (x + i) * pixel_stride + p);
+      for (int round = 0; round < 4; ++round) {  // each one merges row i with row i + 8
+        Bytes merged[kSide];
+        for (int i = 0; i < kSide / 2; ++i) {
+          merged[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + kSide / 2]);
+          merged[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + kSide / 2]);
+        }
+        for (int i = 0; i < kSide; ++i) rows[i] = merged[i];
+      }
+      for (int i = 0; i < kSide; ++i) hn::StoreU(rows[i], d, out + (p + i) * layout.plane_stride + x);
+    }
+  }
+  return whole;
+#endif
+}
+
+void copy_row(const std::uint8_t* pixels, int count, int pixel_stride, const SquareLayout& layout, std::uint8_t* out) {
+  for (int x = turn_blocks(pixels, count, pixel_stride, layout, out); x < count; ++x) {
+    for (int p = 0; p < layout.planes; ++p) out[p * layout.plane_stride + x] = pixels[x * pixel_stride + p];
+  }
+}
+
+}  // namespace houghstream::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace houghstream {
+
+HWY_EXPORT(copy_row);
+
+void copy_planes(const FeatureImage& image, const PatchSquare& square, const SquareLayout& layout,
+                 std::vector<std::uint8_t>& planes) {
+  planes.resize(layout.size());
+  std::fill_n(planes.begin() + layout.planes * layout.plane_stride, layout.plane_stride, std::uint8_t{0});
+  for (int y = 0; y < square.height + 2 * layout.reach; ++y) {
+    HWY_DYNAMIC_DISPATCH(copy_row)
+    (image.at(square.left - layout.reach, square.top - layout.reach + y), square.width + 2 * layout.reach,
+     image.pixel_stride(), layout, planes.data() + y * layout.row_stride);
+  }
+}
+
+}  // namespace houghstream
+#endif
