@@ -71,7 +71,7 @@ std::vector<Candidate> class_candidates(const Forest& forest, int class_index, c
                                         const RgbdFrame& frame, const DetectionSettings& settings,
                                         const std::vector<std::uint32_t>& forgotten) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
-  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.leaves, seen.hough_camera, settings);
+  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings);
   const float least_mass = settings.min_mass_share * object.expected_mass;
   std::vector<Candidate> candidates;
   for (const Hypothesis& hypothesis : find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {

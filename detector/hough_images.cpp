@@ -5,6 +5,7 @@
 
 #include "detector/scale_space_search.hpp"
 #include "detector/seen_patches.hpp"
+#include "detector/voting.hpp"
 
 namespace houghstream {
 namespace {
@@ -58,7 +59,7 @@ cv::Mat hough_image(const Forest& forest, int class_index, const RgbdFrame& fram
   }
   StageClock clock;
   const SeenPatches seen = classify_patches(forest, frame, settings, clock);
-  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.leaves, seen.hough_camera, settings);
+  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings);
   const cv::Mat masses = masses_by_cell(space, seen, settings);
   const float expected = forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
   return at_frame_size(masses / expected, space.cell_px, seen.hough_camera, frame.colour.size());

@@ -5,6 +5,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/beliefs.hpp"
 #include "detector/features/features.hpp"
 #include "detector/hypotheses.hpp"
 #include "detector/voting.hpp"
@@ -16,7 +17,7 @@ namespace {
 /// One size of the frame, classified.
 struct SeenLevel {
   PatchGrid grid;  // without points and areas, which need depth
-  PatchLeaves leaves;
+  PatchBeliefs beliefs;
   Camera camera;               // of the level's image
   float px_per_offset = 0.0F;  // level pixels per unit of a leaf's offset, see ScaleHandling::kScaleSpace
   float size_ratio = 1.0F;
@@ -34,48 +35,39 @@ SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureL
   seen.size_ratio = level.size_ratio;
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
   add_patches_everywhere(working, level, forest.patch, settings.stride, seen.grid);
-  seen.leaves = classify(forest, features, seen.grid, settings);
+  seen.beliefs = classify(forest, features, seen.grid, settings);
   clock.mark("detect.forest");
   return seen;
 }
 
-/// Calls visit(x, y, weight, who) for each vote of a patch for a class that falls into the level's image, at its pixel.
+/// Calls visit(patch, x, y, weight, who) for each vote for a class that falls into the level's image, at its pixel.
 template <typename Visit>
-void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, std::size_t patch, const Visit& visit) {
-  const std::size_t trees = forest.roots.size();
-  const float share = 1.0F / static_cast<float>(trees);
+void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, const Visit& visit) {
+  const float share = 1.0F / static_cast<float>(forest.roots.size());
   const auto width = static_cast<float>(seen.camera.width);
   const auto height = static_cast<float>(seen.camera.height);
-  for (std::size_t tree = 0; tree < trees; ++tree) {
-    const auto leaf = static_cast<std::size_t>(seen.leaves.leaves[patch * trees + tree]);
-    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      const LeafClass& entry = forest.leaf_classes[e];
-      if (entry.class_index != class_index) continue;
+  seen.beliefs.for_believers(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+    const auto patch_x = static_cast<float>(seen.grid.x[p]);
+    const auto patch_y = static_cast<float>(seen.grid.y[p]);
+    for (std::uint32_t e = 0; e < count; ++e) {
+      const LeafClass& entry = forest.leaf_classes[entries[e]];
       for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
         const LeafVote& vote = forest.votes[v];
         // rounded: positions inside the image are positive
-        const float x = static_cast<float>(seen.grid.x[patch]) + vote.offset.x() * seen.px_per_offset + 0.5F;
-        const float y = static_cast<float>(seen.grid.y[patch]) + vote.offset.y() * seen.px_per_offset + 0.5F;
+        const float x = patch_x + vote.offset.x() * seen.px_per_offset + 0.5F;
+        const float y = patch_y + vote.offset.y() * seen.px_per_offset + 0.5F;
         if (x < 0.0F || y < 0.0F || x >= width || y >= height) continue;
-        visit(static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * share, entry);
+        visit(p, static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * share, entry);
       }
     }
-  }
-}
-
-bool believes(const Forest& forest, int class_index, const SeenLevel& seen, std::size_t patch, float least) {
-  const std::size_t belief = patch * forest.classes.size() + static_cast<std::size_t>(class_index);
-  return seen.leaves.probabilities[belief] >= least;
+  });
 }
 
 /// Vote mass per pixel over the class's expected mass.
 cv::Mat hough_image(const Forest& forest, int class_index, const SeenLevel& seen, const DetectionSettings& settings) {
   cv::Mat image = cv::Mat::zeros(seen.camera.height, seen.camera.width, CV_32FC1);
-  for (std::size_t p = 0; p < seen.grid.size(); ++p) {
-    if (!believes(forest, class_index, seen, p, settings.min_class_share)) continue;
-    for_votes_of(forest, class_index, seen, p,
-                 [&](int x, int y, float weight, const LeafClass&) { image.at<float>(y, x) += weight; });
-  }
+  for_votes_of(forest, class_index, seen,
+               [&](std::uint32_t, int x, int y, float weight, const LeafClass&) { image.at<float>(y, x) += weight; });
   const double sigma = static_cast<double>(settings.vote_sigma) * seen.px_per_offset;
   cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
   const double patch_side = settings.stride / static_cast<double>(seen.px_per_offset);
@@ -117,26 +109,24 @@ std::vector<Hypothesis> gather_supporters(const Forest& forest, int class_index,
   const float sigma = settings.vote_sigma * seen.px_per_offset;
   const cv::Mat number = supported_maximum(maxima, cv::Size(seen.camera.width, seen.camera.height), kVoteReach * sigma);
   std::vector<Hypothesis> hypotheses(maxima.size());
+  if (maxima.empty()) return hypotheses;
   std::vector<std::vector<float>> by_view(maxima.size(), std::vector<float>(forest.views.size(), 0.0F));
-  for (std::uint32_t p = 0; p < seen.grid.size(); ++p) {
-    if (!believes(forest, class_index, seen, p, settings.min_class_share)) continue;
-    for_votes_of(forest, class_index, seen, p, [&](int x, int y, float weight, const LeafClass& entry) {
-      const std::int16_t supported = number.at<std::int16_t>(y, x);
-      if (supported == kNobody) return;
-      const auto m = static_cast<std::size_t>(supported);
-      const auto dx = static_cast<float>(x - maxima[m].x);
-      const auto dy = static_cast<float>(y - maxima[m].y);
-      const float share = weight * vote_kernel(dx * dx + dy * dy, sigma);
-      Hypothesis& hypothesis = hypotheses[m];
-      hypothesis.weight += share;
-      ++hypothesis.vote_count;
-      if (hypothesis.patches.empty() || hypothesis.patches.back().first != p) hypothesis.patches.emplace_back(p, 0.0F);
-      hypothesis.patches.back().second += share;
-      for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
-        by_view[m][forest.leaf_views[v].view] += share * forest.leaf_views[v].weight;
-      }
-    });
-  }
+  for_votes_of(forest, class_index, seen, [&](std::uint32_t p, int x, int y, float weight, const LeafClass& entry) {
+    const std::int16_t supported = number.at<std::int16_t>(y, x);
+    if (supported == kNobody) return;
+    const auto m = static_cast<std::size_t>(supported);
+    const auto dx = static_cast<float>(x - maxima[m].x);
+    const auto dy = static_cast<float>(y - maxima[m].y);
+    const float share = weight * vote_kernel(dx * dx + dy * dy, sigma);
+    Hypothesis& hypothesis = hypotheses[m];
+    hypothesis.weight += share;
+    ++hypothesis.vote_count;
+    if (hypothesis.patches.empty() || hypothesis.patches.back().first != p) hypothesis.patches.emplace_back(p, 0.0F);
+    hypothesis.patches.back().second += share;
+    for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
+      by_view[m][forest.leaf_views[v].view] += share * forest.leaf_views[v].weight;
+    }
+  });
   for (std::size_t m = 0; m < maxima.size(); ++m) {
     for (std::uint32_t v = 0; v < by_view[m].size(); ++v) {
       if (by_view[m][v] > 0.0F) hypotheses[m].views.emplace_back(v, by_view[m][v]);

@@ -27,7 +27,7 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
   for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
     add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
   }
-  seen.leaves = classify(forest, features, seen.grid, settings);  // Section 5.1.2
+  seen.beliefs = classify(forest, features, seen.grid, settings);  // Section 5.1.2
   clock.mark("detect.forest");
   return seen;
 }

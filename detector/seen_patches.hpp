@@ -2,16 +2,16 @@
 
 #include <opencv2/core.hpp>
 
+#include "detector/beliefs.hpp"
 #include "detector/forest/traversal.hpp"
-#include "detector/voting.hpp"
 #include "pipeline/frame.hpp"
 
 namespace houghstream {
 
-/// Patches of a frame at both levels with the leaves that they reach; for depth-normalised forests.
+/// Patches of a frame at both levels with what they believe; for depth-normalised forests.
 struct SeenPatches {
   PatchGrid grid;
-  PatchLeaves leaves;
+  PatchBeliefs beliefs;
   Camera hough_camera;  ///< in whose pixels Hough spaces are laid out: that of the level for near surfaces
   cv::Mat lab;          ///< of the working frame for near surfaces
 };

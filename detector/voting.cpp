@@ -1,35 +1,19 @@
 #include "detector/voting.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-
-#include "pipeline/parallel.hpp"
 
 namespace houghstream {
 namespace {
 
-/// The class's entry in each tree's leaf for this patch; -1 where the leaf does not know it.
-void find_entries(const Forest& forest, int class_index, const std::int32_t* leaves,
-                  std::vector<std::int64_t>& entries) {
-  for (std::size_t tree = 0; tree < entries.size(); ++tree) {
-    entries[tree] = -1;
-    const auto leaf = static_cast<std::size_t>(leaves[tree]);
-    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      if (forest.leaf_classes[e].class_index == class_index) entries[tree] = e;
-    }
-  }
-}
-
 /// Appends the patch's votes whose centre is seen inside the image; `cells` gets the cell of each.
 void cast_from_patch(const Forest& forest, const Eigen::Vector3f& point, std::uint32_t patch,
-                     const std::vector<std::int64_t>& entries, const Camera& camera, const HoughSpace& space,
+                     const std::uint32_t* entries, std::uint32_t count, const Camera& camera, const HoughSpace& space,
                      std::vector<Vote>& votes, std::vector<std::uint32_t>& cells) {
   const Eigen::Matrix3f R_camera_ray = ray_rotation(point);
-  const float share = 1.0F / static_cast<float>(entries.size());
-  for (const std::int64_t e : entries) {
-    if (e < 0) continue;
-    const LeafClass& entry = forest.leaf_classes[static_cast<std::size_t>(e)];
+  const float share = 1.0F / static_cast<float>(forest.roots.size());
+  for (const std::uint32_t* e = entries; e != entries + count; ++e) {
+    const LeafClass& entry = forest.leaf_classes[*e];
     for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
       const LeafVote& leaf_vote = forest.votes[v];
       const Eigen::Vector3f centre = point + R_camera_ray * leaf_vote.offset;
@@ -38,7 +22,7 @@ void cast_from_patch(const Forest& forest, const Eigen::Vector3f& point, std::ui
       const int x = static_cast<int>(std::floor((px.x() + 0.5) / space.cell_px));
       const int y = static_cast<int>(std::floor((px.y() + 0.5) / space.cell_px));
       if (x < 0 || y < 0 || x >= space.width || y >= space.height) continue;
-      votes.push_back({centre, entry.probability * leaf_vote.weight * share, patch, static_cast<std::uint32_t>(e)});
+      votes.push_back({centre, entry.probability * leaf_vote.weight * share, patch, *e});
       cells.push_back(static_cast<std::uint32_t>(y * space.width + x));
     }
   }
@@ -67,38 +51,7 @@ void fill_image(double sigma_px, HoughSpace& space) {
 
 }  // namespace
 
-std::vector<float> class_probabilities(const Forest& forest, const std::vector<std::int32_t>& leaves, int threads) {
-  const std::size_t trees = forest.roots.size();
-  const std::size_t classes = forest.classes.size();
-  const std::size_t patches = leaves.size() / trees;
-  std::vector<float> probabilities(patches * classes, 0.0F);
-  constexpr std::size_t kBand = 1024;
-  parallel_for(threads, static_cast<int>((patches + kBand - 1) / kBand), [&](int band) {
-    const std::size_t begin = static_cast<std::size_t>(band) * kBand;
-    for (std::size_t p = begin; p < std::min(begin + kBand, patches); ++p) {
-      float* sums = probabilities.data() + p * classes;
-      for (std::size_t tree = 0; tree < trees; ++tree) {
-        const auto leaf = static_cast<std::size_t>(leaves[p * trees + tree]);
-        for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-          sums[forest.leaf_classes[e].class_index] += forest.leaf_classes[e].probability;
-        }
-      }
-      for (std::size_t c = 0; c < classes; ++c) sums[c] /= static_cast<float>(trees);
-    }
-  });
-  return probabilities;
-}
-
-PatchLeaves classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                     const DetectionSettings& settings) {
-  PatchLeaves found;
-  found.leaves = settings.readable ? assign_leaves_readably(forest, features, patches)
-                                   : assign_leaves(forest, features, patches, settings.threads);
-  found.probabilities = class_probabilities(forest, found.leaves, settings.threads);
-  return found;
-}
-
-HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchLeaves& leaves,
+HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchBeliefs& beliefs,
                       const Camera& working_camera, const DetectionSettings& settings) {
   HoughSpace space;
   space.cell_px = 2;
@@ -106,13 +59,9 @@ HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& pa
   space.height = (working_camera.height + space.cell_px - 1) / space.cell_px;
   std::vector<Vote> votes;
   std::vector<std::uint32_t> cells;
-  std::vector<std::int64_t> entries(forest.roots.size());
-  for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    const std::size_t belief = p * forest.classes.size() + static_cast<std::size_t>(class_index);
-    if (leaves.probabilities[belief] < settings.min_class_share) continue;
-    find_entries(forest, class_index, leaves.leaves.data() + p * entries.size(), entries);
-    cast_from_patch(forest, patches.point_camera[p], p, entries, working_camera, space, votes, cells);
-  }
+  beliefs.for_believers(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+    cast_from_patch(forest, patches.point_camera[p], p, entries, count, working_camera, space, votes, cells);
+  });
   sort_by_cell(votes, cells, space);
   fill_image(settings.hough_sigma_px, space);
   return space;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "detector/beliefs.hpp"
 #include "detector/forest/forest.hpp"
 #include "detector/forest/traversal.hpp"
 
@@ -38,21 +39,8 @@ struct HoughSpace {
                                           ///< a patch's footprint and the spread of its votes shrink with it
 };
 
-/// Where the patches of a frame ended up.
-struct PatchLeaves {
-  std::vector<std::int32_t> leaves;  ///< see assign_leaves
-  std::vector<float> probabilities;  ///< see class_probabilities
-};
-
-/// Where the patches end up, by the engine that the settings name. `features`: see assign_leaves.
-PatchLeaves classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                     const DetectionSettings& settings);
-
-/// p(class | patch), the mean over the trees: element [patch * classes + class].
-std::vector<float> class_probabilities(const Forest& forest, const std::vector<std::int32_t>& leaves, int threads);
-
-/// Votes of all patches for one class, from those that believe in it by at least `min_class_share`.
-HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchLeaves& leaves,
+/// Votes for one class of all patches that believe in it.
+HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchBeliefs& beliefs,
                       const Camera& working_camera, const DetectionSettings& settings);
 
 }  // namespace houghstream

@@ -3,8 +3,8 @@
 #define HWY_TARGET_INCLUDE "detector/forest/square_walk.cpp"
 #include "detector/forest/square_walk.hpp"
 
-#include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ static_assert(sizeof(SquareNode) == 16 && offsetof(SquareNode, left) == 8);
 
 constexpr int kPatches = kSquareSide * kSquareSide;
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2  // better targets have lower numbers
-constexpr int kFewest = 8;  // patches that stay together
+constexpr int kFewest = 8;                  // patches that stay together
 #else
 constexpr int kFewest = 2;  // without gathers a patch on its own is slow
 #endif
@@ -49,7 +49,7 @@ struct Depth {
 
 /// Patches that walk on their own.
 struct Walkers {
-  static constexpr int kSpare = 64;  // lanes of a vector behind the last one
+  static constexpr int kSpare = 64;                   // lanes of a vector behind the last one
   std::array<std::int32_t, kPatches + kSpare> patch;  // y * kSquareSide + x
   std::array<std::int32_t, kPatches + kSpare> node;
   int count = 0;
@@ -129,6 +129,7 @@ HWY_INLINE void settle(const Walk& walk, std::int32_t node, int rows, Depth& dep
     for_patches(begin, rows, [&](std::int32_t patch) { walk.leaf_of(patch) = -1 - node; });
     return;
   }
+  hwy::Prefetch(&walk.forest.nodes[node]);
   int patches = 0;
   if (rows < kFewest) {
     for (int i = 0; i < rows; ++i) patches += static_cast<int>(hwy::PopCount(begin[i].patches));
@@ -140,7 +141,6 @@ HWY_INLINE void settle(const Walk& walk, std::int32_t node, int rows, Depth& dep
     });
     return;
   }
-  hwy::Prefetch(&walk.forest.nodes[node]);
   depth.crowds[depth.crowd_count++] = {node, rows};
   depth.row_count += rows;
 }
@@ -222,12 +222,14 @@ void walk_together(const Walk& walk, Walkers& walkers) {
       const auto arrives = hn::And(present, hn::Lt(next, hn::Zero(d)));
       HWY_ALIGN std::int32_t patches[Walkers::kSpare];
       HWY_ALIGN std::int32_t leaves[Walkers::kSpare];
-      const auto arrived = static_cast<int>(hn::CompressStore(patch, arrives, d, patches));
-      hn::CompressStore(hn::Not(next), arrives, d, leaves);
-      for (int a = 0; a < arrived; ++a) walk.leaf_of(patches[a]) = leaves[a];
-      const auto stays = hn::AndNot(arrives, present);
-      hn::CompressBlendedStore(patch, stays, d, walkers.patch.data() + walking);
-      walking += static_cast<int>(hn::CompressBlendedStore(next, stays, d, walkers.node.data() + walking));
+      hn::Store(hn::Compress(patch, arrives), d, patches);
+      hn::Store(hn::Compress(hn::Not(next), arrives), d, leaves);
+      const std::size_t arrived = hn::CountTrue(d, arrives);
+      for (std::size_t a = 0; a < arrived; ++a) walk.leaf_of(patches[a]) = leaves[a];
+      const auto stays = hn::AndNot(arrives, present);  // what is stored behind them has been read
+      hn::StoreU(hn::Compress(patch, stays), d, walkers.patch.data() + walking);
+      hn::StoreU(hn::Compress(next, stays), d, walkers.node.data() + walking);
+      walking += static_cast<int>(hn::CountTrue(d, stays));
     }
     walkers.count = walking;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "detector/forest/square_forest.hpp"
 #include "detector/forest/square_planes.hpp"
@@ -12,11 +13,10 @@
 namespace houghstream {
 namespace {
 
-constexpr int kLanes = 8;    // patches in flight
+constexpr int kLanes = 8;  // patches in flight
 
 /// Walks the patches down one tree, kLanes of them in step. Lanes that have arrived wait.
-void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches& patches, std::size_t step,
-                   std::int32_t* leaves) {
+void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches& patches, std::int32_t* leaves) {
   const TreeNode* nodes = forest.nodes.data();
   for (int begin = 0; begin < patches.count; begin += kLanes) {
     const auto lanes = static_cast<std::size_t>(std::min(kLanes, patches.count - begin));
@@ -37,26 +37,8 @@ void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches
         walking = walking || at[l] >= 0;
       }
     }
-    for (std::size_t l = 0; l < lanes; ++l) leaves[(static_cast<std::size_t>(begin) + l) * step] = -1 - at[l];
+    for (std::size_t l = 0; l < lanes; ++l) leaves[static_cast<std::size_t>(begin) + l] = -1 - at[l];
   }
-}
-
-/// Patches of one level: their pixels stay in the cache from tree to tree.
-struct Band {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
-
-std::vector<Band> make_bands(const PatchGrid& patches) {
-  constexpr std::size_t kPatches = kSquareSide * kSquareSide;
-  std::vector<Band> bands;
-  for (std::size_t begin = 0; begin < patches.size();) {
-    std::size_t end = begin;
-    while (end < patches.size() && end - begin < kPatches && patches.level[end] == patches.level[begin]) ++end;
-    bands.push_back({begin, end});
-    begin = end;
-  }
-  return bands;
 }
 
 /// Visits a place every `stride` pixels, square by square: the patches of a square share their pixels, so that a
@@ -71,6 +53,16 @@ void for_places(cv::Size size, int stride, const Visit& visit) {
       }
     }
   }
+}
+
+void reserve_places(cv::Size size, int stride, PatchGrid& grid) {
+  const auto along = [&](int pixels) { return static_cast<std::size_t>((pixels + stride - 1) / stride); };
+  const std::size_t count = grid.size() + along(size.width) * along(size.height);
+  grid.level.reserve(count);
+  grid.x.reserve(count);
+  grid.y.reserve(count);
+  grid.scale.reserve(count);
+  grid.cell_px.reserve(count);
 }
 
 void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index, int stride, PatchGrid& grid) {
@@ -91,30 +83,35 @@ void list_squares(cv::Size size, PatchGrid& grid) {
     for (int left = 0; left < size.width; left += kSquareSide) {
       const int width = std::min(kSquareSide, size.width - left);
       const int height = std::min(kSquareSide, size.height - top);
-      grid.squares.push_back({first, width, height});
-      first += static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+      const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+      grid.squares.push_back({first, count, width});
+      first += count;
     }
   }
 }
 
-/// Square by square, for patches that all have one scale.
-std::vector<std::int32_t> walk_squares(const Forest& forest, const FeatureImage& image, const PatchGrid& patches,
-                                       int threads) {
-  const std::size_t trees = forest.roots.size();
-  std::vector<std::int32_t> leaves(patches.size() * trees);
-  const SquareForest ready(forest, patches.scale[0], image.pixel_stride());
-  parallel_for(threads, static_cast<int>(patches.squares.size()), [&](int s) {
-    static thread_local std::vector<std::uint8_t> planes;
-    const PatchGrid::Square& found = patches.squares[static_cast<std::size_t>(s)];
-    const PatchSquare square{patches.x[found.first], patches.y[found.first], found.width, found.height};
-    copy_planes(image, square, ready.layout, planes);
-    std::vector<std::int32_t> reached(static_cast<std::size_t>(square.width * square.height));
-    for (std::size_t tree = 0; tree < trees; ++tree) {
-      walk_square(ready, static_cast<int>(tree), square, planes, reached.data());
-      for (std::size_t i = 0; i < reached.size(); ++i) leaves[(found.first + i) * trees + tree] = reached[i];
+/// Leaves of one run in all trees.
+void walk_run(const Forest& forest, const FeatureImage& image, const PatchGrid& patches, const PatchRun& run,
+              std::int32_t* leaves) {
+  const WalkingPatches walking{&image, patches.x.data() + run.first, patches.y.data() + run.first,
+                               patches.scale.data() + run.first, static_cast<int>(run.count)};
+  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += run.count) {
+    if (!walk_wide(forest, static_cast<int>(tree), walking, leaves)) {
+      walk_in_lanes(forest, forest.roots[tree], walking, leaves);
     }
-  });
-  return leaves;
+  }
+}
+
+/// The same for a square.
+void walk_square_run(const SquareForest& forest, const FeatureImage& image, const PatchGrid& patches,
+                     const PatchRun& run, std::int32_t* leaves) {
+  static thread_local std::vector<std::uint8_t> planes;  // kept from square to square
+  const PatchSquare square{patches.x[run.first], patches.y[run.first], run.width,
+                           static_cast<int>(run.count) / run.width};
+  copy_planes(image, square, forest.layout, planes);
+  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += run.count) {
+    walk_square(forest, static_cast<int>(tree), square, planes, leaves);
+  }
 }
 
 }  // namespace
@@ -135,6 +132,7 @@ void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint
 void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
                             int stride, PatchGrid& grid) {
   const std::int32_t scale = limited_scale(patch, patch.unit);
+  reserve_places(frame.filled_depth.size(), stride, grid);
   for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
     add_place(x, y, level, 0, stride, grid);
     grid.scale.push_back(scale);
@@ -142,37 +140,50 @@ void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level
   if (stride == 1) list_squares(frame.filled_depth.size(), grid);
 }
 
-std::vector<std::int32_t> assign_leaves(const Forest& forest, const std::vector<FeatureImage>& features,
-                                        const PatchGrid& patches, int threads) {
-  if (!patches.squares.empty()) return walk_squares(forest, features[0], patches, threads);
-  const std::size_t trees = forest.roots.size();
-  std::vector<std::int32_t> leaves(patches.size() * trees);
-  const std::vector<Band> bands = make_bands(patches);
-  parallel_for(threads, static_cast<int>(bands.size()), [&](int b) {
-    const Band& band = bands[static_cast<std::size_t>(b)];
-    const WalkingPatches walking{&features[patches.level[band.begin]], patches.x.data() + band.begin,
-                                 patches.y.data() + band.begin, patches.scale.data() + band.begin,
-                                 static_cast<int>(band.end - band.begin)};
-    for (std::size_t tree = 0; tree < trees; ++tree) {
-      std::int32_t* out = leaves.data() + band.begin * trees + tree;
-      if (!walk_wide(forest, static_cast<int>(tree), walking, trees, out)) {
-        walk_in_lanes(forest, forest.roots[tree], walking, trees, out);
-      }
-    }
-  });
-  return leaves;
+std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
+  if (!patches.squares.empty()) return patches.squares;
+  constexpr std::size_t kPatches = kSquareSide * kSquareSide;
+  std::vector<PatchRun> runs;
+  for (std::size_t begin = 0; begin < patches.size();) {
+    std::size_t end = begin;
+    while (end < patches.size() && end - begin < kPatches && patches.level[end] == patches.level[begin]) ++end;
+    runs.push_back({begin, end - begin, 0});
+    begin = end;
+  }
+  return runs;
 }
 
-std::vector<std::int32_t> assign_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features,
-                                                 const PatchGrid& patches) {
-  std::vector<std::int32_t> leaves;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    const PatchView patch = features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
-    for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
-      leaves.push_back(find_leaf(forest, static_cast<int>(tree), patch));
+void find_leaves(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+                 const std::vector<PatchRun>& runs, int threads, const LeafVisitor& visit) {
+  std::optional<SquareForest> for_squares;
+  if (!patches.squares.empty()) for_squares.emplace(forest, patches.scale[0], features[0].pixel_stride());
+  parallel_for(threads, static_cast<int>(runs.size()), [&](int r) {
+    static thread_local std::vector<std::int32_t> leaves;  // kept from run to run
+    const PatchRun& run = runs[static_cast<std::size_t>(r)];
+    const FeatureImage& image = features[patches.level[run.first]];
+    leaves.resize(run.count * forest.roots.size());
+    if (for_squares) {
+      walk_square_run(*for_squares, image, patches, run, leaves.data());
+    } else {
+      walk_run(forest, image, patches, run, leaves.data());
     }
+    visit(static_cast<std::size_t>(r), leaves.data());
+  });
+}
+
+void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+                          const std::vector<PatchRun>& runs, const LeafVisitor& visit) {
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::vector<std::int32_t> leaves(runs[r].count * forest.roots.size());
+    for (std::size_t i = 0; i < runs[r].count; ++i) {
+      const std::size_t p = runs[r].first + i;
+      const PatchView patch = features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
+      for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
+        leaves[tree * runs[r].count + i] = find_leaf(forest, static_cast<int>(tree), patch);
+      }
+    }
+    visit(r, leaves.data());
   }
-  return leaves;
 }
 
 }  // namespace houghstream

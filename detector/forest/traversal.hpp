@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "detector/features/feature_image.hpp"
@@ -8,6 +9,13 @@
 #include "detector/forest/forest.hpp"
 
 namespace houghstream {
+
+/// Patches that are looked at together: all of one level, one after another in the grid.
+struct PatchRun {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  int width = 0;  ///< of a square: rows of so many neighbours of one scale, one at every pixel; else 0
+};
 
 /// The patches of a frame, level by level.
 struct PatchGrid {
@@ -18,13 +26,7 @@ struct PatchGrid {
   std::vector<Eigen::Vector3f> point_camera;  ///< the surface point seen at the centre, metres
   std::vector<cv::Rect2f> cell_px;            ///< the part of the frame that the patch stands for, frame pixels
   std::vector<float> area;                    ///< the same on the surface, facing the camera, square metres
-  /// Patches first .. first + width * height - 1, row by row: neighbours of one scale, one at every pixel.
-  struct Square {
-    std::size_t first = 0;
-    int width = 0;
-    int height = 0;
-  };
-  std::vector<Square> squares;  ///< all patches, or none where they have gaps or several scales
+  std::vector<PatchRun> squares;              ///< all patches, or none where they have gaps or several scales
   std::size_t size() const { return x.size(); }
 };
 
@@ -36,13 +38,20 @@ void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint
 void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
                             int stride, PatchGrid& grid);
 
-/// Leaf of every patch in every tree: element [patch * trees + tree]; `features` holds one image per level. Several
-/// patches are walked at once, so that their cache misses overlap; the leaves are those of find_leaf.
-std::vector<std::int32_t> assign_leaves(const Forest& forest, const std::vector<FeatureImage>& features,
-                                        const PatchGrid& patches, int threads);
+/// The grid in runs small enough for their pixels to stay in the cache from tree to tree: its squares where it has
+/// some.
+std::vector<PatchRun> patch_runs(const PatchGrid& patches);
+
+/// Is told the leaves of a run's patches, tree by tree: leaves[tree * count + i] is that of patch first + i.
+using LeafVisitor = std::function<void(std::size_t run, const std::int32_t* leaves)>;
+
+/// Leaf of every patch in every tree; `features` holds one image per level. Patches are walked many at once, and runs
+/// are visited at the same time; the leaves are those of find_leaf.
+void find_leaves(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+                 const std::vector<PatchRun>& runs, int threads, const LeafVisitor& visit);
 
 /// The same leaves, found one after another by find_leaf.
-std::vector<std::int32_t> assign_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features,
-                                                 const PatchGrid& patches);
+void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+                          const std::vector<PatchRun>& runs, const LeafVisitor& visit);
 
 }  // namespace houghstream

@@ -12,7 +12,8 @@ namespace houghstream::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // A node as four 32-bit words is what the gathers below rely on.
-static_assert(sizeof(TreeNode) == 16 && sizeof(PixelTest) == 8 && offsetof(TreeNode, left) == 8);
+static_assert(sizeof(TreeNode) == 16 && sizeof(PixelTest) == 8 && offsetof(TreeNode, left) == 8 &&
+              offsetof(TreeNode, right) == 12);
 
 using Int = hn::ScalableTag<std::int32_t>;
 using Ints = hn::Vec<Int>;
@@ -75,7 +76,7 @@ HWY_INLINE bool all_arrived(const Walkers& w) {
 
 constexpr std::size_t kMaxLanes = 64;
 
-bool walk(const Forest& forest, int tree, const WalkingPatches& patches, std::size_t step, std::int32_t* leaves) {
+bool walk(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2  // better targets have lower numbers
   const Int d;
   const std::size_t lanes = hn::Lanes(d);
@@ -106,11 +107,11 @@ bool walk(const Forest& forest, int tree, const WalkingPatches& patches, std::si
     hn::Store(b.at, d, centre + lanes);
     hn::Store(c.at, d, centre + 2 * lanes);
     hn::Store(e.at, d, centre + 3 * lanes);
-    for (std::size_t i = 0; i < kVectors * lanes && begin + i < count; ++i) leaves[(begin + i) * step] = -1 - centre[i];
+    for (std::size_t i = 0; i < kVectors * lanes && begin + i < count; ++i) leaves[begin + i] = -1 - centre[i];
   }
   return true;
 #else
-  (void)forest, (void)tree, (void)patches, (void)step, (void)leaves;
+  (void)forest, (void)tree, (void)patches, (void)leaves;
   return false;
 #endif
 }
@@ -123,11 +124,11 @@ namespace houghstream {
 
 HWY_EXPORT(walk);
 
-bool walk_wide(const Forest& forest, int tree, const WalkingPatches& patches, std::size_t step, std::int32_t* leaves) {
+bool walk_wide(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
   const auto rows = static_cast<std::int64_t>(patches.image->height()) + 2 * FeatureImage::kPad;
   if (rows * patches.image->row_stride() > INT32_MAX || forest.nodes.empty()) return false;
   if (forest.nodes.size() > static_cast<std::size_t>(INT32_MAX) / sizeof(TreeNode)) return false;
-  return HWY_DYNAMIC_DISPATCH(walk)(forest, tree, patches, step, leaves);
+  return HWY_DYNAMIC_DISPATCH(walk)(forest, tree, patches, leaves);
 }
 
 }  // namespace houghstream

@@ -37,10 +37,10 @@ void add_cluster(const Eigen::Vector3f& centre, float area, PatchGrid& patches) 
 
 std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
   const Forest forest = centre_forest();
-  PatchLeaves leaves;
-  leaves.leaves.assign(patches.size(), 0);
-  leaves.probabilities.assign(patches.size(), 1.0F);
-  const HoughSpace space = cast_votes(forest, 0, patches, leaves, kCamera, {});
+  const std::vector<std::int32_t> leaves(patches.size(), 0);
+  PatchBeliefs beliefs(forest, 1, 0.0F);
+  beliefs.note(0, {0, patches.size(), 0}, leaves.data());
+  const HoughSpace space = cast_votes(forest, 0, patches, beliefs, kCamera, {});
   return find_maxima(forest, space, patches, kCamera, least_mass, {});
 }
 

@@ -27,10 +27,10 @@ HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points
   PatchGrid patches;
   patches.point_camera = points;
   patches.x.resize(points.size());
-  PatchLeaves leaves;
-  leaves.leaves.assign(points.size() * forest.roots.size(), 0);
-  leaves.probabilities = class_probabilities(forest, leaves.leaves, 1);
-  return cast_votes(forest, 0, patches, leaves, kCamera, settings);
+  const std::vector<std::int32_t> leaves(points.size() * forest.roots.size(), 0);
+  PatchBeliefs beliefs(forest, 1, settings.min_class_share);
+  beliefs.note(0, {0, points.size(), 0}, leaves.data());
+  return cast_votes(forest, 0, patches, beliefs, kCamera, settings);
 }
 
 std::size_t cell_of(const HoughSpace& space, std::uint32_t vote) {
@@ -98,18 +98,6 @@ TEST(Voting, SmoothingKeepsTheWeight) {
   for (const float value : space.image) sum += value;
   EXPECT_NEAR(sum, 0.7F, 1e-4F);
   EXPECT_LT(*std::max_element(space.image.begin(), space.image.end()), 0.35F);
-}
-
-TEST(Voting, ProbabilitiesAreMeansOverTheTrees) {
-  Forest forest = one_leaf({0, 0, 0}, 0.9F);
-  forest.roots = {-1, -2};
-  forest.leaves = {0, 1, 1};  // the second leaf knows background only
-  std::vector<std::int32_t> leaves;
-  for (int p = 0; p < 3000; ++p) leaves.insert(leaves.end(), {0, p % 2});
-  const std::vector<float> serial = class_probabilities(forest, leaves, 1);
-  EXPECT_FLOAT_EQ(serial[2000], 0.9F);
-  EXPECT_FLOAT_EQ(serial[2001], 0.45F);
-  EXPECT_EQ(serial, class_probabilities(forest, leaves, 3));
 }
 
 TEST(Voting, TheKernelEndsAtItsReach) {

@@ -11,21 +11,30 @@
 namespace houghstream {
 namespace {
 
-TEST(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
-  const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
-  RgbdFrame room = toy::room(5);
-  toy::put_tile(1, 150, 100, 0.8, room);
-  std::vector<FeatureImage> features;
-  PatchGrid patches;
-  for (const FeatureLevel& level : feature_levels(forest.features)) {
-    const WorkingFrame frame = make_working_frame(room, level, forest.features);
-    add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, 2, patches);
-    features.push_back(compute_features(frame, forest.features, 2));
+/// All leaves of a grid, patch by patch, as find_leaves and as find_leaves_readably tell them; 0 threads = readably.
+std::vector<std::int32_t> leaves_of(const Forest& forest, const std::vector<FeatureImage>& features,
+                                    const PatchGrid& patches, int threads) {
+  const std::size_t trees = forest.roots.size();
+  const std::vector<PatchRun> runs = patch_runs(patches);
+  std::vector<std::int32_t> leaves(patches.size() * trees, -1);
+  const auto visit = [&](std::size_t run, const std::int32_t* of_run) {
+    for (std::size_t i = 0; i < runs[run].count * trees; ++i) {
+      const std::size_t patch = runs[run].first + i % runs[run].count;
+      leaves[patch * trees + i / runs[run].count] = of_run[i];
+    }
+  };
+  if (threads > 0) {
+    find_leaves(forest, features, patches, runs, threads, visit);
+  } else {
+    find_leaves_readably(forest, features, patches, runs, visit);
   }
-  ASSERT_GT(patches.size(), 4000U);
-  for (const int threads : {1, 2}) {
-    const std::vector<std::int32_t> leaves = assign_leaves(forest, features, patches, threads);
-    ASSERT_EQ(leaves.size(), patches.size() * forest.roots.size());
+  return leaves;
+}
+
+void expect_leaves_of_find_leaf(const Forest& forest, const std::vector<FeatureImage>& features,
+                                const PatchGrid& patches) {
+  for (const int threads : {0, 1, 2}) {
+    const std::vector<std::int32_t> leaves = leaves_of(forest, features, patches, threads);
     for (std::size_t p = 0; p < patches.size(); ++p) {
       for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
         const FeatureImage& image = features[patches.level[p]];
@@ -35,6 +44,60 @@ TEST(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
       }
     }
   }
+}
+
+class Traversal : public ::testing::Test {
+ protected:
+  Traversal() { toy::put_tile(1, 150, 100, 0.8, room); }
+
+  const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  RgbdFrame room = toy::room(5);
+};
+
+TEST_F(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
+  std::vector<FeatureImage> features;
+  PatchGrid patches;
+  for (const FeatureLevel& level : feature_levels(forest.features)) {
+    const WorkingFrame frame = make_working_frame(room, level, forest.features);
+    add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, 2, patches);
+    features.push_back(compute_features(frame, forest.features, 2));
+  }
+  ASSERT_GT(patches.size(), 4000U);
+  ASSERT_TRUE(patches.squares.empty());
+  expect_leaves_of_find_leaf(forest, features, patches);
+}
+
+TEST_F(Traversal, SoDoPatchesAtEveryPixelAndThoseWithGaps) {
+  const FeatureLevel level = feature_levels(forest.features)[0];
+  const WorkingFrame frame = make_working_frame(room, level, forest.features);
+  std::vector<FeatureImage> features;
+  features.push_back(compute_features(frame, forest.features, 2));
+  PatchSettings pixels = forest.patch;
+  pixels.unit = 1.0F;
+  for (const int stride : {1, 3}) {
+    PatchGrid patches;
+    add_patches_everywhere(frame, level, pixels, stride, patches);
+    EXPECT_EQ(patches.squares.empty(), stride > 1);
+    expect_leaves_of_find_leaf(forest, features, patches);
+  }
+}
+
+TEST(PatchGrid, ItsSquaresHoldAllPatchesRowByRow) {
+  WorkingFrame frame;
+  frame.filled_depth = cv::Mat(40, 70, CV_32FC1, cv::Scalar(1.0));
+  PatchGrid grid;
+  add_patches_everywhere(frame, {}, PatchSettings{}, 1, grid);
+  ASSERT_EQ(grid.size(), 40U * 70U);
+  ASSERT_EQ(grid.squares.size(), 6U);
+  std::size_t next = 0;
+  for (const PatchRun& square : patch_runs(grid)) {
+    EXPECT_EQ(square.first, next);
+    for (std::size_t i = 0; i < square.count; ++i, ++next) {
+      EXPECT_EQ(grid.x[next], grid.x[square.first] + static_cast<int>(i) % square.width);
+      EXPECT_EQ(grid.y[next], grid.y[square.first] + static_cast<int>(i) / square.width);
+    }
+  }
+  EXPECT_EQ(next, grid.size());
 }
 
 TEST(PatchGrid, StandsOnDepthThatItsLevelHolds) {

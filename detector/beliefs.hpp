@@ -1,0 +1,62 @@
+#pragma once
+
+#include <hwy/cache_control.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+#include "detector/features/feature_image.hpp"
+#include "detector/forest/forest.hpp"
+#include "detector/forest/traversal.hpp"
+
+namespace houghstream {
+
+/// Patches of one run that believe in one class, in the grid's order.
+struct Believers {
+  std::vector<std::uint32_t> patches;  ///< into the PatchGrid
+  std::vector<std::uint32_t> ends;     ///< for each, where its entries end; they begin where those before it end
+  std::vector<std::uint32_t> entries;  ///< into Forest::leaf_classes: what its leaves know of the class, tree by tree
+};
+
+/// Who believes in which class. Most patches believe in none: voting does not see them.
+class PatchBeliefs {
+ public:
+  PatchBeliefs() = default;
+  /// A patch believes in a class from a share of `least_share` on: p(class | patch), the mean over the trees. The
+  /// forest must outlive the beliefs.
+  PatchBeliefs(const Forest& forest, std::size_t runs, float least_share);
+
+  /// Notes who believes among the patches of a run. `leaves`: see LeafVisitor. Different runs may be noted at the same
+  /// time.
+  void note(std::size_t run, const PatchRun& patches, const std::int32_t* leaves);
+
+  /// Calls visit(patch, entries, count) for every patch that believes in the class, in the grid's order.
+  template <typename Visit>
+  void for_believers(int class_index, const Visit& visit) const {
+    const std::size_t classes = forest_ != nullptr ? forest_->classes.size() : 0;
+    for (std::size_t b = static_cast<std::size_t>(class_index); b < believers_.size(); b += classes) {
+      const Believers& believers = believers_[b];
+      std::uint32_t begin = 0;
+      for (std::size_t i = 0; i < believers.patches.size(); ++i) {
+        for (std::uint32_t e = begin; e < believers.ends[i]; ++e) {  // the caller's cache misses overlap
+          hwy::Prefetch(forest_->votes.data() + forest_->leaf_classes[believers.entries[e]].first_vote);
+        }
+        visit(believers.patches[i], believers.entries.data() + begin, believers.ends[i] - begin);
+        begin = believers.ends[i];
+      }
+    }
+  }
+
+ private:
+  const Forest* forest_ = nullptr;
+  float least_share_ = 0.0F;
+  std::vector<float> most_certain_;
+  std::vector<Believers> believers_;  // [run * classes + class]
+};
+
+/// What the patches believe, by the engine that the settings name. `features`: one image per level.
+PatchBeliefs classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+                      const DetectionSettings& settings);
+
+}  // namespace houghstream

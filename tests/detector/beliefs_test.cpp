@@ -1,0 +1,75 @@
+#include "detector/beliefs.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+/// Two trees; leaf 0 is certain of the first class by 0.8 and of the second one by 0.2, leaf 1 of the second by 0.6,
+/// leaf 2 knows background only.
+Forest three_leaves() {
+  Forest forest;
+  forest.classes.resize(2);
+  forest.roots = {-1, -2};
+  forest.leaves = {0, 2, 3, 3};
+  forest.leaf_classes.resize(3);
+  forest.leaf_classes[0].probability = 0.8F;
+  forest.leaf_classes[1].probability = 0.2F;
+  forest.leaf_classes[1].class_index = 1;
+  forest.leaf_classes[2].probability = 0.6F;
+  forest.leaf_classes[2].class_index = 1;
+  return forest;
+}
+
+struct Belief {
+  std::uint32_t patch;
+  std::vector<std::uint32_t> entries;
+};
+
+std::vector<Belief> beliefs_in(int class_index, const PatchBeliefs& beliefs) {
+  std::vector<Belief> found;
+  beliefs.for_believers(class_index, [&](std::uint32_t patch, const std::uint32_t* entries, std::uint32_t count) {
+    found.push_back({patch, {entries, entries + count}});
+  });
+  return found;
+}
+
+TEST(Beliefs, APatchBelievesByTheMeanOfItsTrees) {
+  const Forest forest = three_leaves();
+  const std::vector<std::int32_t> first = {0, 0, 2, 1, 2, 2};  // tree by tree: patches see (0,1), (0,2) and (2,2)
+  const std::vector<std::int32_t> second = {0, 0};             // (0,0)
+  PatchBeliefs beliefs(forest, 2, 0.35F);
+  beliefs.note(1, {3, 1, 0}, second.data());
+  beliefs.note(0, {0, 3, 0}, first.data());
+  const std::vector<Belief> one = beliefs_in(0, beliefs);
+  ASSERT_EQ(one.size(), 3U);
+  EXPECT_EQ(one[0].patch, 0U);
+  EXPECT_EQ(one[0].entries, (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(one[1].patch, 1U);
+  EXPECT_EQ(one[2].patch, 3U);
+  EXPECT_EQ(one[2].entries, (std::vector<std::uint32_t>{0, 0}));
+  const std::vector<Belief> other = beliefs_in(1, beliefs);  // 0.4, 0.1, 0 and 0.2
+  ASSERT_EQ(other.size(), 1U);
+  EXPECT_EQ(other[0].patch, 0U);
+  EXPECT_EQ(other[0].entries, (std::vector<std::uint32_t>{1, 2}));
+}
+
+TEST(Beliefs, AShareThatIsJustReachedIsEnough) {
+  const Forest forest = three_leaves();
+  const std::vector<std::int32_t> leaves = {0, 2};
+  const float share = 0.8F / 2.0F;
+  PatchBeliefs beliefs(forest, 1, share);
+  beliefs.note(0, {0, 1, 0}, leaves.data());
+  EXPECT_EQ(beliefs_in(0, beliefs).size(), 1U);
+  PatchBeliefs stricter(forest, 1, std::nextafter(share, 1.0F));
+  stricter.note(0, {0, 1, 0}, leaves.data());
+  EXPECT_TRUE(beliefs_in(0, stricter).empty());
+}
+
+TEST(Beliefs, FewBeliefsAreNeeded) {
+  const PatchBeliefs none;
+  EXPECT_TRUE(beliefs_in(0, none).empty());
+}
+
+}  // namespace
+}  // namespace houghstream
