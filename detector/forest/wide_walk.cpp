@@ -65,7 +65,8 @@ HWY_INLINE void take_step(const TreeNode* nodes, const Pixels& pixels, Walkers& 
   const Ints difference = hn::Sub(p1, hn::IfThenZeroElse(alone, p2));
   const Ints value = hn::IfThenElse(wraps, signed_byte<0>(difference), difference);
   const auto left = hn::Lt(value, hn::ShiftRight<16>(rule));
-  const Ints next = hn::IfThenElse(left, hn::GatherOffset(d, words + 2, node), hn::GatherOffset(d, words + 3, node));
+  const Ints child = hn::IfThenElse(left, hn::Set(d, offsetof(TreeNode, left)), hn::Set(d, offsetof(TreeNode, right)));
+  const Ints next = hn::GatherOffset(d, words, hn::Add(node, child));
   w.at = hn::IfThenElse(arrived, w.at, next);
 }
 
