@@ -122,7 +122,7 @@ HWY_INLINE void for_patches(const Row* rows, int count, const Visit& visit) {
   }
 }
 
-/// Rows that were written behind the last ones of a depth: a crowd of it, or at the end of their way.
+/// What becomes of rows that were written behind a depth's last ones: leaves, walkers, or a crowd of that depth.
 HWY_INLINE void settle(const Walk& walk, std::int32_t node, int rows, Depth& depth, Walkers& walkers) {
   const Row* begin = depth.rows.data() + depth.row_count;
   if (node < 0) {

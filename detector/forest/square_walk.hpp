@@ -9,7 +9,7 @@
 namespace houghstream {
 
 /// Leaf of each patch of a square in one tree, row by row, from what copy_planes made of the square. Node by node: a
-/// test is made of whole rows of patches at once, and only the few that stay together no longer walk one by one. The
+/// test is made of whole rows of patches at once; only where few are left at a node do they walk on one by one. The
 /// leaves are those of find_leaf.
 void walk_square(const SquareForest& forest, int tree, const PatchSquare& square,
                  const std::vector<std::uint8_t>& planes, std::int32_t* leaves);

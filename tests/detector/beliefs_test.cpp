@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace houghstream {
 namespace {
 
@@ -66,7 +68,7 @@ TEST(Beliefs, AShareThatIsJustReachedIsEnough) {
   EXPECT_TRUE(beliefs_in(0, stricter).empty());
 }
 
-TEST(Beliefs, FewBeliefsAreNeeded) {
+TEST(Beliefs, NobodyBelievesBeforeARunIsNoted) {
   const PatchBeliefs none;
   EXPECT_TRUE(beliefs_in(0, none).empty());
 }
