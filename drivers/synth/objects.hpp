@@ -34,6 +34,10 @@ TaughtObject make_taught_object(int id);
 /// "bowl" -> 1. Throws InputError listing the known names.
 int taught_object_id(const std::string& name);
 
+/// An instance of class 1 to 4 that is never taught: of the taught one's colours in another size, or of its size in
+/// other colours. Shape and print follow the seed. Throws InputError for another class.
+ThingPtr make_other_instance(int class_id, std::uint64_t seed);
+
 /// Household things that are never taught. `kind` 0 to kDistractorKinds-1; shape and print follow the seed.
 inline constexpr int kDistractorKinds = 16;
 ThingPtr make_distractor(int kind, std::uint64_t seed);

@@ -17,7 +17,4 @@ struct Room {
 /// Walls, floor, table and furniture. The back wall is at +y; the camera's side is -y.
 Room make_room(RoomStyle style, std::uint64_t seed);
 
-/// A lamp or window and a weak overhead light, ambient light, and the camera's picture settings.
-void set_light_and_photo(World& world, std::uint64_t seed);
-
 }  // namespace houghstream

@@ -11,7 +11,7 @@ namespace houghstream {
 namespace {
 
 // Aspects of a world, each with a seed of its own (aspect_seed).
-enum Aspect : std::uint64_t { kRoom = 1, kLight, kCameraPath, kLayout, kFirstDistractor };
+enum Aspect : std::uint64_t { kRoom = 1, kLight, kCameraPath, kLayout, kFirstDistractor, kFirstInstance = 1000 };
 
 constexpr int kMonitor = 13;
 constexpr int kKeyboard = 9;
@@ -51,6 +51,16 @@ class TableSetter {
   Random random_;
 };
 
+// Bowls, cartons, mugs and cans that were never taught, as a real kitchen has them.
+void add_other_instances(TableSetter& setter, int count, std::uint64_t seed) {
+  const int first = Random(aspect_seed(seed, kFirstInstance - 1)).below(kClassCount);
+  for (int i = 0; i < count; ++i) {
+    const ThingPtr thing = make_other_instance(1 + (first + i) % kClassCount,
+                                               aspect_seed(seed, kFirstInstance + static_cast<std::uint64_t>(i)));
+    setter.stand(thing, setter.region(-0.95, 0.95, -0.85, 0.95), M_PI, 0);
+  }
+}
+
 void add_distractors(TableSetter& setter, RoomStyle style, int count, std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     int kind = setter.random().below(kDistractorKinds);
@@ -74,11 +84,11 @@ void add_many_objects(TableSetter& setter, FurtherClasses further) {
 
 }  // namespace
 
-Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, std::uint64_t seed) {
+Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed) {
   Scene scene{name, seed, {}, make_trajectory(aspect_seed(seed, kCameraPath))};
   Room room = make_room(style, aspect_seed(seed, kRoom));
   scene.world.items = std::move(room.items);
-  set_light_and_photo(scene.world, aspect_seed(seed, kLight));
+  set_light_and_photo(scene.world, time, aspect_seed(seed, kLight));
   TableSetter setter(scene.world, room.table_half, aspect_seed(seed, kLayout));
   if (style == RoomStyle::kDesk)
     setter.stand(make_distractor(kMonitor, aspect_seed(seed, kFirstDistractor + 500)),
@@ -90,6 +100,7 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
   }
   const int first = setter.random().below(kClassCount);
   for (int i = 0; i < clutter.look_alikes; ++i) setter.stand_object(kClassCount + 1 + (first + i) % kClassCount);
+  add_other_instances(setter, clutter.other_instances, seed);
   add_distractors(setter, style, clutter.distractors, seed);
   return scene;
 }
@@ -101,36 +112,50 @@ struct Plan {
   WorldUse use;
   std::uint64_t world;  ///< number for world_seed()
   RoomStyle style;
+  TimeOfDay time;
   Clutter clutter;
 };
 
 constexpr std::uint64_t kDevelopment = 1ULL << 40U;  // first of its worlds, far beyond the numbers of training data
 constexpr WorldUse kTest = WorldUse::kTest;
 constexpr WorldUse kTraining = WorldUse::kTraining;
+constexpr TimeOfDay kDay = TimeOfDay::kDay;
+constexpr TimeOfDay kEvening = TimeOfDay::kEvening;
 constexpr FurtherClasses kNone = FurtherClasses::kNone;
 constexpr FurtherClasses kOdd = FurtherClasses::kOddIds;
 constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
 
 constexpr std::array<Plan, 13> kPlans = {
-    {{kTestScenes[0], kTest, 0, RoomStyle::kTable, {true, 1, 14, kNone}},
-     {kTestScenes[1], kTest, 1, RoomStyle::kTable, {true, 2, 16, kNone}},
-     {kTestScenes[2], kTest, 2, RoomStyle::kDesk, {true, 1, 14, kNone}},
-     {kTestScenes[3], kTest, 3, RoomStyle::kDesk, {true, 2, 18, kNone}},
-     {kTestScenes[4], kTest, 4, RoomStyle::kKitchen, {true, 1, 20, kNone}},
-     {kTestScenes[5], kTest, 5, RoomStyle::kMeeting, {true, 1, 16, kNone}},
-     {kTwentyClassScenes[0], kTest, 20, RoomStyle::kTable, {true, 1, 12, kOdd}},
-     {kTwentyClassScenes[1], kTest, 21, RoomStyle::kMeeting, {true, 1, 14, kEven}},
-     {kDevelopmentScenes[0], kTraining, kDevelopment, RoomStyle::kTable, {true, 2, 16, kNone}},
-     {kDevelopmentScenes[1], kTraining, kDevelopment + 1, RoomStyle::kDesk, {true, 1, 16, kNone}},
-     {kDevelopmentScenes[2], kTraining, kDevelopment + 2, RoomStyle::kKitchen, {true, 1, 18, kNone}},
-     {kTwentyClassDevelopmentScenes[0], kTraining, kDevelopment + 20, RoomStyle::kMeeting, {true, 1, 14, kOdd}},
-     {kTwentyClassDevelopmentScenes[1], kTraining, kDevelopment + 21, RoomStyle::kTable, {true, 1, 12, kEven}}}};
+    {{kTestScenes[0], kTest, 0, RoomStyle::kTable, kDay, {true, 1, 8, 8, kNone}},
+     {kTestScenes[1], kTest, 1, RoomStyle::kTable, kEvening, {true, 2, 8, 10, kNone}},
+     {kTestScenes[2], kTest, 2, RoomStyle::kDesk, kDay, {true, 1, 8, 8, kNone}},
+     {kTestScenes[3], kTest, 3, RoomStyle::kDesk, kEvening, {true, 2, 8, 12, kNone}},
+     {kTestScenes[4], kTest, 4, RoomStyle::kKitchen, kDay, {true, 1, 8, 14, kNone}},
+     {kTestScenes[5], kTest, 5, RoomStyle::kMeeting, kEvening, {true, 1, 8, 10, kNone}},
+     {kTwentyClassScenes[0], kTest, 20, RoomStyle::kTable, kDay, {true, 1, 0, 12, kOdd}},
+     {kTwentyClassScenes[1], kTest, 21, RoomStyle::kMeeting, kDay, {true, 1, 0, 14, kEven}},
+     {kDevelopmentScenes[0], kTraining, kDevelopment, RoomStyle::kTable, kDay, {true, 2, 8, 10, kNone}},
+     {kDevelopmentScenes[1], kTraining, kDevelopment + 1, RoomStyle::kDesk, kEvening, {true, 1, 8, 10, kNone}},
+     {kDevelopmentScenes[2], kTraining, kDevelopment + 2, RoomStyle::kKitchen, kDay, {true, 1, 8, 12, kNone}},
+     {kTwentyClassDevelopmentScenes[0],
+      kTraining,
+      kDevelopment + 20,
+      RoomStyle::kMeeting,
+      kDay,
+      {true, 1, 0, 14, kOdd}},
+     {kTwentyClassDevelopmentScenes[1],
+      kTraining,
+      kDevelopment + 21,
+      RoomStyle::kTable,
+      kDay,
+      {true, 1, 0, 12, kEven}}}};
 
 }  // namespace
 
 Scene make_named_scene(const std::string& name) {
   for (const Plan& plan : kPlans) {
-    if (name == plan.name) return make_scene(name, plan.style, plan.clutter, world_seed(plan.use, plan.world));
+    if (name == plan.name)
+      return make_scene(name, plan.style, plan.clutter, plan.time, world_seed(plan.use, plan.world));
   }
   fail("scene \"{}\": expected one of {}, {}, or for choosing settings {}, {}", name, fmt::join(kTestScenes, ", "),
        fmt::join(kTwentyClassScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
@@ -140,7 +165,7 @@ Scene make_named_scene(const std::string& name) {
 Scene make_background_scene(int index, std::uint64_t seed) {
   const std::uint64_t own = world_seed(WorldUse::kTraining, seed * 100000U + static_cast<std::uint64_t>(index));
   const auto style = static_cast<RoomStyle>(index % kRoomStyles);
-  return make_scene("background", style, {false, 0, 16, kNone}, own);
+  return make_scene("background", style, {false, 0, 0, 16, kNone}, TimeOfDay::kDay, own);
 }
 
 }  // namespace houghstream

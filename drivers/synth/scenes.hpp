@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "drivers/synth/light.hpp"
 #include "drivers/synth/room.hpp"
 #include "drivers/synth/seeds.hpp"
 #include "drivers/synth/trajectory.hpp"
@@ -24,11 +25,12 @@ enum class FurtherClasses : std::uint8_t { kNone, kOddIds, kEvenIds };
 struct Clutter {
   bool taught_objects = false;                     ///< the four classes, once each
   int look_alikes = 0;                             ///< how many of the second instances (ids 5-8)
+  int other_instances = 0;                         ///< never taught, of the kinds of the four (make_other_instance)
   int distractors = 10;                            ///< how many things are tried; those that find no place are left out
   FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each
 };
 
-Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, std::uint64_t seed);
+Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed);
 
 /// The six test scenes, after the six of the paper (Section 6).
 inline constexpr std::array<const char*, 6> kTestScenes = {"table_small_1", "table_small_2",   "desk_1",

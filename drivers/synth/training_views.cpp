@@ -34,7 +34,7 @@ Turntable::Turntable(const TurntableSettings& settings, std::uint64_t seed) : se
     const std::uint64_t own = world_seed(WorldUse::kTraining, number);
     World world;
     world.items = make_room(static_cast<RoomStyle>(pitch % kRoomStyles), aspect_seed(own, 1)).items;
-    set_light_and_photo(world, aspect_seed(own, 2));
+    set_light_and_photo(world, TimeOfDay::kDay, aspect_seed(own, 2));
     world.focus_radius_m = 0.5;
     Random random(aspect_seed(own, 3));
     Placed disc{make_turntable_disc(random), Eigen::Isometry3d::Identity(), 0, true};
