@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "detector/evidence/view_alignment.hpp"
 #include "detector/hypotheses.hpp"
 #include "detector/scale_space_search.hpp"
 #include "detector/seen_patches.hpp"
@@ -16,18 +17,18 @@ namespace {
 ViewFit best_fit(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame,
                  const std::vector<std::uint32_t>& forgotten) {
   constexpr int kViews = 8;
-  const auto value = [](const ViewFit& fit) {
-    return fit.visible + 0.5F * fit.unknown - fit.seen_through + 0.5F * fit.likeness;
-  };
   ViewFit best;
+  std::uint32_t best_view = 0;
   int compared = 0;
   for (const auto& [view, weight] : hypothesis.views) {
     if (compared == kViews) break;
     if (std::find(forgotten.begin(), forgotten.end(), view) != forgotten.end()) continue;
     const ViewFit fit = fit_view(forest.views[view], hypothesis.centre_camera, frame);
-    if (compared++ == 0 || value(fit) > value(best)) best = fit;
+    if (compared++ != 0 && agreement(fit) <= agreement(best)) continue;
+    best = fit;
+    best_view = view;
   }
-  return best;
+  return compared == 0 ? best : align_view(forest.views[best_view], hypothesis.centre_camera, best, frame);
 }
 
 /// Votes say which patches belong to the object, depth says where the remembered view is not hidden: their errors are
@@ -41,18 +42,18 @@ cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const 
 }
 
 Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hypothesis& hypothesis,
-                       const SeenPatches& seen, const RgbdFrame& frame, int max_rotations,
+                       const SeenPatches& seen, const LabFrame& frame, int max_rotations,
                        const std::vector<std::uint32_t>& forgotten) {
   Candidate candidate;
   Detection& detection = candidate.detection;
   candidate.evidence.mass_share = hypothesis.mass / object.expected_mass;
-  detection.box_px = backprojected_box(forest, hypothesis, seen.grid, frame.camera);
+  detection.box_px = backprojected_box(forest, hypothesis, seen.grid, frame.frame.camera);
   detection.score = vote_score(candidate.evidence.mass_share);
   if (forest.scoring == Scoring::kEvidence) {
     ViewFit& fit = candidate.evidence.fit;
-    fit = best_fit(forest, hypothesis, {frame, seen.lab, forest.features.image_scale}, forgotten);
+    fit = best_fit(forest, hypothesis, frame, forgotten);
     detection.score = score(object.score_model, candidate.evidence);
-    detection.box_px = visible_box(detection.box_px, fit.visible_box_px, frame.camera);
+    detection.box_px = visible_box(detection.box_px, fit.visible_box_px, frame.frame.camera);
   }
   detection.class_id = object.class_id;
   detection.class_name = object.name;
@@ -68,7 +69,7 @@ Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hy
 }
 
 std::vector<Candidate> class_candidates(const Forest& forest, int class_index, const SeenPatches& seen,
-                                        const RgbdFrame& frame, const DetectionSettings& settings,
+                                        const LabFrame& frame, const DetectionSettings& settings,
                                         const std::vector<std::uint32_t>& forgotten) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
   const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings);
@@ -89,9 +90,10 @@ std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& fr
     return search_scale_space(forest, frame, settings, clock);
   }
   const SeenPatches seen = classify_patches(forest, frame, settings, clock);
+  const LabFrame in_lab = make_lab_frame(frame, seen.colour, forest.features.image_scale);
   std::vector<std::vector<Candidate>> by_class(forest.classes.size());
   parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {  // Section 2
-    by_class[static_cast<std::size_t>(c)] = class_candidates(forest, c, seen, frame, settings, forgotten);
+    by_class[static_cast<std::size_t>(c)] = class_candidates(forest, c, seen, in_lab, settings, forgotten);
   });
   std::vector<Candidate> all;
   for (std::vector<Candidate>& candidates : by_class) {

@@ -63,7 +63,7 @@ struct TrainingSettings {
   int max_leaf_views = 12;       ///< remembered training views per leaf and class
   float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres
   Scoring scoring = Scoring::kEvidence;
-  int validation_frames = 120;  ///< composed pictures on which the score learns what it is worth
+  int validation_frames = 200;  ///< composed pictures on which the score learns what it is worth
   std::uint64_t seed = 1;
   int threads = 2;
 };

@@ -44,7 +44,7 @@ Profile gall() {
   profile.training.max_leaf_votes = 32;
   profile.detection.stride = 1;
   profile.detection.threshold = 0.1F;
-  profile.detection.min_mass_share = 0.1F;
+  profile.detection.min_mass_share = 0.05F;
   profile.detection.min_class_share = 0.2F;
   set_scale_handling(profile, "five");
   return profile;

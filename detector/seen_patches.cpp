@@ -1,6 +1,5 @@
 #include "detector/seen_patches.hpp"
 
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "detector/features/features.hpp"
@@ -23,7 +22,7 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
   clock.mark("detect.features");
   SeenPatches seen;
   seen.hough_camera = working[0].camera;
-  cv::cvtColor(working[0].colour, seen.lab, cv::COLOR_BGR2Lab);
+  seen.colour = working[0].colour;
   for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
     add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
   }

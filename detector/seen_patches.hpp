@@ -13,7 +13,7 @@ struct SeenPatches {
   PatchGrid grid;
   PatchBeliefs beliefs;
   Camera hough_camera;  ///< in whose pixels Hough spaces are laid out: that of the level for near surfaces
-  cv::Mat lab;          ///< of the working frame for near surfaces
+  cv::Mat colour;       ///< of the working frame for near surfaces, BGR
 };
 
 /// Closes the stages "detect.resize", "detect.features" and "detect.forest" on the clock.

@@ -34,14 +34,18 @@ double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights,
 }  // namespace
 
 ScoreTerms score_terms(const Evidence& evidence) {
+  const ViewFit& fit = evidence.fit;
+  const float foreign = std::min(fit.foreign_colour, 1.0F);
   return {1.0F,
           std::log(std::max(evidence.mass_share, 1e-4F)),
-          std::log(1.02F - evidence.fit.hidden),
-          evidence.fit.seen_through,
-          evidence.fit.unknown,
-          evidence.fit.continued,
-          evidence.fit.likeness,
-          evidence.fit.foreign_colour};
+          std::log(1.02F - fit.hidden),
+          fit.seen_through,
+          fit.unknown,
+          fit.continued,
+          fit.likeness,
+          foreign,
+          foreign * foreign,
+          fit.unevenness};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {

@@ -12,15 +12,17 @@ struct Evidence {
 };
 
 /// The evidence as the terms that ScoreModel::weights multiply: 1, the logarithms of the mass and of what is not
-/// hidden (half an object has half the mass), and the shares that are seen through and unknown.
+/// hidden (half an object has half the mass), the rest of the fit as it is; foreign colour, of which light
+/// makes a little, also squared.
 ScoreTerms score_terms(const Evidence& evidence);
 
 /// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
 float score(const ScoreModel& model, const Evidence& evidence);
 
-/// Confidence from votes alone: it rises with their mass and is 0.1 at a tenth of the expected mass.
+/// Confidence from votes alone: it rises with their mass and is 0.1 at a twentieth of the expected mass: of
+/// an object visible by a tenth, the least that counts as truth, seen half as well as in training.
 inline float vote_score(float mass_share) {
-  return mass_share / (mass_share + 0.9F);
+  return mass_share / (mass_share + 0.45F);
 }
 
 /// A judged hypothesis.

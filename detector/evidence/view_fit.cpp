@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
@@ -122,6 +123,13 @@ cv::Vec3b colour_at(const LabFrame& frame, const cv::Point2f& frame_px) {
 
 }  // namespace
 
+LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
+  cv::Mat lab;
+  cv::blur(colour, lab, cv::Size(3, 3));
+  cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
+  return {frame, lab, scale};
+}
+
 ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
   const Comparison comparison = compare(view, centre_camera, frame.frame);
   const float shift = common_shift(comparison);
@@ -138,6 +146,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
     const bool unknown = std::isnan(e);
     const bool visible = std::abs(e) <= tolerance;
     if (visible) likeness.add(view.appearance.lab[cell], colour_at(frame, comparison.cell_centre(cell)));
+    if (visible) fit.unevenness += std::abs(e) / tolerance;
     ++cells;
     fit.unknown += unknown ? 1.0F : 0.0F;
     fit.visible += visible ? 1.0F : 0.0F;
@@ -148,6 +157,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
     rows.seen[cell / kSide] += unknown || visible ? 1 : 0;
     columns.seen[cell % kSide] += unknown || visible ? 1 : 0;
   }
+  fit.unevenness /= std::max(fit.visible, 1.0F);
   for (float* share : {&fit.visible, &fit.hidden, &fit.seen_through, &fit.unknown}) {
     *share /= static_cast<float>(std::max(cells, 1));
   }

@@ -10,9 +10,12 @@ namespace houghstream {
 /// A frame with its colours as views remember them.
 struct LabFrame {
   const RgbdFrame& frame;
-  cv::Mat lab;         ///< CV_8UC3, smaller than the frame
+  cv::Mat lab;         ///< CV_8UC3, CIE L*a*b*, smaller than the frame
   float scale = 1.0F;  ///< its size over the frame's
 };
+
+/// `colour` is the frame's, BGR, `scale` times its size. Neighbouring pixels are averaged: dim light is noisy.
+LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale);
 
 /// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
 /// surface, the first four of which sum to 1.
@@ -21,6 +24,7 @@ struct ViewFit {
   float hidden = 0.0F;          ///< something is in front of it
   float seen_through = 0.0F;    ///< what is there lies behind: the object cannot be there
   float unknown = 0.0F;         ///< no depth
+  float unevenness = 0.0F;      ///< mean error of the visible depth over the tolerance, 0 to 1
   float continued = 0.0F;       ///< of the rim beside the outline: the surface goes on where the object ends
   float likeness = 0.0F;        ///< correlation of the visible surface's colours with the remembered ones, -1 to 1
   float foreign_colour = 0.0F;  ///< see Likeness

@@ -25,12 +25,13 @@ void put_back(const Composite& composite, std::uint8_t label, RgbdFrame& frame, 
 }
 
 /// The view of a thing that has the object's shape and pattern, but other colours: hues turned, and where there are
-/// none, some put on.
+/// none, some put on; darker or brighter.
 TrainingView recoloured(const TrainingView& view, Random& random) {
   constexpr double kNeutral = 128.0;
   const double angle = random.uniform(0.5 * M_PI, 1.5 * M_PI);
   const double cast_angle = random.uniform(0.0, 2.0 * M_PI);
   const double cast = random.uniform(10.0, 30.0);
+  const double lightness = std::exp2(random.uniform(-1.3, 0.4));
   TrainingView out = view;
   cv::Mat lab;
   cv::cvtColor(view.frame.colour, lab, cv::COLOR_BGR2Lab);
@@ -39,6 +40,7 @@ TrainingView recoloured(const TrainingView& view, Random& random) {
       cv::Vec3b& pixel = lab.at<cv::Vec3b>(y, x);
       const double a = pixel[1] - kNeutral;
       const double b = pixel[2] - kNeutral;
+      pixel[0] = cv::saturate_cast<std::uint8_t>(lightness * pixel[0]);
       pixel[1] = cv::saturate_cast<std::uint8_t>(kNeutral + std::cos(angle) * a - std::sin(angle) * b +
                                                  cast * std::cos(cast_angle));
       pixel[2] = cv::saturate_cast<std::uint8_t>(kNeutral + std::sin(angle) * a + std::cos(angle) * b +
@@ -50,14 +52,25 @@ TrainingView recoloured(const TrainingView& view, Random& random) {
   return out;
 }
 
-/// Puts `count` things that look nearly like objects into the frame.
+/// The view of a thing that looks like the object, but is clearly smaller or larger.
+TrainingView resized(const TrainingView& view, Random& random) {
+  const double size = random.uniform() < 0.5 ? random.uniform(0.5, 0.75) : random.uniform(1.33, 1.8);
+  TrainingView out = view;
+  out.frame.depth = cv::Mat();  // the view's own pixels stay as they are
+  view.frame.depth.convertTo(out.frame.depth, CV_32FC1, size);
+  out.T_camera_object.translation() *= size;
+  return out;
+}
+
+/// Puts things that look nearly like objects into the frame, `count` of each sort.
 void add_look_alikes(const std::vector<const TrainingView*>& objects, int count, const TrainingSettings& settings,
                      ValidationFrame& out, cv::Mat& labels, Random& random) {
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < 2 * count; ++i) {
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     out.look_alikes.push_back(static_cast<std::uint32_t>(index));
-    const std::optional<Composite> composite = make_composite(recoloured(*objects[index], random), out.frame,
-                                                              draw_distance(settings, random), settings, random);
+    const TrainingView other = i % 2 == 0 ? recoloured(*objects[index], random) : resized(*objects[index], random);
+    const std::optional<Composite> composite =
+        make_composite(other, out.frame, draw_distance(settings, random), settings, random);
     if (composite) put_back(*composite, 0, out.frame, labels);
   }
 }
