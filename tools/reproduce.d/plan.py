@@ -2,22 +2,29 @@
 
 import sources
 from planner import Planner
-from variants import FEATURE_SCENE, FEATURES, PROFILES, SCALE_HANDLING, SCALE_SCENES, SCENES, SCENES_20, STRIDES
+from variants import FEATURE_SCENE, FEATURES, OTHER_KERNELS, PROFILES, SCALE_HANDLING, SCALE_SCENES, SCENES, SCENES_20
+from variants import STRIDES
 
 CHECK_DEPTH = ("--check-depth",)
 
 
-def add_studies(planner, source, seed):
-    for what in (name for name in FEATURES if name not in planner.protocol.left_out):
+def add_runs(planner, source, seed):
+    """What the protocol asks to be repeated: training has its luck."""
+    for scene in SCENES:
+        for what in PROFILES:
+            planner.evaluate(what, source, scene, seed, "6")
+    for what in (name for name in FEATURES if name not in (*planner.protocol.left_out, *OTHER_KERNELS)):
+        planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
+
+
+def add_single_studies(planner, source, seed):
+    for what in (name for name in OTHER_KERNELS if name not in planner.protocol.left_out):
         planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
     for scene in SCALE_SCENES:
         for what in ("five", *SCALE_HANDLING):
             planner.evaluate(what, source, scene, seed, "4")
     for stride in STRIDES:
         planner.stride(source, stride, seed)
-    for scene in SCENES:
-        for what in PROFILES:
-            planner.evaluate(what, source, scene, seed, "6")
 
 
 def add_twenty_objects(planner, few):
@@ -29,38 +36,52 @@ def add_twenty_objects(planner, few):
 
 
 def add_comparison(planner, source):
-    """The first run of everything comes first, so that an early report has all figures."""
-    first, *others = planner.protocol.seeds
+    """One run of everything."""
+    first = planner.protocol.seeds[0]
     every = planner.protocol.every
-    add_studies(planner, source, first)
+    add_runs(planner, source, first)
     planner.linemod("linemod", source, SCENES, "6", every, CHECK_DEPTH)
     planner.linemod("linemod_no_check", source, SCENES, "6", every)
+    add_single_studies(planner, source, first)
     planner.hough_pictures(source)
     planner.timings(source)
-    for seed in others:
-        add_studies(planner, source, seed)
 
 
 def add_real(planner, source):
     """Few pictures: even a quick run looks at all."""
-    for seed in planner.protocol.seeds:
-        for what in (name for name in PROFILES if "real_" + name not in planner.protocol.left_out):
-            planner.evaluate(what, source, "scenes", seed, "real", prefix="real_", every=1)
-        planner.evaluate("realtime", source, "clutter", seed, "real", prefix="real_", every=1)
+    first = planner.protocol.seeds[0]
+    planner.evaluate("realtime", source, "scenes", first, "real", prefix="real_", every=1)
+    planner.evaluate("realtime", source, "clutter", first, "real", prefix="real_", every=1)
     planner.linemod("real_linemod", source, ["scenes"], "real", 1, CHECK_DEPTH)
     planner.linemod("real_linemod_no_check", source, ["scenes"], "real", 1)
+    for what in (name for name in ("gall", "paper") if "real_" + name not in planner.protocol.left_out):
+        planner.evaluate(what, source, "scenes", first, "real", prefix="real_", every=1)
+
+
+def add_real_runs(planner, source, seed):
+    for scene in ("scenes", "clutter"):
+        planner.evaluate("realtime", source, scene, seed, "real", prefix="real_", every=1)
 
 
 def make_plan(dataset, folder, real, protocol):
     """`dataset` is rendered, uw or real; `real` is the folder of recorded pictures, or empty."""
     planner = Planner(protocol)
+    source = None
     if dataset == "rendered":
         source = sources.rendered(planner.units)
-        add_comparison(planner, source)
-        if "objects_20" not in protocol.left_out:
-            add_twenty_objects(planner, source)
     elif dataset == "uw":
-        add_comparison(planner, sources.uw(planner.units, folder))
-    if real:
-        add_real(planner, sources.recorded(planner.units, real))
+        source = sources.uw(planner.units, folder)
+    recorded = sources.recorded(planner.units, real) if real else None
+    # The first run of everything comes first, so that an early report has all figures.
+    if source:
+        add_comparison(planner, source)
+    if recorded:
+        add_real(planner, recorded)
+    if dataset == "rendered" and "objects_20" not in protocol.left_out:
+        add_twenty_objects(planner, source)
+    for seed in protocol.seeds[1:]:
+        if source:
+            add_runs(planner, source, seed)
+        if recorded:
+            add_real_runs(planner, recorded, seed)
     return planner.units.all()
