@@ -7,30 +7,19 @@
 
 #include "pipeline/detection.hpp"
 #include "pipeline/random.hpp"
+#include "tests/detector/evidence/remembered_view.hpp"
 #include "toy_data.hpp"
 
 namespace houghstream {
 namespace {
 
-constexpr float kDistance = 0.7F;
+using toy::kDistance;
 const Eigen::Vector3f kCentre(0.0F, 0.0F, kDistance);
-
-/// The first toy view (stripes on a relief) as a forest remembers it.
-TrainedView remembered() {
-  const TrainingView view = toy::training_views().front();
-  const cv::Rect box = cv::boundingRect(view.mask);
-  const double metres = view.frame.camera.metres_per_px(kDistance);
-  const auto side = [&](int px, double centre) { return static_cast<float>((px - 0.5 - centre) * metres); };
-  TrainedView out;
-  out.box = {side(box.x, 159.5), side(box.y, 119.5), side(box.br().x, 159.5), side(box.br().y, 119.5)};
-  out.appearance = remember_appearance(view.frame, view.mask, box, kDistance);
-  return out;
-}
 
 ViewFit fit(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
   cv::Mat lab;
   cv::cvtColor(frame.colour, lab, cv::COLOR_BGR2Lab);
-  return fit_view(remembered(), centre, {frame, lab, 1.0F});
+  return fit_view(toy::remembered_view(), centre, {frame, lab, 1.0F});
 }
 
 RgbdFrame tile_frame() {
@@ -93,6 +82,28 @@ TEST(ViewFit, LikenessIgnoresLightButNotPattern) {
     }
   }
   EXPECT_LT(fit(noise).likeness, 0.3F);
+}
+
+TEST(ViewFit, AnotherReliefIsUnevenWhereItIsStillNear) {
+  const float of_itself = fit(tile_frame()).unevenness;
+  RgbdFrame flat = tile_frame();
+  const cv::Mat mask = toy::training_views().front().mask;
+  flat.depth.setTo(static_cast<float>(cv::mean(flat.depth, mask)[0]), mask);
+  EXPECT_LT(of_itself, 0.1F);
+  EXPECT_GT(fit(flat).unevenness, of_itself + 0.1F);
+  EXPECT_LE(fit(flat).unevenness, 1.0F);
+}
+
+TEST(ViewFit, ColoursAreAveragedOverNeighbours) {
+  const RgbdFrame frame = tile_frame();
+  cv::Mat speck = cv::Mat(9, 9, CV_8UC3, cv::Scalar(90, 90, 90));
+  speck.at<cv::Vec3b>(4, 4) = {180, 180, 180};
+  const LabFrame in_lab = make_lab_frame(frame, speck, 0.5F);
+  cv::Mat lab;
+  cv::cvtColor(cv::Mat(1, 1, CV_8UC3, cv::Scalar(100, 100, 100)), lab, cv::COLOR_BGR2Lab);
+  EXPECT_EQ(in_lab.lab.at<cv::Vec3b>(4, 4), lab.at<cv::Vec3b>(0, 0));
+  EXPECT_EQ(in_lab.lab.at<cv::Vec3b>(3, 5), lab.at<cv::Vec3b>(0, 0));
+  EXPECT_EQ(in_lab.scale, 0.5F);
 }
 
 TEST(ViewFit, OutsideTheFrameNothingIsCompared) {

@@ -59,6 +59,11 @@ TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
   EXPECT_LT(occluded, 0.85 * open);
 }
 
+TEST(ValidationFrames, TwoLookAlikesOfEachSortStandThereToo) {
+  const Toys toys;
+  EXPECT_EQ(compose(toys, 1, 0.0).look_alikes.size(), 4U);
+}
+
 TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
   const Toys toys;
   const Toys untouched;
@@ -71,6 +76,9 @@ TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
   for (std::size_t v = 0; v < toys.objects.size(); ++v) {
     const cv::Mat& view = toys.objects[v]->frame.colour;
     EXPECT_EQ(cv::norm(view, untouched.objects[v]->frame.colour, cv::NORM_INF), 0.0) << "view " << v;
+    const cv::Mat mask = toys.objects[v]->mask;
+    EXPECT_EQ(cv::norm(toys.objects[v]->frame.depth, untouched.objects[v]->frame.depth, cv::NORM_INF, mask), 0.0)
+        << "view " << v;
   }
 }
 

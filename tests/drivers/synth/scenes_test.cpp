@@ -85,6 +85,18 @@ TEST(Scenes, HoldTheFourClassesAmongClutterThatDoesNotTouch) {
   }
 }
 
+TEST(Scenes, HoldOtherInstancesThatTheTruthDoesNotName) {
+  for (const char* name : kTestScenes) {
+    int others = 0;
+    for (const Placed& placed : test_scene(name).world.items) {
+      if (placed.thing->name.rfind("other_", 0) != 0) continue;
+      ++others;
+      EXPECT_EQ(placed.object_id, 0) << name;
+    }
+    EXPECT_GE(others, 4) << name;
+  }
+}
+
 TEST(Scenes, TwoScenesHoldTheTwentyClassesAmongClutter) {
   const std::vector<int> twenty = twenty_class_ids();
   for (const auto& names : {kTwentyClassScenes, kTwentyClassDevelopmentScenes}) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <opencv2/imgproc.hpp>
+
+#include "detector/evidence/view_fit.hpp"
+#include "toy_data.hpp"
+
+namespace houghstream::toy {
+
+inline constexpr float kDistance = 0.7F;
+
+/// The first toy view (stripes on a relief) as a forest remembers it.
+inline TrainedView remembered_view() {
+  const TrainingView view = training_views().front();
+  const cv::Rect box = cv::boundingRect(view.mask);
+  const double metres = view.frame.camera.metres_per_px(kDistance);
+  const auto side = [&](int px, double centre) { return static_cast<float>((px - 0.5 - centre) * metres); };
+  TrainedView out;
+  out.box = {side(box.x, 159.5), side(box.y, 119.5), side(box.br().x, 159.5), side(box.br().y, 119.5)};
+  out.appearance = remember_appearance(view.frame, view.mask, box, kDistance);
+  return out;
+}
+
+}  // namespace houghstream::toy
