@@ -102,7 +102,7 @@ class WholeQuickPlan(Case):
         self.assertNotIn("Not measured", report)
         self.assertRegex(report, "Left out: [^<]*PFH")
         self.assertEqual(re.findall(r'(?:src|href)="(?!data:)', report), [])
-        self.assertEqual(report.count("data:image/png;base64"), 2)
+        self.assertEqual(report.count("data:image/png;base64"), 3)
 
     def check_second_run_does_nothing(self):
         calls = self.calls()

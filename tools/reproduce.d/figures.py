@@ -60,14 +60,22 @@ def feature_bars(results):
     return row_bars(rows, f"AUC, mean of the objects in {FEATURE_SCENE}", "measured here", "paper, its own data")
 
 
+def pictures(results, captions):
+    """The pictures among the units, by name, with what stands below each."""
+    return "".join(
+        f"<figure>{embedded(results.store.file(unit), 'png')}<figcaption>{captions[unit.name]}</figcaption></figure>"
+        for unit in results.units
+        if unit.name in captions
+    )
+
+
 def hough_spaces(results):
     names = {"hough/before.png": "RGB features", "hough/after.png": "with depth value, derivatives and HoG"}
-    pictures = [
-        f"<figure>{embedded(results.store.file(unit), 'png')}<figcaption>{names[unit.name]}</figcaption></figure>"
-        for unit in results.units
-        if unit.name in names
-    ]
-    return "".join(pictures)
+    return pictures(results, names)
+
+
+def failures(results):
+    return pictures(results, {"failures/realtime.png": "The gravest of each scene; red: false, yellow: not found"})
 
 
 def depth_normalisation(results):

@@ -80,7 +80,7 @@ def further_sections(summary, results):
         section(
             "reliability", side_by_side(figures.reliability_chart(found["bins"]), further_tables.reliability(found))
         ),
-        section("failures", further_tables.failures(results)),
+        section("failures", further_tables.failures(results), figures.failures(results)),
     ]
 
 

@@ -44,6 +44,7 @@ def add_comparison(planner, source):
     planner.linemod("linemod_no_check", source, SCENES, "6", every)
     add_single_studies(planner, source, first)
     planner.hough_pictures(source)
+    planner.failure_pictures(source, SCENES)
     planner.timings(source)
 
 

@@ -98,3 +98,9 @@ class Planner:
             self.units.add(
                 f"hough/{name}.png", "3", *command, "--frame", HOUGH_FRAME, "--out", "{out}", what=what, seed=1
             )
+
+    def failure_pictures(self, source, scenes):
+        forest = self.train("realtime", source, 1, "failures")
+        listed = [word for scene in scenes for word in ("--scene", source.scenes[scene])]
+        command = ("hs-failures", "--forest", f"{{{forest}}}", *listed, "--count", 2, "--every", 2)
+        self.units.add("failures/realtime.png", "failures", *command, "--out", "{out}", what="realtime", seed=1)
