@@ -36,7 +36,7 @@ def side_by_side(*content):
 
 def about(settings):
     """What ran, how far, and where."""
-    runs = "one training run" if settings["quick"] else "five training runs, 60 frames a scene"
+    runs = "one training run" if settings["quick"] else "five training runs (kernels, scales and strides: one), 60 frames"
     if settings["units_done"] < settings["units"]:
         runs += f"; so far {settings['units_done']} of {settings['units']} units of work"
     work = f"{settings['dataset']} data, {runs}, {settings['hours']:.1f} h of work"

@@ -8,11 +8,13 @@ from variants import STRIDES
 CHECK_DEPTH = ("--check-depth",)
 
 
-def add_runs(planner, source, seed):
-    """What the protocol asks to be repeated: training has its luck."""
+def add_profiles(planner, source, seed):
     for scene in SCENES:
         for what in PROFILES:
             planner.evaluate(what, source, scene, seed, "6")
+
+
+def add_features(planner, source, seed):
     for what in (name for name in FEATURES if name not in (*planner.protocol.left_out, *OTHER_KERNELS)):
         planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
 
@@ -39,7 +41,8 @@ def add_comparison(planner, source):
     """One run of everything."""
     first = planner.protocol.seeds[0]
     every = planner.protocol.every
-    add_runs(planner, source, first)
+    add_profiles(planner, source, first)
+    add_features(planner, source, first)
     planner.linemod("linemod", source, SCENES, "6", every, CHECK_DEPTH)
     planner.linemod("linemod_no_check", source, SCENES, "6", every)
     add_single_studies(planner, source, first)
@@ -80,9 +83,12 @@ def make_plan(dataset, folder, real, protocol):
         add_real(planner, recorded)
     if dataset == "rendered" and "objects_20" not in protocol.left_out:
         add_twenty_objects(planner, source)
+    # What the protocol asks to be repeated, as training has its luck.
     for seed in protocol.seeds[1:]:
         if source:
-            add_runs(planner, source, seed)
+            add_profiles(planner, source, seed)
         if recorded:
             add_real_runs(planner, recorded, seed)
+    for seed in protocol.seeds[1:] if source else ():
+        add_features(planner, source, seed)
     return planner.units.all()
