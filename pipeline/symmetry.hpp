@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace houghstream {
+
+/// Turns by any angle about the line through `offset` along `axis` leave the object as it is.
+struct ContinuousSymmetry {
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();   ///< unit length, object frame
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< a point of the line, object frame, metres
+};
+
+/// The motions that leave an object looking as before, as in models_info.json of BOP (Hodan et al. 2018). Each discrete
+/// one maps points of the object frame into the object frame, metres; the identity is not listed. Poses that differ by
+/// one of them are the same pose.
+struct Symmetries {
+  std::vector<Eigen::Isometry3d> discrete;
+  std::vector<ContinuousSymmetry> continuous;
+
+  bool empty() const { return discrete.empty() && continuous.empty(); }
+};
+
+}  // namespace houghstream
