@@ -10,6 +10,7 @@
 
 #include "pipeline/frame.hpp"
 #include "pipeline/mesh.hpp"
+#include "pipeline/symmetry.hpp"
 #include "pipeline/training_view.hpp"
 
 namespace houghstream {
@@ -63,7 +64,8 @@ struct BopModels {
   std::filesystem::path folder;
   std::map<int, std::string> names;                      ///< by object id
   std::map<int, double> diameters;                       ///< metres, by object id
-  std::map<int, bool> symmetric;                         ///< has any symmetry in models_info.json
+  std::map<int, Eigen::AlignedBox3d> bounds;             ///< metres, object frame; of those that state min and size
+  std::map<int, Symmetries> symmetries;                  ///< empty for an object without any
   std::filesystem::path mesh_file(int object_id) const;  ///< obj_000001.ply
 };
 /// Throws InputError when files are missing or their numbers absurd.

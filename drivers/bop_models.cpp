@@ -1,4 +1,5 @@
 #include "drivers/bop_dataset.hpp"
+#include "drivers/bop_symmetries.hpp"
 #include "drivers/json_file.hpp"
 #include "pipeline/checks.hpp"
 
@@ -7,11 +8,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has_symmetry(const nlohmann::json& entry) {
-  for (const char* key : {"symmetries_discrete", "symmetries_continuous"}) {
-    if (entry.contains(key) && !entry.at(key).empty()) return true;
-  }
-  return false;
+/// models_info.json in BOP's format: millimetres, but metres here.
+double parse_diameter(const nlohmann::json& entry, const std::string& where) {
+  const double diameter_mm = json_number(entry, "diameter", where);
+  constexpr double kLargest_mm = 1e5;
+  require(diameter_mm > 0.0 && diameter_mm < kLargest_mm, "{}: 'diameter' is {} mm, expected 0 to {}", where,
+          diameter_mm, kLargest_mm);
+  return diameter_mm * 1e-3;
+}
+
+Eigen::AlignedBox3d parse_bounds(const nlohmann::json& entry, const std::string& where) {
+  const auto vector_mm = [&](const std::string& name) {
+    return Eigen::Vector3d(json_number(entry, name + "_x", where), json_number(entry, name + "_y", where),
+                           json_number(entry, name + "_z", where));
+  };
+  const Eigen::Vector3d low_mm = vector_mm("min");
+  const Eigen::Vector3d size_mm = vector_mm("size");
+  require(size_mm.minCoeff() >= 0.0, "{}: 'size' is {} x {} x {} mm, expected none below 0", where, size_mm.x(),
+          size_mm.y(), size_mm.z());
+  return {low_mm * 1e-3, (low_mm + size_mm) * 1e-3};
 }
 
 }  // namespace
@@ -38,12 +53,9 @@ BopModels read_bop_models(const fs::path& models_folder) {
   if (fs::exists(names_file)) models.names = read_bop_names(names_file);
   for (const auto& [object_id, entry] : read_json_by_id(info_file)) {
     const std::string where = fmt::format("{} object {}", info_file.string(), object_id);
-    const double diameter_mm = json_number(entry, "diameter", where);
-    constexpr double kLargest_mm = 1e5;
-    require(diameter_mm > 0.0 && diameter_mm < kLargest_mm, "{}: 'diameter' is {} mm, expected 0 to {}", where,
-            diameter_mm, kLargest_mm);
-    models.diameters[object_id] = diameter_mm * 1e-3;
-    models.symmetric[object_id] = has_symmetry(entry);
+    models.diameters[object_id] = parse_diameter(entry, where);
+    if (entry.contains("min_x")) models.bounds[object_id] = parse_bounds(entry, where);
+    models.symmetries[object_id] = symmetries_from_json(entry, where);
     models.names.try_emplace(object_id, fmt::format("object_{}", object_id));
   }
   return models;

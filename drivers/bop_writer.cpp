@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "drivers/bop_symmetries.hpp"
 #include "drivers/image_file.hpp"
 #include "drivers/json_file.hpp"
 #include "pipeline/checks.hpp"
@@ -61,9 +62,7 @@ OrderedJson model_entry(const NamedModel& model) {
   entry["size_x"] = size_mm.x();
   entry["size_y"] = size_mm.y();
   entry["size_z"] = size_mm.z();
-  if (model.symmetric_about_z) {
-    entry["symmetries_continuous"] = OrderedJson::array({{{"axis", {0, 0, 1}}, {"offset", {0, 0, 0}}}});
-  }
+  add_symmetries(model.symmetries, entry);
   return entry;
 }
 

@@ -9,6 +9,7 @@
 #include "drivers/bop_dataset.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/mesh.hpp"
+#include "pipeline/symmetry.hpp"
 
 namespace houghstream {
 
@@ -28,12 +29,12 @@ class BopWriter {
   std::vector<BopImage> images_;
 };
 
-/// Writes models/obj_NNNNNN.ply, models/models_info.json and models/names.json.
+/// Writes models/obj_NNNNNN.ply, models/models_info.json (diameter, min, size and symmetries) and models/names.json.
 struct NamedModel {
   int object_id = 0;
   std::string name;
   Mesh mesh;
-  bool symmetric_about_z = false;  ///< continuous symmetry about the object's z axis
+  Symmetries symmetries;
 };
 void write_bop_models(const std::vector<NamedModel>& models, const std::filesystem::path& models_folder);
 

@@ -13,8 +13,8 @@ struct SymmetrySearch {
   /// Shape only, or colours too: a printed box has a shape whose symmetries its print breaks. A mesh without colours
   /// has nothing to compare.
   bool compare_colours = false;
-  double colour_difference = 0.1;  ///< points differ from here on, mean of the channels, 1 = black against white
-  double largest_differing = 0.1;  ///< share of the surface that may differ: sensor noise, grain, seams
+  double colour_difference = 0.1;   ///< points differ from here on, mean of the channels, 1 = black against white
+  double largest_differing = 0.05;  ///< share of the surface that may differ: sensor noise, grain, seams
 };
 
 /// The symmetries of a mesh, metres: turns about the principal axes and the box axes of its object frame, through its

@@ -18,9 +18,16 @@ Mesh tetrahedron() {
   return mesh;
 }
 
+Symmetries some_symmetries() {
+  Symmetries out;
+  out.discrete.emplace_back(Eigen::Translation3d(0.02, 0.0, 0.0) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()));
+  out.continuous = {{Eigen::Vector3d(0.0, 0.6, 0.8), Eigen::Vector3d(0.0, 0.01, 0.0)}};
+  return out;
+}
+
 fs::path write_models(const std::string& name) {
   const fs::path folder = fresh_folder(name);
-  write_bop_models({{1, "bowl", tetrahedron(), true}, {12, "mug", tetrahedron(), false}}, folder / "models");
+  write_bop_models({{1, "bowl", tetrahedron(), some_symmetries()}, {12, "mug", tetrahedron(), {}}}, folder / "models");
   return folder;
 }
 
@@ -28,8 +35,15 @@ TEST(BopModels, WhatIsWrittenIsReadBack) {
   const BopModels models = read_bop_models(write_models("models") / "models");
   EXPECT_EQ(models.names, (std::map<int, std::string>{{1, "bowl"}, {12, "mug"}}));
   EXPECT_NEAR(models.diameters.at(12), 0.1 * std::sqrt(2.0), 1e-6);
-  EXPECT_TRUE(models.symmetric.at(1));
-  EXPECT_FALSE(models.symmetric.at(12));
+  EXPECT_TRUE(models.bounds.at(12).isApprox(
+      Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.1)), 1e-6));
+  const Symmetries& read = models.symmetries.at(1);
+  ASSERT_EQ(read.discrete.size(), 1U);
+  EXPECT_TRUE(read.discrete[0].isApprox(some_symmetries().discrete[0], 1e-9));
+  ASSERT_EQ(read.continuous.size(), 1U);
+  EXPECT_TRUE(read.continuous[0].axis.isApprox(some_symmetries().continuous[0].axis));
+  EXPECT_TRUE(read.continuous[0].offset.isApprox(some_symmetries().continuous[0].offset));
+  EXPECT_TRUE(models.symmetries.at(12).empty());
   EXPECT_EQ(load_mesh(models.mesh_file(12)).triangles.size(), 4U);
 }
 
@@ -66,13 +80,16 @@ TEST(BopModels, BadFilesAreRefused) {
   const std::string info = read_text(folder / "models_info.json");
   replace_in_file(folder / "models_info.json", "\"diameter\": ", "\"diameter\": -");
   EXPECT_THROW(read_bop_models(folder), InputError);
+  write_text(folder / "models_info.json", info);
+  replace_in_file(folder / "models_info.json", "\"size_y\": ", "\"size_y\": -");
+  EXPECT_THROW(read_bop_models(folder), InputError);
   write_text(folder / "models_info.json", info.substr(0, info.size() / 2));
   EXPECT_THROW(read_bop_models(folder), InputError) << "cut short";
   write_text(folder / "models_info.json", info);
   EXPECT_NO_THROW(read_bop_models(folder));
   write_text(folder / "names.json", R"({"1": 5})");
   EXPECT_THROW(read_bop_models(folder), InputError);
-  EXPECT_THROW(write_bop_models({{1, "empty", Mesh(), false}}, folder), InputError);
+  EXPECT_THROW(write_bop_models({{1, "empty", Mesh(), {}}}, folder), InputError);
 }
 
 }  // namespace

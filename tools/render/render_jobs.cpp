@@ -36,11 +36,18 @@ std::vector<int> classes_of(const Scene& scene) {
   return object_ids({further ? "all_20" : "all"});
 }
 
+/// What is known of its shape; the finished mesh has its origin on the axis.
+Symmetries symmetries_of(const TaughtObject& object) {
+  Symmetries symmetries;
+  if (object.symmetric_about_z) symmetries.continuous = {{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()}};
+  return symmetries;
+}
+
 void write_models(const std::vector<TaughtObject>& objects, const std::filesystem::path& folder) {
   std::vector<NamedModel> models;
   models.reserve(objects.size());
   for (const TaughtObject& object : objects)
-    models.push_back({object.id, object.name, object.thing->mesh, object.symmetric_about_z});
+    models.push_back({object.id, object.name, object.thing->mesh, symmetries_of(object)});
   write_bop_models(models, folder);
 }
 

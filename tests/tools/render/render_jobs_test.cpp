@@ -53,8 +53,9 @@ TEST(RenderJobs, ASceneBringsTheModelsOfWhatItMayHold) {
   render_scene(into(folder), "objects_20_b", 1, 1);
   const BopModels models = read_bop_models(folder / "models");
   EXPECT_EQ(models.names.size(), 20U);
-  EXPECT_TRUE(models.symmetric.at(104));
-  EXPECT_FALSE(models.symmetric.at(102));
+  ASSERT_EQ(models.symmetries.at(104).continuous.size(), 1U) << "a tumbler";
+  EXPECT_EQ(models.symmetries.at(104).continuous[0].axis, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(models.symmetries.at(102).empty()) << "a teapot";
   const BopScene scene(folder);
   EXPECT_GE(scene.images().at(0).objects.size(), 8U);
   for (const TrueObject& object : scene.images().at(0).objects)
