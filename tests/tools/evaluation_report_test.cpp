@@ -45,7 +45,7 @@ std::vector<EvaluatedFrame> two_frames() {
   return frames;
 }
 
-const std::map<std::string, PoseModel> kModels = {{"mug", {{{0.0F, 0.0F, 0.1F}}, 0.2}}};
+const std::map<std::string, PoseModel> kModels = {{"mug", {{{0.0F, 0.0F, 0.1F}}, 0.2, false}}};
 
 TEST(EvaluationReport, SummaryHoldsTheFigures) {
   const EvaluationRules rules;
@@ -66,6 +66,21 @@ TEST(EvaluationReport, SummaryHoldsTheFigures) {
   EXPECT_EQ(json["latency_ms"]["detect"]["p50"], 5.0);
   EXPECT_TRUE(json["latency_ms"]["pose"]["p50"].is_null());
   EXPECT_EQ(json["stage_ms_median"]["pose.icp"], 2.0);
+}
+
+TEST(EvaluationReport, AverageRecallsStandInTheSummaryWhereTheyWereMeasured) {
+  const EvaluationRules rules;
+  Evaluation evaluation = evaluate(two_frames(), {"mug"}, kModels, rules);
+  EXPECT_FALSE(summary_json(evaluation, rules, std::nullopt).contains("bop19"));
+  EXPECT_EQ(summary_json(evaluation, rules, std::nullopt)["pose_recall_add_or_add_s_10"]["mean"], 1.0);
+  evaluation.localisation = LocalisationScores{{{"mug", {2, 0.3, 0.5, 0.4, 0.4}}}, {2, 0.3, 0.5, 0.4, 0.4}};
+  const OrderedJson bop = summary_json(evaluation, rules, std::nullopt)["bop19"];
+  EXPECT_EQ(bop["targets"]["mug"], 2);
+  EXPECT_EQ(bop["ar_vsd"]["mug"], 0.3);
+  EXPECT_EQ(bop["ar_mssd"]["all"], 0.5);
+  EXPECT_EQ(bop["ar_mspd"]["all"], 0.4);
+  EXPECT_EQ(bop["ar"]["all"], 0.4);
+  EXPECT_NE(summary_table(evaluation, rules).find("0.400 of 2 targets"), std::string::npos);
 }
 
 TEST(EvaluationReport, TheRulesAreFollowed) {

@@ -187,7 +187,7 @@ std::vector<EvaluatedFrame> posed_frames(double visible) {
 }
 
 TEST(PoseMetrics, RecallCountsGoodPosesOverTrueDetections) {
-  const PoseModel model{kCorners, 0.2};
+  const PoseModel model{kCorners, 0.2, false};
   const std::vector<EvaluatedFrame> frames = posed_frames(0.6);
   const auto judged = judge_poses(frames, evaluate_class(frames, "mug", {}), model);
   ASSERT_EQ(judged.size(), 3U);
@@ -198,11 +198,21 @@ TEST(PoseMetrics, RecallCountsGoodPosesOverTrueDetections) {
   EXPECT_TRUE(std::isnan(add_s_recall(judged, model.diameter, 0.7))) << "none visible enough";
 }
 
+TEST(PoseMetrics, ATurnedObjectIsRightByAddOnlyWhereItIsSymmetric) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
+  frames[0].poses->poses[0].T_camera_object = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  const PoseModel plain{kCorners, 0.2, false};
+  const PoseModel symmetric{kCorners, 0.2, true};
+  const auto judged = judge_poses(frames, evaluate_class(frames, "mug", {}), plain);
+  EXPECT_NEAR(add_or_add_s_recall(judged, symmetric, 0.5), 1.0 / 3.0, 1e-12);
+  EXPECT_EQ(add_or_add_s_recall(judged, plain, 0.5), 0.0);
+}
+
 TEST(PoseMetrics, FramesWithoutPublishedPosesAndObjectsWithoutTruePosesAreLeftOut) {
   std::vector<EvaluatedFrame> frames = posed_frames(1.0);
   frames[1].poses.reset();
   frames[2].objects[0].truth.has_pose = false;
-  EXPECT_EQ(judge_poses(frames, evaluate_class(frames, "mug", {}), {kCorners, 0.2}).size(), 1U);
+  EXPECT_EQ(judge_poses(frames, evaluate_class(frames, "mug", {}), {kCorners, 0.2, false}).size(), 1U);
 }
 
 fs::path write_csv(const std::string& text) {

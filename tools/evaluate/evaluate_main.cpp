@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "detector/forest/forest_file.hpp"
@@ -41,10 +42,29 @@ std::vector<std::string> listed_classes(const EvaluateOptions& options, const st
   return {names.begin(), names.end()};
 }
 
+/// Poses are measured for the listed classes that have a model.
+Evaluation measure(const EvaluateOptions& options, const BopScene& scene, const std::vector<EvaluatedFrame>& frames,
+                   const std::vector<std::string>& classes, const std::map<std::string, Mesh>& meshes) {
+  if (meshes.empty()) return evaluate(frames, classes, {}, options.rules);
+  std::map<std::string, PoseModel> models;
+  std::map<std::string, BopModel> listed;
+  for (auto& [name, model] : make_bop_models(meshes, read_bop_models(options.models))) {
+    models[name] = make_pose_model(model.mesh, model.symmetries.size() > 1);
+    if (std::find(classes.begin(), classes.end(), name) != classes.end()) listed[name] = model;
+  }
+  Evaluation evaluation = evaluate(frames, classes, models, options.rules);
+  if (evaluation.frames_with_poses > 0) {
+    const std::vector<EvaluatedFrame> counted = counted_frames(frames, options.rules);
+    evaluation.localisation = localisation_scores(measure_poses(counted, scene, listed, options.search.threads));
+  }
+  return evaluation;
+}
+
 void run(const EvaluateOptions& options) {
   require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
   const BopScene scene(options.scene);
-  std::vector<EvaluatedFrame> frames = read_truth(scene, find_bop_names(options.scene));
+  const std::map<int, std::string> names = find_bop_names(options.scene);
+  std::vector<EvaluatedFrame> frames = read_truth(scene, names);
   std::optional<Forest> forest;
   if (!options.forest.empty()) forest = load_forest(options.forest);
   const std::vector<std::string> classes = listed_classes(options, forest, frames);
@@ -57,9 +77,7 @@ void run(const EvaluateOptions& options) {
   frames = every_nth(std::move(frames), options.every);
   add_detections(frames, results.detections, source);
   add_poses(frames, results.poses, source);
-  std::map<std::string, PoseModel> models;
-  for (const auto& [name, mesh] : meshes) models[name] = make_pose_model(mesh);
-  const Evaluation evaluation = evaluate(frames, classes, models, options.rules);
+  const Evaluation evaluation = measure(options, scene, frames, classes, meshes);
   std::optional<Latencies> latencies;
   if (!options.latency.empty()) latencies = read_latencies(options.latency);
   fmt::print("{}", summary_table(evaluation, options.rules));

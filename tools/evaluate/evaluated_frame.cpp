@@ -27,6 +27,7 @@ std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int
   for (std::size_t i = 0; i < scene.images().size(); ++i) {
     EvaluatedFrame frame;
     frame.utime = dataset_utime(i);
+    frame.image = i;
     for (const TrueObject& object : scene.images()[i].objects) {
       const auto name = names.find(object.object_id);
       const std::string text = name != names.end() ? name->second : fmt::format("object_{}", object.object_id);

@@ -21,6 +21,7 @@ struct NamedObject {
 /// One frame of a scene: the truth beside what was published for it.
 struct EvaluatedFrame {
   std::int64_t utime = 0;
+  std::size_t image = 0;  ///< position in the scene's images
   std::vector<NamedObject> objects;
   std::optional<Detections> detections;  ///< nothing where the frame was skipped or lost
   std::optional<ObjectPoses> poses;      ///< likewise

@@ -42,6 +42,7 @@ void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<st
     const std::vector<JudgedPose> judged = judge_poses(frames, result, model->second);
     if (judged.empty()) continue;
     out.add_s_recall[result.class_name] = add_s_recall(judged, model->second.diameter, min_visible);
+    out.add_or_add_s_recall[result.class_name] = add_or_add_s_recall(judged, model->second, min_visible);
     out.poses.insert(out.poses.end(), judged.begin(), judged.end());
   }
 }
@@ -68,6 +69,10 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
   evaluate_poses(frames, models, rules.pose_min_visible, out);
   out.stage_ms = stage_medians(frames);
   return out;
+}
+
+std::vector<EvaluatedFrame> counted_frames(const std::vector<EvaluatedFrame>& frames, const EvaluationRules& rules) {
+  return rules.processed_only ? processed_frames(frames) : frames;
 }
 
 double mean_of(const std::map<std::string, double>& values) {

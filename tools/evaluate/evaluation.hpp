@@ -1,9 +1,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/evaluate/average_recall.hpp"
 #include "tools/evaluate/detection_metrics.hpp"
 #include "tools/evaluate/pose_metrics.hpp"
 
@@ -32,12 +34,17 @@ struct Evaluation {
   int false_detections = 0;       ///< of all classes, listed or not, from the operating score on
   std::vector<JudgedPose> poses;  ///< of true detections of listed classes that have a model
   std::map<std::string, double> add_s_recall;
-  std::map<std::string, double> stage_ms;  ///< median by stage
+  std::map<std::string, double> add_or_add_s_recall;
+  std::optional<LocalisationScores> localisation;  ///< nothing unless poses were measured against depth too
+  std::map<std::string, double> stage_ms;          ///< median by stage
 };
 
 /// Compares results with the truth for the listed classes; `models` by class name, may lack some.
 Evaluation evaluate(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& class_names,
                     const std::map<std::string, PoseModel>& models, const EvaluationRules& rules);
+
+/// The frames that count under the rules.
+std::vector<EvaluatedFrame> counted_frames(const std::vector<EvaluatedFrame>& frames, const EvaluationRules& rules);
 
 /// Mean over the finite values; NaN without any.
 double mean_of(const std::map<std::string, double>& values);

@@ -24,6 +24,18 @@ const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_inde
   return nullptr;
 }
 
+double recall(const std::vector<JudgedPose>& poses, double JudgedPose::*error, double diameter, double min_visible) {
+  constexpr double kShareOfDiameter = 0.1;
+  int counted = 0;
+  int good = 0;
+  for (const JudgedPose& pose : poses) {
+    if (pose.visible_fraction < min_visible) continue;
+    ++counted;
+    good += pose.*error < kShareOfDiameter * diameter ? 1 : 0;  // false for NaN
+  }
+  return counted > 0 ? static_cast<double>(good) / counted : kNaN;
+}
+
 }  // namespace
 
 double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
@@ -45,10 +57,10 @@ double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, co
   return sum / static_cast<double>(model.size());
 }
 
-PoseModel make_pose_model(const Mesh& mesh) {
+PoseModel make_pose_model(const Mesh& mesh, bool symmetric) {
   constexpr int kPoints = 1000;
   constexpr std::uint64_t kSeed = 1;
-  return {sample_surface(mesh, kPoints, kSeed).points, mesh_diameter(mesh)};
+  return {sample_surface(mesh, kPoints, kSeed).points, mesh_diameter(mesh), symmetric};
 }
 
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
@@ -74,15 +86,11 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
 }
 
 double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible) {
-  constexpr double kShareOfDiameter = 0.1;
-  int counted = 0;
-  int good = 0;
-  for (const JudgedPose& pose : poses) {
-    if (pose.visible_fraction < min_visible) continue;
-    ++counted;
-    good += pose.add_s < kShareOfDiameter * diameter ? 1 : 0;  // false for NaN
-  }
-  return counted > 0 ? static_cast<double>(good) / counted : kNaN;
+  return recall(poses, &JudgedPose::add_s, diameter, min_visible);
+}
+
+double add_or_add_s_recall(const std::vector<JudgedPose>& poses, const PoseModel& model, double min_visible) {
+  return recall(poses, model.symmetric ? &JudgedPose::add_s : &JudgedPose::add, model.diameter, min_visible);
 }
 
 }  // namespace houghstream

@@ -21,12 +21,13 @@ double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, co
 
 /// What poses of a class are measured with.
 struct PoseModel {
-  Points points;          ///< on the surface, object frame, metres
-  double diameter = 0.0;  ///< metres
+  Points points;           ///< on the surface, object frame, metres
+  double diameter = 0.0;   ///< metres
+  bool symmetric = false;  ///< has poses that look the same
 };
 
 /// Evenly spread points instead of the mesh's vertices, which crowd where a mesh is finely cut.
-PoseModel make_pose_model(const Mesh& mesh);
+PoseModel make_pose_model(const Mesh& mesh, bool symmetric);
 
 /// A true detection and the pose that was published for it.
 struct JudgedPose {
@@ -46,5 +47,9 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
 /// Share of the true detections of objects at least `min_visible` visible whose ADD-S is below 10 % of the diameter; a
 /// detection without a pose has none. NaN where there is no such detection.
 double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
+
+/// The same by the error that Hinterstoisser et al. 2012 use for the object, called ADD(-S): ADD, but ADD-S for one
+/// that is symmetric.
+double add_or_add_s_recall(const std::vector<JudgedPose>& poses, const PoseModel& model, double min_visible);
 
 }  // namespace houghstream

@@ -46,6 +46,32 @@ void add_detection_figures(const Evaluation& evaluation, OrderedJson& json) {
   json["auc"]["weighted"] = number(weighted_auc(evaluation.classes));
 }
 
+OrderedJson recall_json(const std::map<std::string, double>& recalls) {
+  OrderedJson json = OrderedJson::object();
+  for (const auto& [name, recall] : recalls) json[name] = number(recall);
+  json["mean"] = number(mean_of(recalls));
+  return json;
+}
+
+OrderedJson localisation_json(const LocalisationScores& scores) {
+  OrderedJson json;
+  json["variant"] =
+      "6D localisation as in the BOP challenge since 2019 (Hodan et al. 2020): targets visible by 10 % or more, what "
+      "is "
+      "missed counts as wrong; VSD with delta 15 mm, tau 0.05 to 0.5 diameters, errors below 0.05 to 0.5; MSSD below "
+      "0.05 to 0.5 diameters; MSPD below 5 to 50 px of an image 640 wide; ar is the mean of the three";
+  const auto add = [&](const std::string& name, const AverageRecall& recall) {
+    json["targets"][name] = recall.targets;
+    json["ar"][name] = number(recall.mean);
+    json["ar_vsd"][name] = number(recall.vsd);
+    json["ar_mssd"][name] = number(recall.mssd);
+    json["ar_mspd"][name] = number(recall.mspd);
+  };
+  for (const auto& [name, recall] : scores.by_class) add(name, recall);
+  add("all", scores.all);
+  return json;
+}
+
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
@@ -87,9 +113,9 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   // Only a frame that was looked at can have a false detection.
   json["false_per_frame"] = ratio(evaluation.false_detections, evaluation.frames_processed);
   json["frames_counted"] = counted;
-  json["pose_recall_add_s_10"] = OrderedJson::object();
-  for (const auto& [name, recall] : evaluation.add_s_recall) json["pose_recall_add_s_10"][name] = number(recall);
-  json["pose_recall_add_s_10"]["mean"] = number(mean_of(evaluation.add_s_recall));
+  json["pose_recall_add_s_10"] = recall_json(evaluation.add_s_recall);
+  json["pose_recall_add_or_add_s_10"] = recall_json(evaluation.add_or_add_s_recall);
+  if (evaluation.localisation) json["bop19"] = localisation_json(*evaluation.localisation);
   if (latencies) {
     json["latency_ms"] = {{"detect", to_json(latencies->detect_ms)},
                           {"pose", to_json(latencies->pose_ms)},
@@ -116,6 +142,11 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
   text +=
       fmt::format("{:<28}{:>8.3f}{:>28.3f}\n", "mean", mean_auc(evaluation.classes), mean_of(evaluation.add_s_recall));
   text += fmt::format("{:<28}{:>8.3f}\n", "weighted by objects", weighted_auc(evaluation.classes));
+  if (evaluation.localisation) {
+    const AverageRecall& all = evaluation.localisation->all;
+    text += fmt::format("{:<28}{:>8.3f} of {} targets (VSD {:.3f}, MSSD {:.3f}, MSPD {:.3f})\n", "AR (BOP 2019)",
+                        all.mean, all.targets, all.vsd, all.mssd, all.mspd);
+  }
   text += fmt::format("false detections {} from score {} on\n", evaluation.false_detections, rules.operating_score);
   for (const auto& [stage, median] : evaluation.stage_ms) text += fmt::format("{:<28}{:>8.2f} ms\n", stage, median);
   return text;

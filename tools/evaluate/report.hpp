@@ -10,8 +10,9 @@
 
 namespace houghstream {
 
-/// The summary: auc and pose_recall_add_s_10 by object and as means, counts, latency percentiles, and the rules by
-/// which it was measured. What could not be measured is null.
+/// The summary: auc, pose_recall_add_s_10 and pose_recall_add_or_add_s_10 by object and as means, bop19 (average
+/// recalls) where it was measured, counts, latency percentiles, and the rules by which it was measured. What could not
+/// be measured is null.
 OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& rules,
                          const std::optional<Latencies>& latencies);
 
