@@ -7,6 +7,7 @@
 #include "pipeline/checks.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/evaluate/bop_results.hpp"
 #include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/report.hpp"
 
@@ -81,7 +82,10 @@ void run(const EvaluateOptions& options) {
   std::optional<Latencies> latencies;
   if (!options.latency.empty()) latencies = read_latencies(options.latency);
   fmt::print("{}", summary_table(evaluation, options.rules));
-  if (!options.out.empty()) write_report(evaluation, summary_json(evaluation, options.rules, latencies), options.out);
+  if (options.out.empty()) return;
+  write_report(evaluation, summary_json(evaluation, options.rules, latencies), options.out);
+  if (!results.poses.empty())
+    write_bop_results(bop_estimates(frames, scene, names), std::filesystem::path(options.out) / kBopResultsFile);
 }
 
 void add_options(CLI::App& app, EvaluateOptions& options) {
@@ -93,7 +97,8 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")
       ->delimiter(',');
   app.add_option("--latency", options.latency, "hs-observe's CSV");
-  app.add_option("--out", options.out, "folder for summary.json, curves.csv and poses.csv");
+  app.add_option("--out", options.out,
+                 "folder for summary.json, curves.csv, poses.csv, and bop_results.csv where there are poses");
   EvaluationRules& rules = options.rules;
   rules.operating_score = DetectionSettings{}.threshold;  // what hs-detect publishes unless told otherwise
   app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection")->capture_default_str();
