@@ -49,10 +49,14 @@ void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<st
 
 }  // namespace
 
+std::vector<EvaluatedFrame> counted_frames(const std::vector<EvaluatedFrame>& frames, const EvaluationRules& rules) {
+  return rules.processed_only ? processed_frames(frames) : frames;
+}
+
 Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::vector<std::string>& class_names,
                     const std::map<std::string, PoseModel>& models, const EvaluationRules& rules) {
   const std::vector<EvaluatedFrame> processed = processed_frames(all_frames);
-  const std::vector<EvaluatedFrame>& frames = rules.processed_only ? processed : all_frames;
+  const std::vector<EvaluatedFrame> frames = counted_frames(all_frames, rules);
   Evaluation out;
   out.frames = static_cast<int>(all_frames.size());
   out.frames_processed = static_cast<int>(processed.size());
@@ -69,10 +73,6 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
   evaluate_poses(frames, models, rules.pose_min_visible, out);
   out.stage_ms = stage_medians(frames);
   return out;
-}
-
-std::vector<EvaluatedFrame> counted_frames(const std::vector<EvaluatedFrame>& frames, const EvaluationRules& rules) {
-  return rules.processed_only ? processed_frames(frames) : frames;
 }
 
 double mean_of(const std::map<std::string, double>& values) {

@@ -39,12 +39,12 @@ struct Evaluation {
   std::map<std::string, double> stage_ms;          ///< median by stage
 };
 
+/// The frames that count under the rules.
+std::vector<EvaluatedFrame> counted_frames(const std::vector<EvaluatedFrame>& frames, const EvaluationRules& rules);
+
 /// Compares results with the truth for the listed classes; `models` by class name, may lack some.
 Evaluation evaluate(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& class_names,
                     const std::map<std::string, PoseModel>& models, const EvaluationRules& rules);
-
-/// The frames that count under the rules.
-std::vector<EvaluatedFrame> counted_frames(const std::vector<EvaluatedFrame>& frames, const EvaluationRules& rules);
 
 /// Mean over the finite values; NaN without any.
 double mean_of(const std::map<std::string, double>& values);
