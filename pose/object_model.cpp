@@ -51,6 +51,19 @@ void set_bounds(ObjectModel& model) {
   for (const Eigen::Vector3f& v : model.mesh.vertices) model.radius = std::max(model.radius, (v - model.centre).norm());
 }
 
+Eigen::Vector3f surface_median(const Mesh& mesh) {
+  constexpr int kPoints = 2000;
+  const SurfacePoints surface = sample_surface(mesh, kPoints, 1);
+  Eigen::Vector3f median;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<float> values;
+    for (const Eigen::Vector3f& point : surface.points) values.push_back(point[axis]);
+    std::nth_element(values.begin(), values.begin() + kPoints / 2, values.end());
+    median[axis] = values[kPoints / 2];
+  }
+  return median;
+}
+
 /// Camera at `distance` from the model's centre, looking at it; the turn about the optical axis does not matter.
 Eigen::Isometry3d looking_from(const Eigen::Vector3f& direction, const Eigen::Vector3f& centre, double distance) {
   const Eigen::Quaterniond R_camera_object =
@@ -73,12 +86,15 @@ void shuffle_and_cap(ModelView& view, std::size_t most, std::uint64_t seed) {
     const std::size_t j = i + random.below(static_cast<int>(view.points.size() - i));
     std::swap(view.points[i], view.points[j]);
     std::swap(view.normals[i], view.normals[j]);
+    if (!view.colours.empty()) std::swap(view.colours[i], view.colours[j]);
   }
   view.points.resize(kept);
   view.normals.resize(kept);
+  view.colours.resize(std::min(kept, view.colours.size()));
 }
 
-ModelView make_view(const ObjectModel& model, const Eigen::Vector3f& direction, const ModelSettings& settings) {
+ModelView make_view(const ObjectModel& model, const SurfaceColour& colour, const Eigen::Vector3f& direction,
+                    const ModelSettings& settings) {
   const double distance = std::max(settings.view_distance_m, 3.0 * model.radius);
   const int size = settings.pixels_per_diameter + 8;
   const double focal = settings.pixels_per_diameter * distance / (2.0 * model.radius);
@@ -103,6 +119,9 @@ ModelView make_view(const ObjectModel& model, const Eigen::Vector3f& direction, 
       if (!(std::abs(facing) >= settings.least_facing)) continue;
       view.points.push_back(point);
       view.normals.push_back(normal);
+      if (colour.known()) {
+        view.colours.push_back(colour.at(static_cast<std::size_t>(triangle), seen.bary.at<cv::Vec2f>(y, x)));
+      }
     }
   }
   return view;
@@ -136,10 +155,12 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
   set_bounds(model);
   require(std::isfinite(model.radius) && model.radius > 0.001F && model.radius < 10.0F,
           "model {}: radius {} m, expected 0.001 to 10 m", name, model.radius);
+  model.middle = surface_median(model.mesh);
+  const SurfaceColour colour(model.mesh, 2.0 * model.radius / settings.pixels_per_diameter);
   std::uint64_t seed = 0;
   float largest = 0.0F;
   for (const Eigen::Vector3f& direction : sphere_directions(settings.views_per_edge)) {
-    ModelView view = make_view(model, direction, settings);
+    ModelView view = make_view(model, colour, direction, settings);
     if (view.points.empty()) continue;  // a flat model seen from its edge
     shuffle_and_cap(view, static_cast<std::size_t>(settings.points_per_view), seed++);
     largest = std::max(largest, view.area);

@@ -6,6 +6,7 @@
 
 #include "pipeline/mesh.hpp"
 #include "pose/pose_settings.hpp"
+#include "pose/surface_colour.hpp"
 
 namespace houghstream {
 
@@ -15,6 +16,7 @@ struct ModelView {
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< unit, from the model's centre to the camera
   std::vector<Eigen::Vector3f> points;                  ///< object frame, metres
   std::vector<Eigen::Vector3f> normals;                 ///< unit length, towards the camera
+  std::vector<LabColour> colours;                       ///< of the points; empty where the mesh has none
   float area = 0.0F;                                    ///< of the silhouette, relative to the largest view's
 };
 
@@ -22,7 +24,9 @@ struct ModelView {
 struct ObjectModel {
   Mesh mesh;
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the bounding box, object frame
-  float radius = 0.0F;                               ///< of the sphere about the centre that holds the mesh, metres
+  Eigen::Vector3f middle =
+      Eigen::Vector3f::Zero();  ///< median of the surface along each axis: a handle does not move it
+  float radius = 0.0F;          ///< of the sphere about the centre that holds the mesh, metres
   std::vector<ModelView> views;
 };
 

@@ -8,54 +8,14 @@
 #include "pipeline/checks.hpp"
 #include "pipeline/parallel.hpp"
 #include "pose/candidates.hpp"
-#include "pose/depth_score.hpp"
+#include "pose/colour_score.hpp"
+#include "pose/refinement.hpp"
 #include "pose/region.hpp"
-#include "pose/registration.hpp"
 #include "pose/rotation_clusters.hpp"
 #include "pose/verification.hpp"
 
 namespace houghstream {
 namespace {
-
-RegistrationResult register_once(const RgbdFrame& frame, const DepthRegion& region, const ObjectModel& model,
-                                 const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
-                                 const PoseSettings& settings) {
-  if (settings.registration.method == Registration::kProjective) {
-    return register_projective(frame, model, T_camera_object, stage, settings.registration);
-  }
-  return register_pcl(region_points(frame, region, stage.points), model, T_camera_object, stage, settings.registration);
-}
-
-/// Coarse on all candidates, fine on the one that the depth speaks for most. No inliers where none stayed near
-/// `centre`.
-RegistrationResult register_candidates(const RgbdFrame& frame, const DepthRegion& region, const ObjectModel& model,
-                                       const Eigen::Vector3f& centre, const std::vector<PoseCandidate>& candidates,
-                                       const PoseSettings& settings) {
-  const RegistrationSettings& registration = settings.registration;
-  const double end = DepthTolerance{registration.end_distance_m, settings.noise}.at(centre.z());
-  const double start = std::max(end, registration.start_distance_m);
-  const DepthTolerance tolerance{settings.verification.tolerance_m, settings.noise};
-  const auto is_near = [&](const RegistrationResult& result) {
-    const Eigen::Vector3d shift = result.T_camera_object.translation() - centre.cast<double>();
-    return shift.norm() <= registration.max_shift_m;
-  };
-  RegistrationResult best;
-  float best_score = -std::numeric_limits<float>::infinity();
-  for (const PoseCandidate& candidate : candidates) {
-    const RegistrationResult coarse =
-        register_once(frame, region, model, candidate.T_camera_object,
-                      {registration.coarse_iterations, registration.coarse_points, start, end}, settings);
-    const float score = score_pose(frame, model, coarse.T_camera_object, registration.fine_points, tolerance).value;
-    if (!is_near(coarse) || !(score > best_score)) continue;
-    best = coarse;
-    best_score = score;
-  }
-  if (best.inliers == 0) return best;
-  RegistrationResult fine = register_once(frame, region, model, best.T_camera_object,
-                                          {registration.fine_iterations, registration.fine_points, end, end}, settings);
-  fine.iterations += best.iterations;
-  return is_near(fine) ? fine : best;
-}
 
 bool is_finite(const Eigen::Vector3f& centre_camera) {
   return centre_camera.allFinite() && centre_camera.z() > 0.0F;
@@ -83,8 +43,8 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
   const std::vector<PoseCandidate> candidates =
       place_candidates(frame, *model, detection.centre_camera, rotations, settings);
 
-  const RegistrationResult registered =
-      register_candidates(frame, region, *model, detection.centre_camera, candidates, settings);
+  const RegistrationResult registered = refine_candidates({frame, lab_region(frame, region.box_px), region}, *model,
+                                                          detection.centre_camera, candidates, settings);
   pose.converged = registered.converged;
   pose.iterations = registered.iterations;
   pose.inliers = registered.inliers;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace houghstream {
 
 /// Which code registers a candidate to the measured depth.
@@ -70,6 +72,14 @@ struct RegistrationSettings {
   double converged_m = 0.0005;      ///< last step moved the model's surface by less
 };
 
+/// Turns about the object's z axis that are tried after registration, degrees.
+struct TurnSettings {
+  double step_deg = 15.0;      ///< all the way round
+  double fine_step_deg = 3.0;  ///< up to one step to each side
+  int points = 250;            ///< of a view
+  std::size_t registered = 3;  ///< the best turns all round are registered again
+};
+
 /// Comparison of the rendered model with the measured depth.
 struct VerificationSettings {
   double tolerance_m = 0.008;         ///< measured and model depth agree; 3 sigma is added
@@ -85,6 +95,7 @@ struct PoseSettings {
   InitialSettings initial;
   SearchSettings search;
   RegistrationSettings registration;
+  TurnSettings turn;
   VerificationSettings verification;
   int threads = 1;
 };

@@ -1,0 +1,110 @@
+#include "pose/refinement.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "pose/turn_search.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr double kRadPerDeg = 0.017453292519943295;
+
+/// The steps of refining one detection, with what they share.
+class Refinement {
+ public:
+  Refinement(const SeenRegion& seen, const ObjectModel& model, const Eigen::Vector3f& centre_camera,
+             const PoseSettings& settings)
+      : seen_(seen),
+        model_(model),
+        centre_(centre_camera.cast<double>()),
+        settings_(settings),
+        tolerance_{settings.verification.tolerance_m, settings.noise},
+        end_m_(DepthTolerance{settings.registration.end_distance_m, settings.noise}.at(centre_camera.z())),
+        start_m_(std::max(end_m_, settings.registration.start_distance_m)) {}
+
+  RegistrationResult best_of(const std::vector<PoseCandidate>& candidates) const {
+    RegistrationResult best;
+    float best_score = -std::numeric_limits<float>::infinity();
+    for (const PoseCandidate& candidate : candidates) {
+      const RegistrationResult coarse = coarsely(candidate.T_camera_object, start_m_);
+      const float score = judge(coarse).score;
+      if (!is_near(coarse) || !(score > best_score)) continue;
+      best = coarse;
+      best_score = score;
+    }
+    return best;
+  }
+
+  /// The best of `result` and of the best turns of it, registered again.
+  RegistrationResult turned(const RegistrationResult& result, double step_deg, double reach_deg,
+                            std::size_t most) const {
+    RegistrationResult best = result;
+    float best_score = judge(result).score;
+    for (const ScoredPose& turn :
+         best_turns(seen_.frame, seen_.colours, model_, result.T_camera_object, step_deg * kRadPerDeg,
+                    reach_deg * kRadPerDeg, most, settings_.turn.points, tolerance_)) {
+      RegistrationResult again = coarsely(turn.T_camera_object, 0.5 * (start_m_ + end_m_));
+      again.iterations += result.iterations;
+      const float score = judge(again).score;
+      if (!is_near(again) || !(score > best_score)) continue;
+      best = again;
+      best_score = score;
+    }
+    return best;
+  }
+
+  RegistrationResult finely(const RegistrationResult& result) const {
+    const RegistrationSettings& registration = settings_.registration;
+    RegistrationResult fine =
+        registered(result.T_camera_object, {registration.fine_iterations, registration.fine_points, end_m_, end_m_});
+    fine.iterations += result.iterations;
+    return is_near(fine) ? fine : result;
+  }
+
+ private:
+  ScoredPose judge(const RegistrationResult& result) const {
+    return judge_pose(seen_.frame, seen_.colours, model_, result.T_camera_object, settings_.registration.fine_points,
+                      tolerance_);
+  }
+
+  RegistrationResult coarsely(const Eigen::Isometry3d& T_camera_object, double start_m) const {
+    const RegistrationSettings& registration = settings_.registration;
+    return registered(T_camera_object, {registration.coarse_iterations, registration.coarse_points, start_m, end_m_});
+  }
+
+  RegistrationResult registered(const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage) const {
+    if (settings_.registration.method == Registration::kProjective) {
+      return register_projective(seen_.frame, model_, T_camera_object, stage, settings_.registration);
+    }
+    return register_pcl(region_points(seen_.frame, seen_.region, stage.points), model_, T_camera_object, stage,
+                        settings_.registration);
+  }
+
+  bool is_near(const RegistrationResult& result) const {
+    return (result.T_camera_object.translation() - centre_).norm() <= settings_.registration.max_shift_m;
+  }
+
+  const SeenRegion& seen_;
+  const ObjectModel& model_;
+  Eigen::Vector3d centre_;
+  const PoseSettings& settings_;
+  DepthTolerance tolerance_;
+  double end_m_;
+  double start_m_;
+};
+
+}  // namespace
+
+RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& model,
+                                     const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
+                                     const PoseSettings& settings) {
+  const Refinement refinement(seen, model, centre_camera, settings);
+  const RegistrationResult best = refinement.best_of(candidates);
+  if (best.inliers == 0) return best;
+  const TurnSettings& turn = settings.turn;
+  const RegistrationResult fine = refinement.finely(refinement.turned(best, turn.step_deg, 180.0, turn.registered));
+  return refinement.finely(refinement.turned(fine, turn.fine_step_deg, turn.step_deg, 1));
+}
+
+}  // namespace houghstream

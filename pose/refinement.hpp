@@ -1,0 +1,24 @@
+#pragma once
+
+#include "pose/candidates.hpp"
+#include "pose/colour_score.hpp"
+#include "pose/region.hpp"
+#include "pose/registration.hpp"
+
+namespace houghstream {
+
+/// What is seen of a detection.
+struct SeenRegion {
+  const RgbdFrame& frame;
+  LabRegion colours;  ///< around the region's box
+  const DepthRegion& region;
+};
+
+/// Registration from coarse to fine: coarsely from all candidates; the one for which depth and colour speak most is
+/// turned about its z axis, where votes err most, and registered finely; then its print may turn it a little, and
+/// registration has the last word. No inliers where nothing stayed near `centre_camera`.
+RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& model,
+                                     const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
+                                     const PoseSettings& settings);
+
+}  // namespace houghstream

@@ -1,0 +1,53 @@
+#include "pose/turn_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/pose/printed_box.hpp"
+
+namespace houghstream {
+namespace {
+
+using namespace test_scene;
+
+constexpr double kRad = 0.017453292519943295;
+const DepthTolerance kTolerance{0.008, {}};
+
+double turn_between_deg(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() / kRad;
+}
+
+TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
+  const Mesh box = printed_box();
+  const ObjectModel model = make_object_model("box", box, {});
+  const Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
+  const RgbdFrame frame = coloured_frame(box, truth, 3);
+  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  for (const double degrees : {90.0, 180.0, 270.0}) {
+    const auto turns =
+        best_turns(frame, colours, model, turned(truth, degrees), 15.0 * kRad, 180.0 * kRad, 3, 250, kTolerance);
+    ASSERT_FALSE(turns.empty());
+    EXPECT_LT(turn_between_deg(turns.front().T_camera_object, truth), 1.0) << degrees;
+  }
+}
+
+TEST(TurnSearch, TheBestComesFirstAndNeighboursOfABetterOneAreLeftOut) {
+  const Mesh box = printed_box();
+  const ObjectModel model = make_object_model("box", box, {});
+  const Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
+  const RgbdFrame frame = coloured_frame(box, truth, 3);
+  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  const auto turns = best_turns(frame, colours, model, truth, 5.0 * kRad, 180.0 * kRad, 4, 250, kTolerance);
+  ASSERT_LE(turns.size(), 4U);
+  for (std::size_t i = 1; i < turns.size(); ++i) {
+    EXPECT_GE(turns[i - 1].score, turns[i].score);
+    EXPECT_GT(turn_between_deg(turns[i - 1].T_camera_object, turns[i].T_camera_object), 6.0);
+  }
+}
+
+TEST(TurnSearch, AHandleDoesNotMoveTheAxis) {
+  EXPECT_LT(make_object_model("mug", mug(), {}).middle.head<2>().norm(), 0.004F);
+  EXPECT_GT(make_object_model("mug", mug(), {}).centre.head<2>().norm(), 0.01F);
+}
+
+}  // namespace
+}  // namespace houghstream
