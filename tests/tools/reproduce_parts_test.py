@@ -16,6 +16,7 @@ import bars
 import plan
 import planner
 import reliability
+import standalone
 import units
 import uw_views
 import variants
@@ -159,6 +160,16 @@ class Bars(unittest.TestCase):
         drawing = bars.row_bars([("a", None, None, 0.5), ("b", 0.25, None, None)], "AUC", "ours", "theirs")
         self.assertEqual(len(xml.etree.ElementTree.fromstring(drawing).findall(".//rect")), 1)
         self.assertIn("not measured (paper 0.500)", drawing)
+
+    def test_a_figure_becomes_a_file_of_its_own_with_title_and_legend(self):
+        chart = bars.GroupedBars(["a"], "AUC", title="gain & loss")
+        chart.add("one <1>", [0.5], None, "#0072b2")
+        root = xml.etree.ElementTree.fromstring(standalone.standalone(chart.svg()))
+        words = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
+        self.assertIn("gain & loss", words)
+        self.assertIn("one <1>", words)
+        colours = [element.get("fill") for element in root.iter("{http://www.w3.org/2000/svg}rect")]
+        self.assertEqual(colours.count("#0072b2"), 2)  # bar and legend
 
 
 if __name__ == "__main__":

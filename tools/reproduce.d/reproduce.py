@@ -12,12 +12,14 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "report_kit"))
 
+import figures
 import page
 from measured import cpu_name
 from plan import make_plan
 from planner import Protocol, quick
 from results import Results
 from runner import Runner, UnitFailed
+from standalone import standalone
 from store import Store, write_atomically
 from summary import rounded, summarise
 from units import with_inputs
@@ -34,6 +36,7 @@ def parse(words):
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--report", action="store_true")
     parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--pictures", type=pathlib.Path, help="folder to write figures to, as files of their own")
     parser.add_argument("--commit", default="unknown")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     return parser.parse_args(words)
@@ -94,6 +97,19 @@ def settings(arguments, units, store):
     }
 
 
+def write_pictures(folder, summary, results):
+    """For pages that cannot show the report itself."""
+    drawings = {
+        "features": figures.feature_bars(results),
+        "final": figures.final_bars(results),
+        "stride": figures.stride_chart(summary["stride"]),
+        "reliability": figures.reliability_chart(summary["reliability"]["bins"]),
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, drawing in drawings.items():
+        write_atomically(folder / f"{name}.svg", standalone(drawing))
+
+
 def write_report(arguments, store, units):
     results = Results(store, units, chosen_protocol(arguments).left_out)
     summary = {**summarise(results), "settings": settings(arguments, units, store)}
@@ -101,6 +117,8 @@ def write_report(arguments, store, units):
     write_atomically(arguments.out / "results.json", results.json())
     write_atomically(arguments.out / "summary.json", json.dumps(rounded(summary), indent=2) + "\n")
     write_atomically(arguments.out / "report.html", page.render(summary, results))
+    if arguments.pictures:
+        write_pictures(arguments.pictures, summary, results)
     print(f"{arguments.out}/report.html, summary.json, results.csv, results.json")
     if summary["missing"]:
         print(f"{len(summary['missing'])} figures are missing, named in summary.json")
