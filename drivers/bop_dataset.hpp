@@ -84,7 +84,7 @@ std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path
 std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
 
 /// All training views of a BOP training folder: every scene in or under it, one object per image, cropped around its
-/// mask; its models/ lies beside or above. Images without objects are background (class_id 0, not cropped). Views
+/// mask; its models/ lies beside or above, and its frame is the model's in all of them (`object_frame` stays empty). Images without objects are background (class_id 0, not cropped). Views
 /// without depth on the object are left out with a warning; throws InputError when nothing is left.
 std::vector<TrainingView> read_bop_training_views(const std::filesystem::path& folder, int threads = 1);
 

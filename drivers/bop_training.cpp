@@ -59,7 +59,7 @@ std::optional<TrainingView> read_view(const BopScene& scene, std::size_t index,
   const std::size_t objects = scene.images()[index].objects.size();
   require(objects <= 1, "{}: {} objects, expected one object per training image", source, objects);
   if (objects == 0) {
-    return TrainingView{scene.read_frame(index), {}, 0, "", Eigen::Isometry3d::Identity(), source};
+    return TrainingView{scene.read_frame(index), {}, 0, "", Eigen::Isometry3d::Identity(), source, ""};
   }
   TrainingView view = object_view(scene, index, names);
   if (count_depth_pixels(view.frame.depth, view.mask) == 0) {

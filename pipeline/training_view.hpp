@@ -16,6 +16,7 @@ struct TrainingView {
   std::string class_name;  ///< empty in a background frame
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres; meaningless in a background frame
   std::string source;                                                 ///< file it came from, for messages
+  std::string object_frame;  ///< views of one class whose T_camera_object mean the same frame have equal names here
 };
 
 }  // namespace houghstream

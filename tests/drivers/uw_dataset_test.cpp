@@ -38,6 +38,7 @@ TEST(UwDataset, ViewsAreCropsThatKeepTheirRays) {
   const TrainingView& view = views.front();
   EXPECT_EQ(view.class_name, "can_1");
   EXPECT_EQ(view.class_id, 1);
+  EXPECT_EQ(view.object_frame, "can_1_1");
   EXPECT_EQ(views.back().class_name, "cup_1");
   EXPECT_EQ(views.back().class_id, 3);
   EXPECT_EQ(cv::countNonZero(view.mask), 50);
