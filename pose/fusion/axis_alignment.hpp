@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "pose/fusion/depth_view.hpp"
+
+namespace houghstream {
+
+/// How the views of a model are laid on each other.
+struct AlignmentSettings {
+  int iterations = 15;            ///< of Gauss-Newton; 0 = none
+  int neighbours = 8;             ///< views that each one is compared with, the nearest in direction
+  int points_per_view = 1200;     ///< compared points
+  double farthest_pair_m = 0.01;  ///< Tukey's limit: what is farther apart is not the same surface
+  double damping = 2e-4;          ///< of a motion of the object's size, against the measured distances
+  int threads = 1;                ///< any number gives the same result
+};
+
+/// How well views agree: point to plane, over all compared points.
+struct Agreement {
+  int pairs = 0;
+  double median_m = 0.0;  ///< of the absolute distances; 0 without pairs
+};
+
+/// Distances between each view's points and its neighbours' surfaces.
+Agreement measure_agreement(const std::vector<DepthView>& views, const AlignmentSettings& settings);
+
+/// Corrects T_camera_object of the views in place by one motion of the object frame in the camera's, common to all
+/// views: for a turntable in front of a fixed camera, whose steps are exact, this corrects the axis and nothing else.
+/// Gauss-Newton on the distances between the views' points and their neighbours' tangent planes (Chen & Medioni 1992),
+/// pairs found by projection (Blais & Levine 1995). What the distances do not tell (a turn about the axis, a shift
+/// along it) stays.
+void align_views(std::vector<DepthView>& views, const AlignmentSettings& settings);
+
+}  // namespace houghstream

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "pipeline/training_view.hpp"
+
+namespace houghstream {
+
+/// A training view as fusion needs it: the object's surface with its normals, and where the object surely is not. All
+/// images have the size of the camera's.
+struct DepthView {
+  Camera camera;
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
+  cv::Mat colour;                                                     ///< CV_8UC3, BGR
+  cv::Mat depth;    ///< CV_32FC1, metres, NaN off the object and where no normal is
+  cv::Mat normals;  ///< CV_32FC3, camera frame, unit length, towards the camera; meaningless where depth is NaN
+  cv::Mat outside;  ///< CV_8UC1, 255 where the ray through the pixel misses the object
+
+  Eigen::Vector3d normal(const cv::Point& px) const {
+    const cv::Vec3f& n = normals.at<cv::Vec3f>(px);
+    return {n[0], n[1], n[2]};
+  }
+
+  /// Pixel that shows a point of the camera frame; none where that is not in the image.
+  std::optional<cv::Point> pixel_of(const Eigen::Vector3d& point_camera) const;
+};
+
+/// Normals are those of planes through the pixels around; surface that is seen too flatly, or stands alone, is dropped,
+/// as are specks of the mask. Where there is no depth beside the mask, the mask was made of depth and lacks parts of
+/// the object: only what is beside its convex hull is outside then.
+DepthView make_depth_view(const TrainingView& view);
+
+/// One point of the object's surface.
+struct SurfaceSample {
+  Eigen::Vector3d point;   ///< camera frame, metres
+  Eigen::Vector3d normal;  ///< camera frame, unit length, towards the camera
+};
+
+/// At most about `most` points of the view, evenly over its pixels.
+std::vector<SurfaceSample> sample_view(const DepthView& view, int most);
+
+}  // namespace houghstream

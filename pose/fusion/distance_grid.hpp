@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <vector>
+
+#include "pose/fusion/depth_view.hpp"
+
+namespace houghstream {
+
+/// A box of voxels in the object frame. Voxel (i,j,k) has its centre at origin + voxel * (i,j,k).
+struct DistanceGrid {
+  int nx = 0, ny = 0, nz = 0;
+  double voxel = 0.0;                                ///< edge length, metres
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< centre of voxel (0,0,0), metres
+  std::vector<float> distance;  ///< to the surface in truncation distances, -1 (inside) to 1; x runs fastest
+  std::vector<float> weight;    ///< of what was seen; 0 = never seen
+
+  std::size_t index(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * ny + j) * static_cast<std::size_t>(nx) + i;
+  }
+  Eigen::Vector3d centre(int i, int j, int k) const { return origin + voxel * Eigen::Vector3d(i, j, k); }
+};
+
+/// How a grid is laid out and filled.
+struct GridSettings {
+  double voxel = 0.0015;           ///< metres
+  double truncation_voxels = 4.0;  ///< distances beyond are only "in front"
+  double fewest_share = 0.05;      ///< of the views: a voxel of less weight counts as never seen
+  double outline_weight = 0.5;     ///< of a view whose mask says that nothing is there
+  std::size_t most_voxels = 40'000'000;
+  int threads = 1;  ///< any number gives the same result
+};
+
+/// Weighted mean of the views' signed distances (Curless & Levoy 1996): along the surface's normal, weighted by how
+/// frontally the surface is seen, less and less behind it (as Bylow et al. 2013: walls have another side); rays beside
+/// the mask carve free space. What no view has seen lies behind surfaces and counts as inside, so that the solid is
+/// closed. Where all views look from one side, it ends at the lowest that was seen, on which the object stands, and
+/// what is unseen at the highest. Throws InputError without views or points, or where they need more than
+/// `most_voxels`.
+DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings);
+
+}  // namespace houghstream

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "pipeline/mesh.hpp"
+#include "pose/fusion/distance_grid.hpp"
+
+namespace houghstream {
+
+/// The surface between inside and outside, by surface nets (Gibson 1998): one vertex in each cell that the surface
+/// crosses, at the mean of where it crosses the cell's edges; closed, with normals, triangles counter-clockwise from
+/// outside. The border of the grid counts as outside. Vertices: object frame, metres.
+Mesh extract_surface(const DistanceGrid& grid);
+
+/// The connected part of a mesh with the most triangles, with the vertices it uses; for meshes with vertices and
+/// triangles only.
+Mesh largest_part(const Mesh& mesh);
+
+}  // namespace houghstream

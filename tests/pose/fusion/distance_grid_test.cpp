@@ -1,0 +1,71 @@
+#include "pose/fusion/distance_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/checks.hpp"
+#include "tests/pose/fusion/turntable_views.hpp"
+
+namespace houghstream {
+namespace {
+
+using test_scene::TurntableScene;
+
+const Eigen::Vector3d kHalf(0.09, 0.03, 0.13);  // of the cereal box
+
+std::vector<DepthView> box_views() {
+  std::vector<DepthView> views;
+  for (const TrainingView& view : turntable_views(TurntableScene{test_scene::cereal_box()})) {
+    views.push_back(make_depth_view(view));
+  }
+  return views;
+}
+
+GridSettings coarse() {
+  GridSettings settings;
+  settings.voxel = 0.003;
+  return settings;
+}
+
+TEST(DistanceGrid, HoldsTheBoxsDistances) {
+  const GridSettings settings = coarse();
+  const DistanceGrid grid = fuse_distances(box_views(), settings);
+  const double truncation = settings.truncation_voxels * settings.voxel;
+  std::vector<double> errors;
+  int wrong_side = 0;
+  for (int k = 0; k < grid.nz; ++k) {
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) {
+        const double truth = test_scene::box_distance(grid.centre(i, j, k), kHalf);
+        const double distance = static_cast<double>(grid.distance[grid.index(i, j, k)]);
+        wrong_side += std::abs(truth) > 2.0 * settings.voxel && (truth < 0.0) != (distance < 0.0) ? 1 : 0;
+        if (grid.weight[grid.index(i, j, k)] > 0.0F && std::abs(truth) < 0.5 * truncation) {
+          errors.push_back(std::abs(distance * truncation - truth));
+        }
+      }
+    }
+  }
+  EXPECT_LT(wrong_side, static_cast<int>(grid.distance.size() / 1000));
+  EXPECT_LT(test_scene::median(errors), 0.001);
+}
+
+TEST(DistanceGrid, DoesNotDependOnThreads) {
+  GridSettings settings = coarse();
+  settings.voxel = 0.006;
+  const std::vector<DepthView> views = box_views();
+  const DistanceGrid one = fuse_distances(views, settings);
+  settings.threads = 3;
+  EXPECT_EQ(one.distance, fuse_distances(views, settings).distance);
+}
+
+TEST(DistanceGrid, WhatCannotBeFusedIsRefused) {
+  EXPECT_THROW(fuse_distances({}, coarse()), InputError);
+  GridSettings tiny = coarse();
+  tiny.most_voxels = 1000;
+  EXPECT_THROW(fuse_distances(box_views(), tiny), InputError);
+  GridSettings none = coarse();
+  none.voxel = 0.0;
+  EXPECT_THROW(fuse_distances(box_views(), none), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream
