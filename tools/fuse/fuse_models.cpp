@@ -1,0 +1,71 @@
+#include "tools/fuse/fuse_models.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "drivers/bop_writer.hpp"
+#include "drivers/image_file.hpp"
+#include "pipeline/checks.hpp"
+#include "tools/fuse/model_picture.hpp"
+
+namespace houghstream {
+namespace {
+
+void report(const std::string& name, const FusedModel& model, std::size_t views) {
+  const auto seen = static_cast<double>(std::count(model.seen.begin(), model.seen.end(), true));
+  fmt::print("{} views {} triangles {} diameter_mm {:.1f} seen_share {:.3f} agreement_mm {:.2f} before_mm {:.2f}\n",
+             name, views, model.mesh.triangles.size(), 1e3 * mesh_diameter(model.mesh),
+             seen / static_cast<double>(model.seen.size()), 1e3 * model.after.median_m, 1e3 * model.before.median_m);
+}
+
+}  // namespace
+
+std::vector<ObjectViews> group_views(std::vector<TrainingView> views) {
+  std::map<int, std::vector<ObjectViews>> frames_of_class;  // each with the views of one frame
+  for (TrainingView& view : views) {
+    if (view.class_id == 0) continue;
+    std::vector<ObjectViews>& frames = frames_of_class[view.class_id];
+    auto frame = std::find_if(frames.begin(), frames.end(), [&](const ObjectViews& other) {
+      return other.views.front().object_frame == view.object_frame;
+    });
+    if (frame == frames.end()) {
+      frame = frames.insert(frames.end(), {view.class_id, view.class_name, view.object_frame.empty(), {}, {}});
+    }
+    frame->views.push_back(std::move(view));
+  }
+  require(!frames_of_class.empty(), "{} views without any object, expected some to fuse", views.size());
+  std::vector<ObjectViews> objects;
+  for (auto& [id, frames] : frames_of_class) {
+    const auto most = std::max_element(frames.begin(), frames.end(), [](const ObjectViews& a, const ObjectViews& b) {
+      return a.views.size() < b.views.size();
+    });
+    for (auto frame = frames.begin(); frame != frames.end(); ++frame) {
+      if (frame != most) most->unused.push_back(frame->views.front().object_frame);
+    }
+    objects.push_back(std::move(*most));
+  }
+  return objects;
+}
+
+void fuse_models(const std::vector<ObjectViews>& objects, FusionSettings settings, const FuseOutputs& outputs) {
+  std::vector<NamedModel> models;
+  for (const ObjectViews& object : objects) {
+    if (!object.unused.empty()) {
+      spdlog::warn("{}: fused from {} only, a model has one frame; left out: {}", object.class_name,
+                   object.views.front().object_frame, fmt::join(object.unused, ", "));
+    }
+    settings.align = !object.exact_poses;
+    FusedModel model = fuse_views(object.class_name, object.views, settings);
+    report(object.class_name, model, object.views.size());
+    if (!outputs.pictures.empty()) {
+      std::filesystem::create_directories(outputs.pictures);
+      write_png(draw_model(model.mesh), outputs.pictures / (object.class_name + ".png"));
+    }
+    models.push_back({object.class_id, object.class_name, std::move(model.mesh), {}});
+  }
+  write_bop_models(models, outputs.models);
+}
+
+}  // namespace houghstream

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pose/fusion/fuse_views.hpp"
+
+namespace houghstream {
+
+/// The views of one object, all in one object frame.
+struct ObjectViews {
+  int class_id = 0;
+  std::string class_name;
+  bool exact_poses = true;          ///< given with the data, not found from the views
+  std::vector<TrainingView> views;  ///< never empty
+  std::vector<std::string> unused;  ///< other object frames of the class: a model has only one
+};
+
+/// Sorts views by class. Of several object frames of a class (instances of one name, videos of one instance) the one
+/// with the most views is taken, the first of equals. Background is left out. Throws InputError when nothing is left.
+std::vector<ObjectViews> group_views(std::vector<TrainingView> views);
+
+/// What hs-fuse makes.
+struct FuseOutputs {
+  std::filesystem::path models;    ///< BOP models folder: obj_NNNNNN.ply, models_info.json, names.json
+  std::filesystem::path pictures;  ///< folder for CLASS.png of each model from several sides; empty = none
+};
+
+/// Fuses each object's views and writes the models, under the classes' ids and names; one line of stdout for each.
+/// Views with exact poses are not aligned. Throws InputError.
+void fuse_models(const std::vector<ObjectViews>& objects, FusionSettings settings, const FuseOutputs& outputs);
+
+}  // namespace houghstream
