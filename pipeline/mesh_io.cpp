@@ -1,7 +1,9 @@
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <fstream>
@@ -9,6 +11,7 @@
 
 #include "pipeline/checks.hpp"
 #include "pipeline/mesh.hpp"
+#include "pipeline/mesh_paint.hpp"
 
 namespace houghstream {
 namespace {
@@ -28,10 +31,8 @@ void append_vertices(const aiMesh& part, double unit_m, const std::string& file,
       const aiColor4D& c = part.mColors[0][i];
       mesh.colours.emplace_back(to_byte(c.b), to_byte(c.g), to_byte(c.r));
     }
-    if (part.HasTextureCoords(0)) {
-      const aiVector3D& uv = part.mTextureCoords[0][i];
-      mesh.uvs.emplace_back(uv.x, 1.0F - uv.y);  // files count v upwards
-    }
+    const aiVector3D uv = part.HasTextureCoords(0) ? part.mTextureCoords[0][i] : aiVector3D();
+    mesh.uvs.emplace_back(uv.x, 1.0F - uv.y);  // files count v upwards
   }
 }
 
@@ -49,16 +50,25 @@ void append_triangles(const aiMesh& part, std::uint32_t first_vertex, const std:
   }
 }
 
-cv::Mat read_texture(const aiScene& scene, const std::filesystem::path& file) {
-  for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
-    aiString name;
-    if (scene.mMaterials[i]->GetTexture(aiTextureType_DIFFUSE, 0, &name) != aiReturn_SUCCESS) continue;
-    const std::filesystem::path path = file.parent_path() / name.C_Str();
-    cv::Mat texture = cv::imread(path.string(), cv::IMREAD_COLOR);
-    require(!texture.empty(), "{}: missing or unreadable, expected the texture of {}", path.string(), file.string());
-    return texture;
+/// What the material of a part says about its looks.
+MeshPart describe_part(const aiMesh& part, const aiMaterial& material, std::size_t first_vertex,
+                       const std::filesystem::path& file) {
+  MeshPart out;
+  out.first_vertex = first_vertex;
+  out.vertices = part.mNumVertices;
+  out.has_uvs = part.HasTextureCoords(0);
+  aiString texture;
+  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) {
+    std::string name = texture.C_Str();
+    std::replace(name.begin(), name.end(), '\\', '/');  // of files that were made on Windows
+    out.texture = file.parent_path() / name;
   }
-  return {};
+  aiColor3D c;
+  // Where the file names no material, the library makes up a grey one of this name.
+  out.has_colour = std::string(material.GetName().C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
+                   material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == aiReturn_SUCCESS;
+  if (out.has_colour) out.colour = cv::Vec3b(to_byte(c.b), to_byte(c.g), to_byte(c.r));
+  return out;
 }
 
 /// Which optional columns a PLY gets.
@@ -106,16 +116,16 @@ Mesh load_mesh(const std::filesystem::path& file, double unit_m) {
   require(scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U,
           "{}: {}, expected a PLY or OBJ mesh with triangles", file.string(), importer.GetErrorString());
   Mesh mesh;
+  std::vector<MeshPart> parts;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
     const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());
-    append_vertices(*scene->mMeshes[i], unit_m, file.string(), mesh);
-    append_triangles(*scene->mMeshes[i], first_vertex, file.string(), mesh);
+    const aiMesh& part = *scene->mMeshes[i];
+    parts.push_back(describe_part(part, *scene->mMaterials[part.mMaterialIndex], first_vertex, file));
+    append_vertices(part, unit_m, file.string(), mesh);
+    append_triangles(part, first_vertex, file.string(), mesh);
   }
   require(!mesh.triangles.empty(), "{}: no triangles, expected a surface", file.string());
-  // Parts that disagree about an attribute would leave it without a meaning per vertex.
-  if (mesh.colours.size() != mesh.vertices.size()) mesh.colours.clear();
-  if (mesh.uvs.size() != mesh.vertices.size()) mesh.uvs.clear();
-  if (!mesh.uvs.empty()) mesh.texture = read_texture(*scene, file);
+  paint(parts, file, mesh);
   return mesh;
 }
 
