@@ -71,8 +71,10 @@ struct BopModels {
 /// Throws InputError when files are missing or their numbers absurd.
 BopModels read_bop_models(const std::filesystem::path& models_folder);
 
-/// The meshes of a models folder by class name, metres. Throws InputError where two models share a name.
-std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder);
+/// The meshes of a models folder by class name, metres: a BOP one, or, without models_info.json, all NAME.ply and
+/// NAME.obj in it. `unit_m` is the length of the files' unit in metres (BOP: millimetres). Throws InputError where
+/// there are none or two share a name.
+std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder, double unit_m = 1e-3);
 
 /// {"1": "bowl", ...}
 std::map<int, std::string> read_bop_names(const std::filesystem::path& names_file);
@@ -84,8 +86,9 @@ std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path
 std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
 
 /// All training views of a BOP training folder: every scene in or under it, one object per image, cropped around its
-/// mask; its models/ lies beside or above, and its frame is the model's in all of them (`object_frame` stays empty). Images without objects are background (class_id 0, not cropped). Views
-/// without depth on the object are left out with a warning; throws InputError when nothing is left.
+/// mask; its models/ lies beside or above, and its frame is the model's in all of them (`object_frame` stays empty).
+/// Images without objects are background (class_id 0, not cropped). Views without depth on the object are left out with
+/// a warning; throws InputError when nothing is left.
 std::vector<TrainingView> read_bop_training_views(const std::filesystem::path& folder, int threads = 1);
 
 }  // namespace houghstream

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "drivers/bop_dataset.hpp"
 #include "drivers/bop_symmetries.hpp"
 #include "drivers/json_file.hpp"
@@ -27,6 +29,19 @@ Eigen::AlignedBox3d parse_bounds(const nlohmann::json& entry, const std::string&
   require(size_mm.minCoeff() >= 0.0, "{}: 'size' is {} x {} x {} mm, expected none below 0", where, size_mm.x(),
           size_mm.y(), size_mm.z());
   return {low_mm * 1e-3, (low_mm + size_mm) * 1e-3};
+}
+
+/// CAD models as people keep them: the file's name is the object's.
+std::vector<std::pair<std::string, fs::path>> named_files(const fs::path& folder) {
+  require(fs::is_directory(folder), "{}: no such folder, expected models", folder.string());
+  std::vector<std::pair<std::string, fs::path>> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".ply" || extension == ".obj") files.emplace_back(entry.path().stem().string(), entry.path());
+  }
+  require(!files.empty(), "{}: neither models_info.json nor any NAME.ply or NAME.obj", folder.string());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace
@@ -61,12 +76,19 @@ BopModels read_bop_models(const fs::path& models_folder) {
   return models;
 }
 
-std::map<std::string, Mesh> load_class_models(const fs::path& models_folder) {
-  const BopModels models = read_bop_models(models_folder);
+std::map<std::string, Mesh> load_class_models(const fs::path& models_folder, double unit_m) {
+  std::vector<std::pair<std::string, fs::path>> files;  // by class name
+  if (fs::exists(models_folder / "models_info.json")) {
+    const BopModels models = read_bop_models(models_folder);
+    for (const auto& [object_id, diameter] : models.diameters) {
+      files.emplace_back(models.names.at(object_id), models.mesh_file(object_id));
+    }
+  } else {
+    files = named_files(models_folder);
+  }
   std::map<std::string, Mesh> meshes;
-  for (const auto& [object_id, diameter] : models.diameters) {
-    const std::string& name = models.names.at(object_id);
-    const bool is_new = meshes.try_emplace(name, load_mesh(models.mesh_file(object_id))).second;
+  for (const auto& [name, file] : files) {
+    const bool is_new = meshes.try_emplace(name, load_mesh(file, unit_m)).second;
     require(is_new, "{}: two models are called '{}', expected one of each name", models_folder.string(), name);
   }
   return meshes;

@@ -56,6 +56,21 @@ TEST(BopModels, MeshesComeByClassNameAndNamesMustDiffer) {
   EXPECT_THROW(load_class_models(folder), InputError);
 }
 
+TEST(BopModels, OfOtherFoldersEachFileIsAClass) {
+  const fs::path folder = fresh_folder("models_plain");
+  EXPECT_THROW(load_class_models(folder), InputError) << "empty";
+  save_ply(tetrahedron(), folder / "mug.ply");
+  write_text(folder / "plate.obj", "v 0 0 0\nv 200 0 0\nv 0 200 0\nf 1 2 3\n");
+  std::map<std::string, Mesh> meshes = load_class_models(folder);
+  ASSERT_EQ(meshes.size(), 2U);
+  EXPECT_NEAR(mesh_diameter(meshes.at("mug")), 0.1 * std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(mesh_diameter(meshes.at("plate")), 0.2 * std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(mesh_diameter(load_class_models(folder, 1e-2).at("plate")), 2.0 * std::sqrt(2.0), 1e-5);
+  write_text(folder / "mug.obj", "v 0 0 0\nv 200 0 0\nv 0 200 0\nf 1 2 3\n");
+  EXPECT_THROW(load_class_models(folder), InputError) << "two of one name";
+  EXPECT_THROW(load_class_models(folder / "none"), InputError);
+}
+
 TEST(BopModels, WithoutNamesObjectsAreNumbered) {
   const fs::path folder = write_models("models_unnamed") / "models";
   fs::remove(folder / "names.json");

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <map>
 #include <string>
 
 namespace houghstream {
@@ -37,6 +38,16 @@ inline int run_tool(CLI::App& app, int argc, char** argv, const std::function<vo
 /// The option -l, --lcm-url, the same for every process.
 inline void add_lcm_url_option(CLI::App& app, std::string& url) {
   app.add_option("-l,--lcm-url", url, "LCM URL; default $LCM_DEFAULT_URL, else udpm with ttl=0");
+}
+
+/// The options --models and --model-unit of tools that read models; `unit_m` becomes the unit's length in metres.
+inline void add_model_options(CLI::App& app, std::string& models, double& unit_m) {
+  const std::map<std::string, double> units = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}};
+  app.add_option("--models", models,
+                 "models/ folder of a BOP dataset or of hs-fuse, or a folder of NAME.ply, NAME.obj");
+  app.add_option("--model-unit", unit_m, "unit of the models' coordinates: mm (default), cm or m")
+      ->transform(CLI::CheckedTransformer(units))
+      ->default_str("mm");
 }
 
 }  // namespace houghstream

@@ -8,13 +8,13 @@
 
 namespace {
 
-/// Meshes by class name, from a BOP models/ folder; without one every detection is answered with "no model".
-std::map<std::string, houghstream::Mesh> load_models(const std::string& folder) {
+/// Meshes by class name; without a folder every detection is answered with "no model".
+std::map<std::string, houghstream::Mesh> load_models(const std::string& folder, double unit_m) {
   if (folder.empty()) {
     spdlog::warn("no --models: detections are answered without a pose");
     return {};
   }
-  return houghstream::load_class_models(folder);
+  return houghstream::load_class_models(folder, unit_m);
 }
 
 }  // namespace
@@ -23,12 +23,13 @@ int main(int argc, char** argv) {
   using namespace houghstream;
   CLI::App app("Refines detections to 6-DoF poses and publishes object_poses_t", "hs-pose");
   std::string models;
+  double model_unit_m = 1e-3;
   std::string camera;
   std::string url;
   std::string output_log;
   PoseSettings settings;
   PoseProcessOptions options;
-  app.add_option("--models", models, "models/ folder of a BOP dataset");
+  add_model_options(app, models, model_unit_m);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("--threads", settings.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("-c,--channel", options.frame_channel, "channel of the frames")->capture_default_str();
@@ -38,7 +39,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.camera = parse_camera(camera);
-    const PoseEstimator estimator(load_models(models), settings);
+    const PoseEstimator estimator(load_models(models, model_unit_m), settings);
     LcmBus bus(url, output_log);
     run_pose_process(bus, options, [&](const RgbdFrame& frame, const Detections& detections) {
       return estimator.estimate(frame, detections);

@@ -6,7 +6,7 @@ namespace {
 void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
   houghstream::OutputSettings& outputs = settings.outputs;
   app.add_option("-c,--channel", settings.frame_channel, "channel of the frames")->capture_default_str();
-  app.add_option("--models", settings.models, "BOP models folder: draws the outlines of the models");
+  houghstream::add_model_options(app, settings.models, settings.model_unit_m);
   app.add_option("--snapshot", outputs.snapshot, "write one picture to this file (.png or .jpg)");
   app.add_option("--after", outputs.snapshot_after, "the snapshot is the so-manieth picture drawn")
       ->capture_default_str()

@@ -66,7 +66,8 @@ std::size_t waiting_frames(const ViewerSettings& settings) {
 
 void run_viewer(const ViewerSettings& settings) {
   catch_stop_signals();
-  const ClassModels models = settings.models.empty() ? ClassModels() : load_class_models(settings.models);
+  const ClassModels models =
+      settings.models.empty() ? ClassModels() : load_class_models(settings.models, settings.model_unit_m);
   const std::unique_ptr<ViewWindow> window = settings.headless() ? nullptr : std::make_unique<ViewWindow>();
   ViewOutputs outputs(settings.outputs);
   FrameViewSettings picture_settings = settings.picture;

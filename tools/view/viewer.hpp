@@ -13,7 +13,8 @@ namespace houghstream {
 struct ViewerSettings {
   std::string lcm_url;                          ///< "" = LCM's default
   std::string frame_channel = channel::kFrame;  ///< images_t
-  std::string models;                           ///< BOP models folder for outlines; "" = none
+  std::string models;                           ///< folder of models for outlines; "" = none
+  double model_unit_m = 1e-3;                   ///< unit of the models' coordinates
   double duration = 0.0;                        ///< seconds; 0 = until asked to end
   FrameViewSettings picture;
   OutputSettings outputs;
