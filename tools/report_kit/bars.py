@@ -6,7 +6,7 @@ from charts import COLOURS, figure, nice_step, upright
 
 WIDTH, HEIGHT = 1000, 300
 LEFT, RIGHT, TOP, BOTTOM = 56, 12, 20, 34
-ROW, NAME_WIDTH, VALUE_WIDTH = 26, 220, 170
+ROW, NAME_WIDTH, VALUE_WIDTH = 26, 220, 200
 
 
 def text(x, y, words, anchor="middle"):

@@ -5,7 +5,7 @@ import html
 # Okabe and Ito (2008): colours that stay apart for colour-blind eyes.
 COLOURS = ["#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#a09000", "#666666"]
 WIDTH, HEIGHT = 560, 340
-LEFT, RIGHT, TOP, BOTTOM = 56, 12, 12, 44
+LEFT, RIGHT, TOP, BOTTOM = 56, 12, 22, 44
 
 
 def nice_step(span, most_ticks=6):
