@@ -11,6 +11,7 @@ const char* to_string(PoseStatus status) {
     case PoseStatus::kNoInitialPose: return "no initial pose";
     case PoseStatus::kNotConverged: return "not converged";
     case PoseStatus::kRejectedByDepth: return "rejected by depth";
+    case PoseStatus::kLowScore: return "low score";
   }
   return "unknown";
 }

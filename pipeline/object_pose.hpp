@@ -19,6 +19,7 @@ enum class PoseStatus : std::int8_t {
   kNoInitialPose = 4,    ///< the votes carry no rotation
   kNotConverged = 5,     ///< no candidate registered
   kRejectedByDepth = 6,  ///< the rendered model contradicts the measured depth
+  kLowScore = 7,         ///< hardly an object: its pose was not looked for
 };
 
 /// One line per status for logs and reports.

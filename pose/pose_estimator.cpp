@@ -33,6 +33,7 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
     return pose;
   };
   if (model == nullptr) return without(PoseStatus::kNoModel);
+  if (detection.score < settings.min_score) return without(PoseStatus::kLowScore);
   if (!is_finite(detection.centre_camera)) return without(PoseStatus::kNoInitialPose);
 
   const DepthRegion region = find_region(frame, detection, *model, settings.region);

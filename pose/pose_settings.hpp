@@ -97,6 +97,7 @@ struct PoseSettings {
   RegistrationSettings registration;
   TurnSettings turn;
   VerificationSettings verification;
+  float min_score = 0.1F;  ///< of a detection whose pose is looked for
   int threads = 1;
 };
 

@@ -115,6 +115,17 @@ TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
   }
 }
 
+TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  PoseSettings settings;
+  Detection weak = detection_of("mug", scene.object, scene.truth, 5);
+  weak.score = 0.99F * settings.min_score;
+  EXPECT_EQ(estimator_for("mug", mug()).estimate(scene.frame, only(weak)).poses.at(0).status, PoseStatus::kLowScore);
+  settings.min_score = 0.0F;
+  const ObjectPose found = estimator_for("mug", mug(), settings).estimate(scene.frame, only(weak)).poses.at(0);
+  EXPECT_EQ(found.status, PoseStatus::kValid);
+}
+
 TEST(PoseEstimator, MissingInputGivesAReasonAndNoPose) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   const PoseEstimator estimator = estimator_for("mug", mug());

@@ -32,6 +32,9 @@ int main(int argc, char** argv) {
   add_model_options(app, models, model_unit_m);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("--threads", settings.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--min-score", settings.min_score, "poses are looked for from this score of the detection on")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   app.add_option("-c,--channel", options.frame_channel, "channel of the frames")->capture_default_str();
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, url);
