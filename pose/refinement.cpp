@@ -41,9 +41,9 @@ class Refinement {
                             std::size_t most) const {
     RegistrationResult best = result;
     float best_score = judge(result).score;
+    const TurnRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
     for (const ScoredPose& turn :
-         best_turns(seen_.frame, seen_.colours, model_, result.T_camera_object, step_deg * kRadPerDeg,
-                    reach_deg * kRadPerDeg, most, settings_.turn.points, tolerance_)) {
+         best_turns(seen_.frame, seen_.colours, model_, result.T_camera_object, range, tolerance_)) {
       RegistrationResult again = coarsely(turn.T_camera_object, 0.5 * (start_m_ + end_m_));
       again.iterations += result.iterations;
       const float score = judge(again).score;
@@ -100,7 +100,7 @@ RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& 
                                      const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
                                      const PoseSettings& settings) {
   const Refinement refinement(seen, model, centre_camera, settings);
-  const RegistrationResult best = refinement.best_of(candidates);
+  RegistrationResult best = refinement.best_of(candidates);
   if (best.inliers == 0) return best;
   const TurnSettings& turn = settings.turn;
   const RegistrationResult fine = refinement.finely(refinement.turned(best, turn.step_deg, 180.0, turn.registered));

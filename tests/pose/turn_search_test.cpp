@@ -24,7 +24,7 @@ TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
   const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
   for (const double degrees : {90.0, 180.0, 270.0}) {
     const auto turns =
-        best_turns(frame, colours, model, turned(truth, degrees), 15.0 * kRad, 180.0 * kRad, 3, 250, kTolerance);
+        best_turns(frame, colours, model, turned(truth, degrees), {15.0 * kRad, 180.0 * kRad, 3, 250}, kTolerance);
     ASSERT_FALSE(turns.empty());
     EXPECT_LT(turn_between_deg(turns.front().T_camera_object, truth), 1.0) << degrees;
   }
@@ -36,7 +36,7 @@ TEST(TurnSearch, TheBestComesFirstAndNeighboursOfABetterOneAreLeftOut) {
   const Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
   const RgbdFrame frame = coloured_frame(box, truth, 3);
   const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
-  const auto turns = best_turns(frame, colours, model, truth, 5.0 * kRad, 180.0 * kRad, 4, 250, kTolerance);
+  const auto turns = best_turns(frame, colours, model, truth, {5.0 * kRad, 180.0 * kRad, 4, 250}, kTolerance);
   ASSERT_LE(turns.size(), 4U);
   for (std::size_t i = 1; i < turns.size(); ++i) {
     EXPECT_GE(turns[i - 1].score, turns[i].score);
