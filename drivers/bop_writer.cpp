@@ -47,13 +47,9 @@ OrderedJson info_entry(const TrueObject& object) {
 }
 
 OrderedJson model_entry(const NamedModel& model) {
-  Eigen::Vector3f low_mm = model.mesh.vertices.front() * 1e3F;
-  Eigen::Vector3f high_mm = low_mm;
-  for (const Eigen::Vector3f& vertex : model.mesh.vertices) {
-    low_mm = low_mm.cwiseMin(vertex * 1e3F);
-    high_mm = high_mm.cwiseMax(vertex * 1e3F);
-  }
-  const Eigen::Vector3f size_mm = high_mm - low_mm;
+  const Eigen::AlignedBox3f bounds = mesh_bounds(model.mesh);
+  const Eigen::Vector3f low_mm = bounds.min() * 1e3F;
+  const Eigen::Vector3f size_mm = bounds.max() * 1e3F - low_mm;
   OrderedJson entry;
   entry["diameter"] = mesh_diameter(model.mesh) * 1e3;
   entry["min_x"] = low_mm.x();

@@ -11,16 +11,6 @@
 namespace houghstream {
 namespace {
 
-Eigen::Vector3f centre_of_bounds(const std::vector<Eigen::Vector3f>& vertices) {
-  Eigen::Vector3f low = vertices.front();
-  Eigen::Vector3f high = low;
-  for (const Eigen::Vector3f& v : vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  return 0.5F * (low + high);
-}
-
 Eigen::Vector3f corner_cross(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   const Eigen::Vector3f& a = mesh.vertices[t[0]];
   return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
@@ -57,10 +47,16 @@ SurfacePoints random_points(const Mesh& mesh, std::size_t count, std::uint64_t s
 
 }  // namespace
 
+Eigen::AlignedBox3f mesh_bounds(const Mesh& mesh) {
+  Eigen::AlignedBox3f bounds;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex);
+  return bounds;
+}
+
 double mesh_diameter(const Mesh& mesh) {
   if (mesh.vertices.empty()) return 0.0;
   // Farthest from the centre first: a pair can only beat the best one while its two radii add up to more.
-  const Eigen::Vector3f centre = centre_of_bounds(mesh.vertices);
+  const Eigen::Vector3f centre = mesh_bounds(mesh).center();
   std::vector<std::pair<float, std::size_t>> by_radius;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) by_radius.emplace_back((mesh.vertices[i] - centre).norm(), i);
   std::sort(by_radius.begin(), by_radius.end(), std::greater<>());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -18,6 +18,9 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
   cv::Mat texture;                                      ///< CV_8UC3 BGR, or empty
 };
+
+/// Extent of the vertices along each axis, metres.
+Eigen::AlignedBox3f mesh_bounds(const Mesh& mesh);
 
 /// Largest distance between two vertices, metres (BOP's diameter); exact on the convex extremes.
 double mesh_diameter(const Mesh& mesh);

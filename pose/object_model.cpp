@@ -41,13 +41,7 @@ Icosahedron icosahedron() {
 }
 
 void set_bounds(ObjectModel& model) {
-  Eigen::Vector3f low = model.mesh.vertices.front();
-  Eigen::Vector3f high = low;
-  for (const Eigen::Vector3f& v : model.mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  model.centre = 0.5F * (low + high);
+  model.centre = mesh_bounds(model.mesh).center();
   for (const Eigen::Vector3f& v : model.mesh.vertices) model.radius = std::max(model.radius, (v - model.centre).norm());
 }
 

@@ -4,6 +4,8 @@
 
 namespace houghstream {
 
+inline constexpr double kRadPerDeg = 0.017453292519943295;
+
 /// Which code registers a candidate to the measured depth.
 enum class Registration {
   kProjective,  ///< ours: visible model points against the organised depth image

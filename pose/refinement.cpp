@@ -8,8 +8,6 @@
 namespace houghstream {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295;
-
 /// The steps of refining one detection, with what they share.
 class Refinement {
  public:

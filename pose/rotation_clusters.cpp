@@ -7,8 +7,6 @@
 namespace houghstream {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295;
-
 std::vector<RotationVote> usable_votes(const std::vector<RotationVote>& votes) {
   std::vector<RotationVote> out;
   for (const RotationVote& vote : votes) {

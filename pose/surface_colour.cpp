@@ -32,6 +32,13 @@ LabColour to_lab(const cv::Vec3b& bgr) {
 
 }  // namespace
 
+const cv::Vec3b& texel_at(const cv::Mat& texture, const Eigen::Vector2f& uv) {
+  const auto index = [](float share, int size) {
+    return std::clamp(static_cast<int>(share * static_cast<float>(size)), 0, size - 1);
+  };
+  return texture.at<cv::Vec3b>(index(uv.y(), texture.rows), index(uv.x(), texture.cols));
+}
+
 SurfaceColour::SurfaceColour(const Mesh& mesh, double detail_m) : mesh_(mesh) {
   if (mesh.texture.empty() || mesh.uvs.size() != mesh.vertices.size()) return;
   const int side = 2 * static_cast<int>(0.5 * detail_m * texel_density(mesh)) + 1;
@@ -48,9 +55,7 @@ LabColour SurfaceColour::at(std::size_t triangle, const cv::Vec2f& bary) const {
   const float first = 1.0F - bary[0] - bary[1];
   if (!texture_.empty()) {
     const Eigen::Vector2f uv = first * mesh_.uvs[a] + bary[0] * mesh_.uvs[b] + bary[1] * mesh_.uvs[c];
-    const int x = std::clamp(static_cast<int>(uv.x() * static_cast<float>(texture_.cols)), 0, texture_.cols - 1);
-    const int y = std::clamp(static_cast<int>(uv.y() * static_cast<float>(texture_.rows)), 0, texture_.rows - 1);
-    const auto& lab = texture_.at<cv::Vec3b>(y, x);
+    const cv::Vec3b& lab = texel_at(texture_, uv);
     return {lab[0], lab[1], lab[2]};
   }
   const cv::Vec3f bgr = first * cv::Vec3f(mesh_.colours[a]) + bary[0] * cv::Vec3f(mesh_.colours[b]) +

@@ -10,6 +10,9 @@ namespace houghstream {
 /// 8-bit CIE L*a*b*.
 using LabColour = std::array<std::uint8_t, 3>;
 
+/// The texture's pixel at texture coordinates in [0,1], v down.
+const cv::Vec3b& texel_at(const cv::Mat& texture, const Eigen::Vector2f& uv);
+
 /// A mesh's colours at the resolution of a camera: finer print is averaged, as a camera does.
 class SurfaceColour {
  public:

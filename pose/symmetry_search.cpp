@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "pipeline/checks.hpp"
+#include "pose/pose_settings.hpp"
 #include "pose/turn_check.hpp"
 
 namespace houghstream {
 namespace {
 
-constexpr double kRadPerDeg = 0.017453292519943295;
 constexpr double kSameDirection = 0.985;  // cosine of 10 degrees
 
 /// Centroid and principal axes of the surface, exact for triangles of even thickness.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pose/surface_colour.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -22,10 +24,7 @@ Eigen::Vector3f colour_at(const Mesh& mesh, const SurfaceHit& hit) {
   }
   Eigen::Vector2f uv = Eigen::Vector2f::Zero();
   for (std::size_t i = 0; i < 3; ++i) uv += hit.weights[i] * mesh.uvs[triangle[i]];
-  const auto texel = [](float share, int size) {
-    return std::clamp(static_cast<int>(share * static_cast<float>(size)), 0, size - 1);
-  };
-  const auto& colour = mesh.texture.at<cv::Vec3b>(texel(uv.y(), mesh.texture.rows), texel(uv.x(), mesh.texture.cols));
+  const cv::Vec3b& colour = texel_at(mesh.texture, uv);
   return {static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])};
 }
 

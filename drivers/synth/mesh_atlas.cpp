@@ -91,12 +91,6 @@ Mesh compose(const std::vector<Part>& parts) {
   return joined;
 }
 
-Eigen::AlignedBox3f mesh_bounds(const Mesh& mesh) {
-  Eigen::AlignedBox3f bounds;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex);
-  return bounds;
-}
-
 Mesh finish_object(Mesh mesh) {
   const Eigen::Vector3f centre = mesh_bounds(mesh).center();
   mesh.colours.clear();

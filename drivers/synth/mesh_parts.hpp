@@ -60,7 +60,4 @@ Mesh compose(const std::vector<Part>& parts);
 /// Moves the origin to the centre of the bounding box and colours the vertices from the texture.
 Mesh finish_object(Mesh mesh);
 
-/// Extent of the vertices along each axis, metres.
-Eigen::AlignedBox3f mesh_bounds(const Mesh& mesh);
-
 }  // namespace houghstream

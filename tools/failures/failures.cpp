@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tools/view/overlay.hpp"
+#include "tools/view/tiles.hpp"
 
 namespace houghstream {
 namespace {
@@ -116,17 +117,7 @@ cv::Mat join_tiles(const std::vector<cv::Mat>& tiles, int columns) {
     draw_text(none, "no failures", {4, kCaptionHeight - 6}, 0.4);
     return none;
   }
-  constexpr int kGap = 4;
-  const int count = static_cast<int>(tiles.size());
-  const int rows = (count + columns - 1) / columns;
-  const cv::Size step = tiles[0].size() + cv::Size(kGap, kGap);
-  cv::Mat joined(rows * step.height - kGap, std::min(columns, count) * step.width - kGap, CV_8UC3,
-                 cv::Scalar(60, 60, 60));
-  for (int i = 0; i < count; ++i) {
-    const cv::Point corner(i % columns * step.width, i / columns * step.height);
-    tiles[static_cast<std::size_t>(i)].copyTo(joined(cv::Rect(corner, tiles[0].size())));
-  }
-  return joined;
+  return tiled(tiles, columns);
 }
 
 }  // namespace houghstream

@@ -67,13 +67,7 @@ cv::Mat draw_view(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, co
 
 cv::Mat draw_model(const Mesh& mesh) {
   const double diameter = mesh_diameter(mesh);
-  Eigen::Vector3f low = mesh.vertices.front();
-  Eigen::Vector3f high = low;
-  for (const Eigen::Vector3f& v : mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  const Eigen::Vector3d centre = 0.5 * (low + high).cast<double>();
+  const Eigen::Vector3d centre = mesh_bounds(mesh).center().cast<double>();
   const double distance = 5.0 * diameter;
   const double focal = 0.95 * kSize_px * distance / diameter;
   const double middle = 0.5 * (kSize_px - 1);

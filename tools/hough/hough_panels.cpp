@@ -6,12 +6,12 @@
 
 #include "pipeline/checks.hpp"
 #include "tools/view/overlay.hpp"
+#include "tools/view/tiles.hpp"
 
 namespace houghstream {
 namespace {
 
 constexpr int kCaptionHeight = 28;
-constexpr int kGap = 4;
 constexpr int kBarWidth = 120;
 constexpr std::size_t kShownBoxes = 5;  // more would hide the votes
 
@@ -87,19 +87,6 @@ cv::Mat class_tile(const cv::Mat& ground, const HoughPanel& panel, double top) {
   return captioned(image, title, top);
 }
 
-cv::Mat tiled(const std::vector<cv::Mat>& tiles) {
-  const int count = static_cast<int>(tiles.size());
-  const int columns = static_cast<int>(std::ceil(std::sqrt(count)));
-  const int rows = (count + columns - 1) / columns;
-  const cv::Size step(tiles[0].cols + kGap, tiles[0].rows + kGap);
-  cv::Mat picture(rows * step.height - kGap, columns * step.width - kGap, CV_8UC3, cv::Scalar(60, 60, 60));
-  for (int i = 0; i < count; ++i) {
-    const cv::Point corner(i % columns * step.width, i / columns * step.height);
-    tiles[static_cast<std::size_t>(i)].copyTo(picture(cv::Rect(corner, tiles[0].size())));
-  }
-  return picture;
-}
-
 }  // namespace
 
 cv::Mat draw_hough_panels(const cv::Mat& colour, const std::vector<NamedBox>& truth,
@@ -115,7 +102,7 @@ cv::Mat draw_hough_panels(const cv::Mat& colour, const std::vector<NamedBox>& tr
   std::vector<cv::Mat> tiles = {captioned(with_truth, "true boxes", 0.0)};
   const cv::Mat ground = darkened_grey(colour);
   for (const HoughPanel& panel : panels) tiles.push_back(class_tile(ground, panel, top));
-  return tiled(tiles);
+  return tiled(tiles, static_cast<int>(std::ceil(std::sqrt(tiles.size()))));
 }
 
 }  // namespace houghstream
