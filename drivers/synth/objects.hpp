@@ -39,7 +39,8 @@ int taught_object_id(const std::string& name);
 ThingPtr make_other_instance(int class_id, std::uint64_t seed);
 
 /// Household things that are never taught. `kind` 0 to kDistractorKinds-1; shape and print follow the seed.
+/// `taught_colours`: probability that a surface has a colour of the four classes.
 inline constexpr int kDistractorKinds = 16;
-ThingPtr make_distractor(int kind, std::uint64_t seed);
+ThingPtr make_distractor(int kind, std::uint64_t seed, double taught_colours = 0.0);
 
 }  // namespace houghstream

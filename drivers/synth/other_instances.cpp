@@ -1,26 +1,14 @@
-#include <algorithm>
-#include <array>
-
 #include "drivers/synth/materials.hpp"
 #include "drivers/synth/mesh_parts.hpp"
 #include "drivers/synth/objects.hpp"
 #include "drivers/synth/pixel_noise.hpp"
 #include "drivers/synth/prints.hpp"
+#include "drivers/synth/taught_colours.hpp"
 #include "drivers/synth/vessels.hpp"
 #include "pipeline/checks.hpp"
 
 namespace houghstream {
 namespace {
-
-// What a taught object's kind looks like: its main colours as hue, saturation and value.
-struct Kind {
-  std::array<double, 3> base;
-  std::array<double, 3> accent;
-};
-constexpr std::array<Kind, kClassCount> kKinds = {{{{42, 0.18, 0.86}, {42, 0.18, 0.86}},
-                                                   {{218, 0.75, 0.68}, {46, 0.85, 0.92}},
-                                                   {{40, 0.06, 0.9}, {2, 0.75, 0.66}},
-                                                   {{356, 0.85, 0.62}, {0, 0.0, 0.85}}}};
 
 // Either of the taught object's colour and of another size, or of its size and another colour: never both the same,
 // so that a person can tell them apart.
@@ -29,17 +17,12 @@ struct Likeness {
   Palette palette;
 };
 
-cv::Scalar near_colour(const std::array<double, 3>& colour, Random& random) {
-  return hsv(colour[0] + random.uniform(-12, 12), std::min(1.0, colour[1] * random.uniform(0.8, 1.2)),
-             std::min(1.0, colour[2] * random.uniform(0.85, 1.1)));
-}
-
-cv::Scalar far_colour(const std::array<double, 3>& colour, Random& random) {
-  return hsv(colour[0] + random.uniform(60, 300), random.uniform(0.25, 0.8), random.uniform(0.3, 0.9));
+cv::Scalar far_colour(const Hsv& colour, Random& random) {
+  return hsv(colour.hue_deg + random.uniform(60, 300), random.uniform(0.25, 0.8), random.uniform(0.3, 0.9));
 }
 
 Likeness draw_likeness(int kind, Random& random) {
-  const Kind& taught = kKinds[static_cast<std::size_t>(kind)];
+  const ClassColours& taught = class_colours(kind + 1);
   Likeness likeness{random.uniform(0.88, 1.12), random_palette(random)};
   if (chance(random, 0.5)) {
     const bool smaller = chance(random, 0.5) || kind == 1;  // no carton of half a metre

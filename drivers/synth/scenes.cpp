@@ -61,11 +61,12 @@ void add_other_instances(TableSetter& setter, int count, std::uint64_t seed) {
   }
 }
 
-void add_distractors(TableSetter& setter, RoomStyle style, int count, std::uint64_t seed) {
-  for (int i = 0; i < count; ++i) {
+void add_distractors(TableSetter& setter, RoomStyle style, const Clutter& clutter, std::uint64_t seed) {
+  for (int i = 0; i < clutter.distractors; ++i) {
     int kind = setter.random().below(kDistractorKinds);
     if (kind == kMonitor && style != RoomStyle::kDesk) kind = kBook;
-    const ThingPtr thing = make_distractor(kind, aspect_seed(seed, kFirstDistractor + static_cast<std::uint64_t>(i)));
+    const std::uint64_t own = aspect_seed(seed, kFirstDistractor + static_cast<std::uint64_t>(i));
+    const ThingPtr thing = make_distractor(kind, own, clutter.taught_colours);
     // Large things stand at the back, as people put them.
     const bool large = kind == kMonitor || thing->mesh.vertices.empty() || thing->name == "lamp";
     const double front = large ? 0.3 : -0.98;
@@ -101,7 +102,7 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
   const int first = setter.random().below(kClassCount);
   for (int i = 0; i < clutter.look_alikes; ++i) setter.stand_object(kClassCount + 1 + (first + i) % kClassCount);
   add_other_instances(setter, clutter.other_instances, seed);
-  add_distractors(setter, style, clutter.distractors, seed);
+  add_distractors(setter, style, clutter, seed);
   return scene;
 }
 
@@ -125,8 +126,11 @@ constexpr FurtherClasses kNone = FurtherClasses::kNone;
 constexpr FurtherClasses kOdd = FurtherClasses::kOddIds;
 constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
 
+// Tables on which most things have the taught objects' colours: only shape tells them apart.
+constexpr double kAlike = 0.7;
+
 constexpr std::array<Plan, 13> kPlans = {
-    {{kTestScenes[0], kTest, 0, RoomStyle::kTable, kDay, {true, 1, 8, 8, kNone}},
+    {{kTestScenes[0], kTest, 0, RoomStyle::kTable, kDay, {true, 1, 3, 14, kNone, kAlike}},
      {kTestScenes[1], kTest, 1, RoomStyle::kTable, kEvening, {true, 2, 8, 10, kNone}},
      {kTestScenes[2], kTest, 2, RoomStyle::kDesk, kDay, {true, 1, 8, 8, kNone}},
      {kTestScenes[3], kTest, 3, RoomStyle::kDesk, kEvening, {true, 2, 8, 12, kNone}},
@@ -134,7 +138,7 @@ constexpr std::array<Plan, 13> kPlans = {
      {kTestScenes[5], kTest, 5, RoomStyle::kMeeting, kEvening, {true, 1, 8, 10, kNone}},
      {kTwentyClassScenes[0], kTest, 20, RoomStyle::kTable, kDay, {true, 1, 0, 12, kOdd}},
      {kTwentyClassScenes[1], kTest, 21, RoomStyle::kMeeting, kDay, {true, 1, 0, 14, kEven}},
-     {kDevelopmentScenes[0], kTraining, kDevelopment, RoomStyle::kTable, kDay, {true, 2, 8, 10, kNone}},
+     {kDevelopmentScenes[0], kTraining, kDevelopment, RoomStyle::kTable, kDay, {true, 2, 3, 16, kNone, kAlike}},
      {kDevelopmentScenes[1], kTraining, kDevelopment + 1, RoomStyle::kDesk, kEvening, {true, 1, 8, 10, kNone}},
      {kDevelopmentScenes[2], kTraining, kDevelopment + 2, RoomStyle::kKitchen, kDay, {true, 1, 8, 12, kNone}},
      {kTwentyClassDevelopmentScenes[0],

@@ -28,6 +28,7 @@ struct Clutter {
   int other_instances = 0;                         ///< never taught, of the kinds of the four (make_other_instance)
   int distractors = 10;                            ///< how many things are tried; those that find no place are left out
   FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each
+  double taught_colours = 0.0;                     ///< share of the distractors' surfaces that have the four's colours
 };
 
 Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed);

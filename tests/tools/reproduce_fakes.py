@@ -1,7 +1,8 @@
 """Stands in for the programs that tools/reproduce runs: writes at once what they would after hours.
 
 Run as one of the names below. REPRODUCE_FAKE_LOG gets a line for each call; a call whose words contain
-REPRODUCE_FAKE_FAILS fails, one whose words contain REPRODUCE_FAKE_SLEEPS hangs."""
+REPRODUCE_FAKE_FAILS fails, one whose words contain REPRODUCE_FAKE_SLEEPS hangs. Forests differ with
+REPRODUCE_FAKE_DIFFERS."""
 
 import base64
 import json
@@ -102,7 +103,7 @@ def run(name, words):
     out = pathlib.Path(option(words, "--out", words[-1]))
     chance = random.Random(" ".join(words[1:-1]))
     if name == "hs-train":
-        out.write_text(" ".join(words))
+        out.write_text(" ".join(words) + os.environ.get("REPRODUCE_FAKE_DIFFERS", ""))
         print("train_seconds 101.5")
     elif name == "hs-evaluate":
         evaluate(words, out, chance)

@@ -145,14 +145,21 @@ class Resuming(Case):
             time.sleep(0.05)
         self.fail(f"'{words}' was never called")
 
-    def test_another_build_makes_everything_after_it_again(self):
+    def calls_after_another_build(self, **environment):
         only = ("--quick", "--only", "evaluate_every_3/paper/desk_1")
         self.run_it(*only)
         before = len(self.calls())
         with open(self.folder / "bin" / "hs-train", "a") as program:
             program.write("# another build\n")
-        self.run_it(*only)
-        self.assertEqual([call.split()[0] for call in self.calls()[before:]], ["hs-train", "hs-evaluate"])
+        self.run_it(*only, **environment)
+        return [call.split()[0] for call in self.calls()[before:]]
+
+    def test_another_build_that_makes_something_else_makes_everything_after_it_again(self):
+        calls = self.calls_after_another_build(REPRODUCE_FAKE_DIFFERS="1")
+        self.assertEqual(calls, ["hs-train", "hs-evaluate"])
+
+    def test_another_build_that_makes_the_same_makes_nothing_after_it_again(self):
+        self.assertEqual(self.calls_after_another_build(), ["hs-train"])
 
 
 class Choosing(Case):

@@ -27,6 +27,17 @@ def sha256_of_file(file):
     return digest.hexdigest()
 
 
+def sha256_of_folder(folder):
+    """Of names and contents."""
+    files = sorted(file for file in folder.rglob("*") if file.is_file())
+    lines = [f"{file.relative_to(folder)} {sha256_of_file(file)}" for file in files]
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+
+
+def sha256_of(path):
+    return sha256_of_folder(path) if path.is_dir() else sha256_of_file(path)
+
+
 def remove(path):
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
@@ -41,7 +52,6 @@ class Store:
         self.out, self.binaries = pathlib.Path(out).resolve(), pathlib.Path(binaries).resolve()
         self.units = {unit.name: unit for unit in units}
         self.executables = {}
-        self.digests = {}
 
     def file(self, unit):
         return self.out / "files" / unit.name
@@ -74,12 +84,11 @@ class Store:
         return self.executables[file]
 
     def digest(self, unit):
-        """Of the command, its executable and, through the inputs' digests, all that stands before it."""
-        if unit.name not in self.digests:
-            inputs = [self.digest(self.units[name]) for name in unit.inputs]
-            text = json.dumps([unit.command, self._executable_digest(unit), inputs])
-            self.digests[unit.name] = hashlib.sha256(text.encode()).hexdigest()
-        return self.digests[unit.name]
+        """Of the command, its executable and what the inputs contain: a program that was built again but makes the same
+        as before does not make all after it run again."""
+        inputs = [self.record(self.units[name]).get("made") for name in unit.inputs]
+        text = json.dumps([unit.command, self._executable_digest(unit), inputs])
+        return hashlib.sha256(text.encode()).hexdigest()
 
     def record(self, unit):
         """What is known of the last time that the unit ran; empty if it never did."""
@@ -89,17 +98,21 @@ class Store:
             return {}
 
     def is_current(self, unit):
+        if not all(self.is_current(self.units[name]) for name in unit.inputs):
+            return False
         return self.record(unit).get("digest") == self.digest(unit) and self.file(unit).exists()
 
     def begin(self, unit):
-        self.forget(unit)
+        """The record of an earlier time stays until the new one: it tells how long the unit takes."""
+        remove(self.file(unit))
         remove(self.out / "part")
         for path in (self.part(unit), self.file(unit), self.log(unit)):
             path.parent.mkdir(parents=True, exist_ok=True)
 
     def finish(self, unit, seconds):
         os.replace(self.part(unit), self.file(unit))
-        record = {"digest": self.digest(unit), "seconds": round(seconds, 2), "command": " ".join(unit.command)}
+        record = {"digest": self.digest(unit), "made": sha256_of(self.file(unit))}
+        record |= {"seconds": round(seconds, 2), "command": " ".join(unit.command)}
         write_atomically(self._stamp(unit), json.dumps(record, indent=2) + "\n")
 
     def forget(self, unit):
