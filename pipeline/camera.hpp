@@ -21,6 +21,13 @@ struct Camera {
     return {fx * point_camera.x() / point_camera.z() + cx, fy * point_camera.y() / point_camera.z() + cy};
   }
 
+  /// project() in single precision, for many points: good to a thousandth of a pixel.
+  Eigen::Vector2f project_single(const Eigen::Vector3f& point_camera) const {
+    const float scale = 1.0F / point_camera.z();
+    return {static_cast<float>(fx) * point_camera.x() * scale + static_cast<float>(cx),
+            static_cast<float>(fy) * point_camera.y() * scale + static_cast<float>(cy)};
+  }
+
   /// Point in the camera frame seen at pixel (u,v) with depth z in metres.
   Eigen::Vector3d backproject(double u_px, double v_px, double z) const {
     return {(u_px - cx) / fx * z, (v_px - cy) / fy * z, z};

@@ -12,6 +12,8 @@ const char* to_string(PoseStatus status) {
     case PoseStatus::kNotConverged: return "not converged";
     case PoseStatus::kRejectedByDepth: return "rejected by depth";
     case PoseStatus::kLowScore: return "low score";
+    case PoseStatus::kRejectedByOutline: return "rejected by outline";
+    case PoseStatus::kRejectedByColour: return "rejected by colour";
   }
   return "unknown";
 }

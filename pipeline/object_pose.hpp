@@ -14,12 +14,14 @@ namespace houghstream {
 enum class PoseStatus : std::int8_t {
   kInvalid = 0,
   kValid = 1,
-  kNoModel = 2,          ///< the class has no 3-D model
-  kTooFewPoints = 3,     ///< hardly any depth inside the box
-  kNoInitialPose = 4,    ///< the votes carry no rotation
-  kNotConverged = 5,     ///< no candidate registered
-  kRejectedByDepth = 6,  ///< the rendered model contradicts the measured depth
-  kLowScore = 7,         ///< hardly an object: its pose was not looked for
+  kNoModel = 2,            ///< the class has no 3-D model
+  kTooFewPoints = 3,       ///< hardly any depth inside the box
+  kNoInitialPose = 4,      ///< the votes carry no rotation
+  kNotConverged = 5,       ///< no candidate registered
+  kRejectedByDepth = 6,    ///< the rendered model contradicts the measured depth
+  kLowScore = 7,           ///< hardly an object: its pose was not looked for, or is not believed
+  kRejectedByOutline = 8,  ///< the measured surface goes on where the model ends
+  kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
 };
 
 /// One line per status for logs and reports.
@@ -39,6 +41,7 @@ struct ObjectPose {
   float inlier_fraction = 0.0F;
   float residual = 0.0F;              ///< root mean square distance of inliers to the model, metres; NaN if none
   float visible_fraction = 0.0F;      ///< rendered pixels that agree with the measured depth, 0 to 1
+  float quality = 0.0F;               ///< probability that the pose is right, 0 to 1; 0 where none was found
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
 };
 

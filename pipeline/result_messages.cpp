@@ -112,6 +112,7 @@ object_pose_t pose_to_message(const ObjectPose& pose) {
   message.residual_m = pose.residual;
   message.visible_fraction = pose.visible_fraction;
   message.free_space_violation = pose.free_space_violation;
+  message.quality = pose.quality;
   return message;
 }
 
@@ -126,9 +127,9 @@ Eigen::Isometry3d transform_from(const object_pose_t& message) {
 }
 
 ObjectPose pose_from_message(const object_pose_t& message) {
-  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::LOW_SCORE,
+  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::REJECTED_BY_COLOUR,
           "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
-          object_pose_t::LOW_SCORE);
+          object_pose_t::REJECTED_BY_COLOUR);
   require(
       is_share(message.inlier_fraction) && is_share(message.visible_fraction) && is_share(message.free_space_violation),
       "{}: shares {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,
@@ -147,6 +148,7 @@ ObjectPose pose_from_message(const object_pose_t& message) {
   out.residual = message.residual_m;
   out.visible_fraction = message.visible_fraction;
   out.free_space_violation = message.free_space_violation;
+  out.quality = message.quality;
   return out;
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "pipeline/frame.hpp"
-#include "pose/object_model.hpp"
 #include "pose/pose_settings.hpp"
+#include "pose/view_look.hpp"
 
 namespace houghstream {
 
@@ -16,17 +16,23 @@ struct LabRegion {
 };
 LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px);
 
-/// How far the colours that the model has at a pose explain those that are seen: 1 less the share of the seen variance
-/// that is left over, with each channel's gain (within limits) and offset free, as exposure and the light's colour
-/// decide them, and lightness also free to follow the surface's normals, as shading does. Near 0, or below, for
-/// unrelated prints. Looks at the first `points` points of the view nearest to the pose, where measured and model depth
-/// agree. Nothing where the model has no colours or too few points are seen.
-std::optional<float> colour_agreement(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                                      const Eigen::Isometry3d& T_camera_object, int points,
-                                      const DepthTolerance& tolerance);
+/// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree.
+struct ColourComparison {
+  int points = 0;  ///< compared
+  /// 1 less the share of the seen variance that is left over, with each channel's gain (within limits) and offset free,
+  /// as exposure and the light's colour decide them, and lightness also free to follow the surface's normals, as
+  /// shading does. Near 0, or below, for unrelated prints.
+  float agreement = 0.0F;
+  float left_over = 0.0F;     ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
+  float chroma_shift = 0.0F;  ///< length of the mean difference between seen and remembered a* and b*
+};
+
+/// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
+                                                const DepthTolerance& tolerance);
 
 /// Depth and colour together: `depth_value` (DepthScore::value), less a part where the colours do not explain what is
 /// seen.
-float joint_score(float depth_value, std::optional<float> colour);
+float joint_score(float depth_value, const std::optional<ColourComparison>& colour);
 
 }  // namespace houghstream

@@ -8,42 +8,20 @@
 namespace houghstream {
 namespace {
 
-/// Measured minus model depth along the ray of `point`; nothing where the image ends or has no depth (NaN).
-float depth_beyond(const RgbdFrame& frame, const Eigen::Vector3d& point) {
-  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  if (!(point.z() > 0.0)) return kUnknown;
-  const Eigen::Vector2d pixel = frame.camera.project(point) + Eigen::Vector2d::Constant(0.5);
-  const bool inside =
-      pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() < frame.depth.cols && pixel.y() < frame.depth.rows;
-  if (!inside) return kUnknown;
-  return frame.depth.ptr<float>(static_cast<int>(pixel.y()))[static_cast<int>(pixel.x())] -
-         static_cast<float>(point.z());
-}
-
-/// Per point measured minus model depth, NaN where unknown.
-std::vector<float> depths_beyond(const RgbdFrame& frame, const ModelView& view,
-                                 const Eigen::Isometry3d& T_camera_object, int points) {
-  std::vector<float> beyond(std::min<std::size_t>(std::max(0, points), view.points.size()));
-  for (std::size_t i = 0; i < beyond.size(); ++i) {
-    beyond[i] = depth_beyond(frame, T_camera_object * view.points[i].cast<double>());
-  }
-  return beyond;
-}
-
 /// `width` is the tolerance at the object's depth.
-DepthScore score_of(const std::vector<float>& beyond, float shift, float width, float area) {
+DepthScore score_of(const ViewLook& seen, float shift, float width) {
   DepthScore score;
-  for (const float value : beyond) {
-    const float ratio = (value - shift) / width;
+  for (const Look& look : seen.looks) {
+    const float ratio = (look.beyond - shift) / width;
     if (std::abs(ratio) <= 1.0F) {
       score.agreeing += 1.0F - ratio * ratio;
     } else if (ratio > 1.0F) {
       score.violating += std::min(1.0F, ratio - 1.0F);
     }
   }
-  score.agreeing /= static_cast<float>(beyond.size());
-  score.violating /= static_cast<float>(beyond.size());
-  score.value = (score.agreeing - score.violating) * area;
+  score.agreeing /= static_cast<float>(seen.looks.size());
+  score.violating /= static_cast<float>(seen.looks.size());
+  score.value = (score.agreeing - score.violating) * seen.view.area;
   return score;
 }
 
@@ -66,26 +44,27 @@ float densest_mean(const std::vector<float>& sorted, float width) {
 
 }  // namespace
 
+DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance) {
+  return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.T.translation().z())));
+}
+
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance) {
-  const ModelView& view = nearest_view(model, T_camera_object);
-  const auto width = static_cast<float>(tolerance.at(T_camera_object.translation().z()));
-  return score_of(depths_beyond(frame, view, T_camera_object, points), 0.0F, width, view.area);
+  return score_look(look_at_view(frame, model, T_camera_object, points), tolerance);
 }
 
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                             int points, double reach, const DepthTolerance& tolerance) {
-  const ModelView& view = nearest_view(model, T_camera_object);
+  const ViewLook seen = look_at_view(frame, model, T_camera_object, points);
   const auto width = static_cast<float>(tolerance.at(T_camera_object.translation().z()));
-  const std::vector<float> beyond = depths_beyond(frame, view, T_camera_object, points);
   std::vector<float> within;
-  within.reserve(beyond.size());
-  for (const float value : beyond) {
-    if (std::abs(value) <= reach) within.push_back(value);  // false for NaN
+  within.reserve(seen.looks.size());
+  for (const Look& look : seen.looks) {
+    if (std::abs(look.beyond) <= reach) within.push_back(look.beyond);  // false for NaN
   }
   std::sort(within.begin(), within.end());
   const float shift = densest_mean(within, width);
-  return {shift, score_of(beyond, shift, width, view.area)};
+  return {shift, score_of(seen, shift, width)};
 }
 
 }  // namespace houghstream

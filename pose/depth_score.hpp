@@ -5,6 +5,7 @@
 #include "pipeline/frame.hpp"
 #include "pose/object_model.hpp"
 #include "pose/pose_settings.hpp"
+#include "pose/view_look.hpp"
 
 namespace houghstream {
 
@@ -15,8 +16,11 @@ struct DepthScore {
   float value = 0.0F;      ///< (agreeing - violating) times the view's silhouette: explained minus contradicted area
 };
 
-/// Judges the first `points` points of the view nearest to the pose. Points behind what was measured (occluded),
+/// Judges the points that were looked at. Points behind what was measured (occluded),
 /// without depth, or outside the image speak neither way.
+DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance);
+
+/// The same for the first `points` points of the view nearest to the pose.
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points, const DepthTolerance& tolerance);
 

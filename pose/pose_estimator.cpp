@@ -8,17 +8,32 @@
 #include "pipeline/checks.hpp"
 #include "pipeline/parallel.hpp"
 #include "pose/candidates.hpp"
-#include "pose/colour_score.hpp"
+#include "pose/quality.hpp"
 #include "pose/refinement.hpp"
 #include "pose/region.hpp"
 #include "pose/rotation_clusters.hpp"
-#include "pose/verification.hpp"
 
 namespace houghstream {
 namespace {
 
 bool is_finite(const Eigen::Vector3f& centre_camera) {
   return centre_camera.allFinite() && centre_camera.z() > 0.0F;
+}
+
+/// Renders the model, compares, and publishes the pose or says why not.
+PoseStatus judge_registered(const SeenRegion& seen, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                            const PoseSettings& settings, ObjectPose& pose) {
+  const DepthTolerance tolerance{settings.verification.tolerance_m, settings.noise};
+  const ViewLook look = look_at_view(seen.frame, model, T_camera_object, settings.registration.fine_points);
+  const Verification depth = verify_pose(seen.frame, model.mesh, T_camera_object, tolerance);
+  const PoseEvidence evidence{pose.detection_score, depth, compare_colours(seen.colours, look, tolerance)};
+  const QualityTerms terms = quality_terms(evidence, settings.quality);
+  pose.visible_fraction = depth.visible_fraction();
+  pose.free_space_violation = depth.free_space_violation();
+  pose.quality = pose_quality(terms, settings.quality);
+  if (pose.quality < settings.quality.least) return reason_against(terms, settings.quality);
+  pose.T_camera_object = T_camera_object;
+  return PoseStatus::kValid;
 }
 
 ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, const ObjectModel* model,
@@ -44,22 +59,15 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
   const std::vector<PoseCandidate> candidates =
       place_candidates(frame, *model, detection.centre_camera, rotations, settings);
 
-  const RegistrationResult registered = refine_candidates({frame, lab_region(frame, region.box_px), region}, *model,
-                                                          detection.centre_camera, candidates, settings);
+  const SeenRegion seen{frame, lab_region(frame, region.box_px), region};
+  const RegistrationResult registered = refine_candidates(seen, *model, detection.centre_camera, candidates, settings);
   pose.converged = registered.converged;
   pose.iterations = registered.iterations;
   pose.inliers = registered.inliers;
   pose.inlier_fraction = registered.inlier_fraction;
   pose.residual = registered.residual;
   if (registered.inliers == 0) return without(PoseStatus::kNotConverged);
-
-  const Verification verification =
-      verify_pose(frame, model->mesh, registered.T_camera_object, {settings.verification.tolerance_m, settings.noise});
-  pose.visible_fraction = verification.visible_fraction();
-  pose.free_space_violation = verification.free_space_violation();
-  if (!is_supported(verification, settings.verification)) return without(PoseStatus::kRejectedByDepth);
-  pose.T_camera_object = registered.T_camera_object;
-  return without(PoseStatus::kValid);
+  return without(judge_registered(seen, *model, registered.T_camera_object, settings, pose));
 }
 
 }  // namespace

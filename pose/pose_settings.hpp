@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace houghstream {
@@ -76,18 +77,26 @@ struct RegistrationSettings {
 
 /// Turns about the object's z axis that are tried after registration, degrees.
 struct TurnSettings {
-  double step_deg = 15.0;      ///< all the way round
-  double fine_step_deg = 3.0;  ///< up to one step to each side
-  int points = 250;            ///< of a view
-  std::size_t registered = 3;  ///< the best turns all round are registered again
+  double step_deg = 15.0;       ///< all the way round
+  double fine_step_deg = 3.0;   ///< up to one step to each side
+  double climb_step_m = 0.004;  ///< shifts along the object's axes that are tried with small turns
+  int climb_rounds = 4;         ///< of those, to each side
+  int points = 250;             ///< of a view
+  std::size_t registered = 3;   ///< the best turns all round are registered again
 };
 
 /// Comparison of the rendered model with the measured depth.
 struct VerificationSettings {
-  double tolerance_m = 0.008;         ///< measured and model depth agree; 3 sigma is added
-  double min_visible_fraction = 0.2;  ///< agreeing of all rendered pixels
-  double max_violation = 0.2;         ///< of the agreeing and violating pixels, those that violate free space
-  double min_outline = 0.15;          ///< of the outline with depth on both sides, what the measured surface ends at
+  double tolerance_m = 0.008;  ///< measured and model depth agree; 3 sigma is added
+};
+
+/// The probability that a pose is right, by logistic regression on the evidence (pose/quality.hpp, kQualityTerms).
+struct QualitySettings {
+  double bias = 0.0;
+  std::array<double, 6> weights = {};
+  std::array<double, 6> typical =
+      {};              ///< means of right poses: what is farthest below them is the reason for "no pose"
+  float least = 0.8F;  ///< poses of lower quality are not published
 };
 
 struct PoseSettings {
@@ -99,6 +108,7 @@ struct PoseSettings {
   RegistrationSettings registration;
   TurnSettings turn;
   VerificationSettings verification;
+  QualitySettings quality;
   float min_score = 0.1F;  ///< of a detection whose pose is looked for
   int threads = 1;
 };

@@ -44,6 +44,10 @@ class Refinement {
          best_turns(seen_.frame, seen_.colours, model_, result.T_camera_object, range, tolerance_)) {
       RegistrationResult again = coarsely(turn.T_camera_object, 0.5 * (start_m_ + end_m_));
       again.iterations += result.iterations;
+      const Climb climb{settings_.turn.fine_step_deg * kRadPerDeg, settings_.turn.climb_step_m,
+                        settings_.turn.climb_rounds, settings_.turn.points};
+      const ScoredPose top = climb_pose(seen_.frame, seen_.colours, model_, judge(again), climb, tolerance_);
+      again.T_camera_object = top.T_camera_object;
       const float score = judge(again).score;
       if (!is_near(again) || !(score > best_score)) continue;
       best = again;
@@ -55,7 +59,7 @@ class Refinement {
   RegistrationResult finely(const RegistrationResult& result) const {
     const RegistrationSettings& registration = settings_.registration;
     RegistrationResult fine =
-        registered(result.T_camera_object, {registration.fine_iterations, registration.fine_points, end_m_, end_m_});
+        registered(result.T_camera_object, {registration.fine_iterations, registration.fine_points, end_m_, end_m_, 1});
     fine.iterations += result.iterations;
     return is_near(fine) ? fine : result;
   }
@@ -98,10 +102,11 @@ RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& 
                                      const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
                                      const PoseSettings& settings) {
   const Refinement refinement(seen, model, centre_camera, settings);
-  RegistrationResult best = refinement.best_of(candidates);
+  const RegistrationResult best = refinement.best_of(candidates);
   if (best.inliers == 0) return best;
   const TurnSettings& turn = settings.turn;
-  const RegistrationResult fine = refinement.finely(refinement.turned(best, turn.step_deg, 180.0, turn.registered));
+  const RegistrationResult settled = refinement.finely(best);
+  const RegistrationResult fine = refinement.finely(refinement.turned(settled, turn.step_deg, 180.0, turn.registered));
   return refinement.finely(refinement.turned(fine, turn.fine_step_deg, turn.step_deg, 1));
 }
 

@@ -1,5 +1,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pose/registration.hpp"
@@ -9,17 +10,25 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector8f = Eigen::Matrix<float, 8, 1>;
+using Matrix8f = Eigen::Matrix<float, 8, 8>;
 
-constexpr int kSearchSteps = 2;    // lookups to each side of a point's pixel
 constexpr int kLeastPairs = 12;    // for a step: twice the unknowns
 constexpr double kDamping = 1e-3;  // of the mean curvature, holds turns that symmetric surfaces leave open
+
+/// What the pairs pull, as weighted sums of products: single precision and a width of eight suit vector units. Arms are
+/// from the model's centre to the points, in its radius.
+struct Pull {
+  Matrix8f across = Matrix8f::Zero();  // of (arm x normal, normal, gap along the normal, 0)
+  Matrix8f along = Matrix8f::Zero();   // of (arm, 1, gap, 0)
+  int pairs = 0;
+  double squares = 0.0;  // of the distances along the normals
+};
 
 /// Normal equations in a step (turn about the model's centre times its radius, shift), all in metres.
 struct StepEquations {
   Matrix6d curvature = Matrix6d::Zero();  // lower triangle
   Vector6d gradient = Vector6d::Zero();
-  int pairs = 0;
-  double squares = 0.0;  // of the distances along the normals
 };
 
 /// Rays of pixels with z = 1: that of (0,0), and the steps between neighbours.
@@ -31,19 +40,18 @@ struct Rays {
   Eigen::Vector3f step;
 };
 
-/// The gap to the measured point nearest to `point` among a lattice of pixels that reaches `distance` to each side.
-bool nearest_measured(const RgbdFrame& frame, const Rays& rays, const Eigen::Vector3d& point, float distance,
+/// The gap to the measured point nearest to `p` among a lattice of pixels that reaches `distance` to each side.
+bool nearest_measured(const RgbdFrame& frame, const Rays& rays, const Eigen::Vector3f& p, float distance, int steps,
                       Eigen::Vector3f& gap) {
-  const Eigen::Vector2d pixel = frame.camera.project(point);
-  const bool inside =
-      pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= frame.depth.cols - 1 && pixel.y() <= frame.depth.rows - 1;
+  const Eigen::Vector2f pixel = frame.camera.project_single(p) + Eigen::Vector2f::Constant(0.5F);
+  const bool inside = pixel.x() >= 0.5F && pixel.y() >= 0.5F && pixel.x() < static_cast<float>(frame.depth.cols) &&
+                      pixel.y() < static_cast<float>(frame.depth.rows);
   if (!inside) return false;
-  const Eigen::Vector3f p = point.cast<float>();
-  const int stride = std::max(1, static_cast<int>(distance / (rays.step.x() * p.z()) / kSearchSteps));
-  const int u = static_cast<int>(std::lround(pixel.x()));
-  const int v = static_cast<int>(std::lround(pixel.y()));
-  const auto least = [stride](int at) { return -std::min(kSearchSteps, at / stride); };
-  const auto most = [stride](int at, int size) { return std::min(kSearchSteps, (size - 1 - at) / stride); };
+  const int stride = std::max(1, static_cast<int>(distance / (rays.step.x() * p.z() * static_cast<float>(steps))));
+  const int u = static_cast<int>(pixel.x());
+  const int v = static_cast<int>(pixel.y());
+  const auto least = [stride, steps](int at) { return -std::min(steps, at / stride); };
+  const auto most = [stride, steps](int at, int size) { return std::min(steps, (size - 1 - at) / stride); };
   float best_sq = distance * distance;
   const float limit_sq = best_sq;
   for (int j = least(v); j <= most(v, frame.depth.rows); ++j) {
@@ -64,51 +72,76 @@ bool nearest_measured(const RgbdFrame& frame, const Rays& rays, const Eigen::Vec
   return best_sq < limit_sq;
 }
 
+void add_product(Matrix8f& sum, const std::array<float, 8>& row, float weight) {
+  const Eigen::Map<const Vector8f> r(row.data());
+  sum.noalias() += (weight * r) * r.transpose();
+}
+
+void add_pair(Pull& pull, const Eigen::Vector3f& arm, const Eigen::Vector3f& normal, const Eigen::Vector3f& gap,
+              float weight) {
+  const float apart = gap.dot(normal);
+  const Eigen::Vector3f& a = arm;
+  const Eigen::Vector3f& n = normal;
+  const std::array<float, 8> across{a.y() * n.z() - a.z() * n.y(),
+                                    a.z() * n.x() - a.x() * n.z(),
+                                    a.x() * n.y() - a.y() * n.x(),
+                                    n.x(),
+                                    n.y(),
+                                    n.z(),
+                                    apart,
+                                    0.0F};
+  const std::array<float, 8> along{a.x(), a.y(), a.z(), 1.0F, gap.x(), gap.y(), gap.z(), 0.0F};
+  add_product(pull.across, across, weight);
+  add_product(pull.along, along, weight);
+  ++pull.pairs;
+  pull.squares += static_cast<double>(apart * apart);
+}
+
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
   Eigen::Matrix3d out;
   out << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
   return out;
 }
 
-/// Adds the pull of one pair: gap^T W gap with W = weight (n n^T + point_weight I).
-void add_pair(StepEquations& equations, const Eigen::Vector3d& arm, const Eigen::Vector3d& gap,
-              const Eigen::Matrix3d& pull) {
-  const Eigen::Matrix3d turning = cross_matrix(arm);
-  const Eigen::Matrix3d turned = turning * pull;
-  equations.curvature.topLeftCorner<3, 3>() += turned * turning.transpose();
-  equations.curvature.bottomLeftCorner<3, 3>() += turned.transpose();
-  equations.curvature.bottomRightCorner<3, 3>() += pull;
-  equations.gradient.head<3>() += turned * gap;
-  equations.gradient.tail<3>() += pull * gap;
-}
-
-StepEquations pair_up(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                      std::size_t count, double distance, double point_weight) {
-  const ModelView& view = nearest_view(model, T_camera_object);
-  const Eigen::Vector3d centre = T_camera_object * model.centre.cast<double>();
-  const Rays rays(frame.camera);
+/// Of the sum of weight ((gap along the normal)^2 + point_weight gap^2).
+StepEquations equations_of(const Pull& pull, double point_weight) {
+  const Eigen::Matrix<double, 8, 8> along = point_weight * pull.along.cast<double>();
+  const Eigen::Matrix3d arms = along.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d moments = along.block<3, 3>(0, 4);  // arm times gap
   StepEquations equations;
-  for (std::size_t i = 0; i < std::min(count, view.points.size()); ++i) {
-    const Eigen::Vector3d point = T_camera_object * view.points[i].cast<double>();
-    const Eigen::Vector3d normal = T_camera_object.linear() * view.normals[i].cast<double>();
-    if (!(point.z() > 0.0) || normal.dot(point) >= 0.0) continue;  // turned away since the view was chosen
-    Eigen::Vector3f measured_gap = Eigen::Vector3f::Zero();
-    if (!nearest_measured(frame, rays, point, static_cast<float>(distance), measured_gap)) continue;
-    const Eigen::Vector3d gap = measured_gap.cast<double>();
-    const double across = gap.dot(normal);
-    const double left = 1.0 - gap.squaredNorm() / (distance * distance);
-    const double weight = left * left;  // Tukey's biweight
-    ++equations.pairs;
-    equations.squares += across * across;
-    Eigen::Matrix3d pull = weight * normal * normal.transpose();
-    pull.diagonal().array() += weight * point_weight;
-    add_pair(equations, (point - centre) / model.radius, gap, pull);
-  }
+  equations.curvature = pull.across.topLeftCorner<6, 6>().cast<double>();
+  equations.curvature.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
+  equations.curvature.bottomLeftCorner<3, 3>() -= cross_matrix(along.block<3, 1>(0, 3));
+  equations.curvature.bottomRightCorner<3, 3>().diagonal().array() += along(3, 3);
+  equations.gradient = pull.across.block<6, 1>(0, 6).cast<double>();
+  equations.gradient.head<3>() +=
+      Eigen::Vector3d(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2), moments(0, 1) - moments(1, 0));
+  equations.gradient.tail<3>() += along.block<3, 1>(4, 3);
   return equations;
 }
 
+Pull pair_up(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+             std::size_t count, double distance, int steps) {
+  const ModelView& view = nearest_view(model, T_camera_object);
+  const Eigen::Isometry3f T = T_camera_object.cast<float>();
+  const Eigen::Vector3f centre = T * model.centre;
+  const auto reach = static_cast<float>(distance);
+  const Rays rays(frame.camera);
+  Pull pull;
+  for (std::size_t i = 0; i < std::min(count, view.points.size()); ++i) {
+    const Eigen::Vector3f point = T * view.points[i];
+    const Eigen::Vector3f normal = T.linear() * view.normals[i];
+    if (!(point.z() > 0.0F) || normal.dot(point) >= 0.0F) continue;  // turned away since the view was chosen
+    Eigen::Vector3f gap = Eigen::Vector3f::Zero();
+    if (!nearest_measured(frame, rays, point, reach, steps, gap)) continue;
+    const float left = 1.0F - gap.squaredNorm() / (reach * reach);
+    add_pair(pull, (point - centre) / model.radius, normal, gap, left * left);  // Tukey's biweight
+  }
+  return pull;
+}
+
 /// Moves the model by the damped Gauss-Newton step and gives the step's length, metres.
-double take_step(StepEquations& equations, const ObjectModel& model, Eigen::Isometry3d& T_camera_object) {
+double take_step(StepEquations equations, const ObjectModel& model, Eigen::Isometry3d& T_camera_object) {
   const double damping = kDamping * equations.curvature.trace() / 6.0;
   equations.curvature.diagonal().array() += damping;
   const Vector6d step = equations.curvature.selfadjointView<Eigen::Lower>().ldlt().solve(equations.gradient);
@@ -136,15 +169,15 @@ RegistrationResult register_projective(const RgbdFrame& frame, const ObjectModel
       std::pow(stage.end_distance_m / stage.start_distance_m, 1.0 / std::max(1, stage.iterations - 1));
   double distance = stage.start_distance_m;
   for (; result.iterations < stage.iterations; ++result.iterations) {
-    StepEquations equations = pair_up(frame, model, result.T_camera_object, points, distance, settings.point_weight);
+    const Pull pull = pair_up(frame, model, result.T_camera_object, points, distance, stage.search_steps);
     result.converged = false;
-    if (equations.pairs < kLeastPairs) break;
+    if (pull.pairs < kLeastPairs) break;
+    const StepEquations equations = equations_of(pull, settings.point_weight);
     result.converged = take_step(equations, model, result.T_camera_object) < settings.converged_m;
     if (result.converged && distance <= stage.end_distance_m * 1.01) break;
     distance = std::max(distance * shrink, stage.end_distance_m);
   }
-  const StepEquations last =
-      pair_up(frame, model, result.T_camera_object, points, stage.end_distance_m, settings.point_weight);
+  const Pull last = pair_up(frame, model, result.T_camera_object, points, stage.end_distance_m, stage.search_steps);
   const std::size_t used = std::min(points, nearest_view(model, result.T_camera_object).points.size());
   result.inliers = last.pairs;
   result.inlier_fraction = static_cast<float>(last.pairs) / static_cast<float>(used);

@@ -27,6 +27,7 @@ struct RegistrationStage {
   int points = 0;  ///< of the model's view, at most
   double start_distance_m = 0.0;
   double end_distance_m = 0.0;
+  int search_steps = 2;  ///< ours: measured points looked at to each side of a model point's pixel
 };
 
 /// Ours: each visible model point is paired with the nearest measured point about its pixel (projective data

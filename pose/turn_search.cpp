@@ -9,9 +9,8 @@ namespace houghstream {
 
 ScoredPose judge_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
                       const Eigen::Isometry3d& T_camera_object, int points, const DepthTolerance& tolerance) {
-  const float depth = score_pose(frame, model, T_camera_object, points, tolerance).value;
-  return {T_camera_object,
-          joint_score(depth, colour_agreement(frame, colours, model, T_camera_object, points, tolerance))};
+  const ViewLook seen = look_at_view(frame, model, T_camera_object, points);
+  return {T_camera_object, joint_score(score_look(seen, tolerance).value, compare_colours(colours, seen, tolerance))};
 }
 
 namespace {
@@ -28,21 +27,47 @@ std::vector<ScoredPose> summits(const std::vector<ScoredPose>& turns, bool ring)
   return best;
 }
 
+Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectModel& model, double angle_rad) {
+  const Eigen::Vector3d middle = model.middle.cast<double>();
+  const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitZ());
+  return T_camera_object * Eigen::Translation3d(middle) * turn * Eigen::Translation3d(-middle);
+}
+
 }  // namespace
+
+ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
+                      const ScoredPose& start, const Climb& climb, const DepthTolerance& tolerance) {
+  ScoredPose best = start;
+  double size = 1.0;
+  for (int round = 0; round < climb.rounds; ++round) {
+    bool improved = false;
+    for (int motion = 0; motion < 8; ++motion) {
+      const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
+      Eigen::Isometry3d moved = best.T_camera_object;
+      if (motion < 2) {
+        moved = turned(moved, model, way * climb.step_rad);
+      } else {
+        moved.translate(way * climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
+      }
+      const ScoredPose next = judge_pose(frame, colours, model, moved, climb.points, tolerance);
+      if (!(next.score > best.score)) continue;
+      best = next;
+      improved = true;
+    }
+    if (!improved) size *= 0.5;
+  }
+  return best;
+}
 
 std::vector<ScoredPose> best_turns(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
                                    const Eigen::Isometry3d& T_camera_object, const TurnRange& range,
                                    const DepthTolerance& tolerance) {
-  const Eigen::Vector3d middle = model.middle.cast<double>();
   const int steps = static_cast<int>(std::floor(range.reach_rad / range.step_rad + 1e-9));
   const bool all_round = 2.0 * range.reach_rad >= 2.0 * M_PI - 1e-9;  // then both ends are one pose
   std::vector<ScoredPose> turns;
   for (int i = -steps; i <= steps - (all_round ? 1 : 0); ++i) {
-    Eigen::Isometry3d turned = T_camera_object;
-    turned.translate(middle);
-    turned.rotate(Eigen::AngleAxisd(i * range.step_rad, Eigen::Vector3d::UnitZ()));
-    turned.translate(-middle);
-    turns.push_back(judge_pose(frame, colours, model, turned, range.points, tolerance));
+    const Eigen::Isometry3d turn = turned(T_camera_object, model, i * range.step_rad);
+    turns.push_back(judge_pose(frame, colours, model, turn, range.points, tolerance));
   }
   std::vector<ScoredPose> best = summits(turns, all_round);
   std::stable_sort(best.begin(), best.end(),

@@ -30,4 +30,17 @@ std::vector<ScoredPose> best_turns(const RgbdFrame& frame, const LabRegion& colo
                                    const Eigen::Isometry3d& T_camera_object, const TurnRange& range,
                                    const DepthTolerance& tolerance);
 
+/// Small steps: turns about the object's z axis and shifts along its axes.
+struct Climb {
+  double step_rad = 0.0;
+  double step_m = 0.0;
+  int rounds = 0;  ///< of one step each way; halved after a round without a better pose
+  int points = 0;  ///< of a view
+};
+
+/// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
+/// round thing stands along its axis.
+ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
+                      const ScoredPose& start, const Climb& climb, const DepthTolerance& tolerance);
+
 }  // namespace houghstream

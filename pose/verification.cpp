@@ -89,12 +89,4 @@ Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::
   return result;
 }
 
-bool is_supported(const Verification& verification, const VerificationSettings& settings) {
-  const int judged = verification.agreeing + verification.violating;
-  const int outline = verification.outline_ends + verification.outline_continues;
-  if (verification.outline_ends < settings.min_outline * outline) return false;
-  return judged > 0 && verification.visible_fraction() >= settings.min_visible_fraction &&
-         verification.violating <= settings.max_violation * judged;
-}
-
 }  // namespace houghstream

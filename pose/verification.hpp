@@ -23,8 +23,4 @@ struct Verification {
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
                          const DepthTolerance& tolerance);
 
-/// Enough of the model is seen, little of it contradicts what was seen, and its outline is one of the scene's too:
-/// a model's flat face sunk into a table top agrees everywhere and ends nowhere.
-bool is_supported(const Verification& verification, const VerificationSettings& settings);
-
 }  // namespace houghstream

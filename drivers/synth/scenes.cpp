@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "drivers/synth/objects.hpp"
 #include "drivers/synth/table_layout.hpp"
@@ -154,16 +155,37 @@ constexpr std::array<Plan, 13> kPlans = {
       kDay,
       {true, 1, 0, 12, kEven}}}};
 
+/// The number N of "development_world_N", 0 to 999.
+std::optional<int> development_number(const std::string& name) {
+  const std::string prefix = kDevelopmentWorld;
+  const std::string digits = name.substr(std::min(name.size(), prefix.size()));
+  const bool numbered = name == prefix + digits && !digits.empty() && digits.size() <= 3 &&
+                        digits.find_first_not_of("0123456789") == std::string::npos;
+  return numbered ? std::optional<int>(std::stoi(digits)) : std::nullopt;
+}
+
+Plan development_plan(int number) {
+  constexpr std::uint64_t kFirstWorld = 100;  // after those of kPlans
+  const TimeOfDay time = number % 3 == 2 ? kEvening : kDay;
+  const Clutter clutter{true, 1 + number % 2, 8, 8 + 2 * (number % 4), kNone, number % 2 == 0 ? kAlike : 0.0};
+  const std::uint64_t world = kDevelopment + kFirstWorld + static_cast<std::uint64_t>(number);
+  return {kDevelopmentWorld, kTraining, world, static_cast<RoomStyle>(number % kRoomStyles), time, clutter};
+}
+
+Scene planned_scene(const std::string& name, const Plan& plan) {
+  return make_scene(name, plan.style, plan.clutter, plan.time, world_seed(plan.use, plan.world));
+}
+
 }  // namespace
 
 Scene make_named_scene(const std::string& name) {
   for (const Plan& plan : kPlans) {
-    if (name == plan.name)
-      return make_scene(name, plan.style, plan.clutter, plan.time, world_seed(plan.use, plan.world));
+    if (name == plan.name) return planned_scene(name, plan);
   }
-  fail("scene \"{}\": expected one of {}, {}, or for choosing settings {}, {}", name, fmt::join(kTestScenes, ", "),
-       fmt::join(kTwentyClassScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
-       fmt::join(kTwentyClassDevelopmentScenes, ", "));
+  if (const std::optional<int> number = development_number(name)) return planned_scene(name, development_plan(*number));
+  fail("scene \"{}\": expected one of {}, {}, or for choosing settings {}, {}, {}0 to {}999", name,
+       fmt::join(kTestScenes, ", "), fmt::join(kTwentyClassScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
+       fmt::join(kTwentyClassDevelopmentScenes, ", "), kDevelopmentWorld, kDevelopmentWorld);
 }
 
 Scene make_background_scene(int index, std::uint64_t seed) {

@@ -42,6 +42,9 @@ inline constexpr std::array<const char*, 6> kTestScenes = {"table_small_1", "tab
 inline constexpr std::array<const char*, 3> kDevelopmentScenes = {"development_table", "development_desk",
                                                                   "development_kitchen"};
 
+/// As many more of them as a fit needs: this name with a number from 0 to 999.
+inline constexpr const char* kDevelopmentWorld = "development_world_";
+
 /// Test scenes of the twenty classes: each holds the four and eight of the sixteen others, both together all of them.
 inline constexpr std::array<const char*, 2> kTwentyClassScenes = {"objects_20_a", "objects_20_b"};
 

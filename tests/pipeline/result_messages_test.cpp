@@ -46,6 +46,7 @@ ObjectPoses make_poses() {
   valid.residual = 0.002F;
   valid.visible_fraction = 0.9F;
   valid.free_space_violation = 0.05F;
+  valid.quality = 0.93F;
   ObjectPose refused;
   refused.class_name = "bowl";
   refused.class_id = 1;
@@ -148,7 +149,7 @@ TEST(ResultMessages, AbsurdPosesAreRefused) {
     EXPECT_THROW(poses_from_message(bad), InputError);
   };
   refused([](object_pose_t& p) { p.status = 0; });
-  refused([](object_pose_t& p) { p.status = object_pose_t::LOW_SCORE + 1; });
+  refused([](object_pose_t& p) { p.status = object_pose_t::REJECTED_BY_COLOUR + 1; });
   refused([](object_pose_t& p) { p.trans[0] = kNan; });
   refused([](object_pose_t& p) { p.quat[0] = 2.0; });
   refused([](object_pose_t& p) { p.visible_fraction = 1.5F; });
