@@ -1,0 +1,120 @@
+#include <pcl/features/fpfh.h>
+#include <pcl/registration/sample_consensus_prerejective.h>
+#include <pcl/search/kdtree.h>
+
+#include <cstdlib>
+#include <mutex>
+
+#include "pose/registration.hpp"
+#include "tools/bench/surface_rival.hpp"
+
+namespace houghstream {
+namespace {
+
+using Features = pcl::PointCloud<pcl::FPFHSignature33>;
+
+struct DescribedSurface {
+  SurfaceCloud::Ptr points;
+  Features::Ptr features;  ///< one per point
+};
+
+/// Points whose histogram is undefined (no neighbours) are left out: PCL's search aborts on NaN.
+DescribedSurface describe(const SurfaceCloud::Ptr& cloud, double radius_m) {
+  pcl::FPFHEstimation<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33> estimation;
+  estimation.setInputCloud(cloud);
+  estimation.setInputNormals(cloud);
+  estimation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>());
+  estimation.setRadiusSearch(radius_m);
+  Features all;
+  estimation.compute(all);
+  DescribedSurface out{SurfaceCloud::Ptr(new SurfaceCloud), Features::Ptr(new Features)};
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (!Eigen::Map<const Eigen::Array<float, 33, 1>>(all[i].histogram).allFinite()) continue;
+    out.points->push_back((*cloud)[i]);
+    out.features->push_back(all[i]);
+  }
+  return out;
+}
+
+Eigen::Isometry3d rigid(const Eigen::Matrix4f& matrix) {
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>().cast<double>();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  T.translation() = matrix.topRightCorner<3, 1>().cast<double>();
+  return T;
+}
+
+class PrerejectiveRival final : public SurfaceRival {
+ public:
+  PrerejectiveRival(const std::map<std::string, Mesh>& meshes, const PoseSettings& pose,
+                    const PrerejectiveSettings& settings)
+      : SurfaceRival(meshes, pose, settings.surface), settings_(settings) {
+    for (const auto& [name, model] : models()) {
+      described_.emplace(name, describe(model_surface(model, settings.surface), settings.feature_radius_m));
+    }
+  }
+
+ private:
+  using Alignment = pcl::SampleConsensusPrerejective<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33>;
+
+  std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& seen) const override {
+    const DescribedSurface& model = described_.at(name);
+    const DescribedSurface measured = describe(seen.cloud, settings_.feature_radius_m);
+    const auto least = static_cast<std::size_t>(std::max(settings_.samples, settings_.similar_features));
+    if (model.points->size() < least || measured.points->size() < least) return {};
+    Alignment alignment;
+    configure(alignment, model, measured);
+    std::vector<Eigen::Isometry3d> poses;
+    for (int run = 0; run < settings_.runs; ++run) {
+      if (const auto start = align(alignment, static_cast<unsigned>(run + 1))) {
+        if (const auto pose = refine(*start, name, seen)) poses.push_back(*pose);
+      }
+    }
+    return poses;
+  }
+
+  void configure(Alignment& alignment, const DescribedSurface& model, const DescribedSurface& measured) const {
+    alignment.setInputSource(model.points);
+    alignment.setSourceFeatures(model.features);
+    alignment.setInputTarget(measured.points);
+    alignment.setTargetFeatures(measured.features);
+    alignment.setMaximumIterations(settings_.iterations);
+    alignment.setNumberOfSamples(settings_.samples);
+    alignment.setCorrespondenceRandomness(settings_.similar_features);
+    alignment.setSimilarityThreshold(settings_.similarity);
+    alignment.setMaxCorrespondenceDistance(settings_.inlier_m);
+    alignment.setInlierFraction(settings_.inlier_share);
+  }
+
+  static std::optional<Eigen::Isometry3d> align(Alignment& alignment, unsigned seed) {
+    static std::mutex one_at_a_time;
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    std::srand(seed);
+    SurfaceCloud aligned;
+    alignment.align(aligned);
+    if (!alignment.hasConverged()) return std::nullopt;
+    return rigid(alignment.getFinalTransformation());
+  }
+
+  std::optional<Eigen::Isometry3d> refine(const Eigen::Isometry3d& start, const std::string& name,
+                                          const SeenSurface& seen) const {
+    const RegistrationStage stage{settings_.icp_iterations, settings_.icp_points, settings_.icp_start_m,
+                                  settings_.icp_end_m};
+    const RegistrationResult result =
+        register_pcl(seen.points, models().at(name), start, stage, pose_settings().registration);
+    if (result.inliers == 0) return std::nullopt;
+    return result.T_camera_object;
+  }
+
+  PrerejectiveSettings settings_;
+  std::map<std::string, DescribedSurface> described_;
+};
+
+}  // namespace
+
+std::unique_ptr<PoseRival> make_prerejective_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
+                                                   const PrerejectiveSettings& settings) {
+  return std::make_unique<PrerejectiveRival>(models, pose, settings);
+}
+
+}  // namespace houghstream
