@@ -8,6 +8,10 @@ namespace {
 
 namespace ppf = cv::ppf_match_3d;
 
+/// OpenCV thins a cloud by a grid of this share of its extent along each axis, which squeezes flat clouds; so fine that
+/// it leaves what thinned() left.
+constexpr double kFineStep = 0.02;
+
 /// One row x, y, z, nx, ny, nz per point, as cv::ppf_match_3d takes them.
 cv::Mat rows_of(const SurfaceCloud& cloud) {
   cv::Mat rows(static_cast<int>(cloud.size()), 6, CV_32FC1);
@@ -45,9 +49,10 @@ class PpfRival final : public SurfaceRival {
   PpfRival(const std::map<std::string, Mesh>& meshes, const PoseSettings& pose, const PpfSettings& settings)
       : SurfaceRival(meshes, pose, settings.surface), settings_(settings) {
     for (const auto& [name, model] : models()) {
-      auto detector = std::make_unique<ppf::PPF3DDetector>(settings.model_step, settings.model_step, settings.angles);
+      auto detector =
+          std::make_unique<ppf::PPF3DDetector>(settings.distance_step, settings.distance_step, settings.angles);
       detector->setSearchParams(settings.cluster_m, settings.cluster_rad);
-      detector->trainModel(rows_of(*model_surface(model, settings.surface)));
+      detector->trainModel(rows_of(*model_surface(model, spacing_m(model))));
       detectors_.emplace(name, std::move(detector));
     }
   }
@@ -58,7 +63,8 @@ class PpfRival final : public SurfaceRival {
     if (seen.cloud->size() < kLeastPoints) return {};
     const cv::Mat measured = rows_of(*seen.cloud);
     std::vector<ppf::Pose3DPtr> found;
-    detectors_.at(name)->match(measured, found, settings_.reference_share, settings_.scene_step);
+    const cv::Mat thin = rows_of(*thinned(*seen.cloud, spacing_m(models().at(name))));
+    detectors_.at(name)->match(thin, found, settings_.reference_share, kFineStep);
     ppf::ICP icp(settings_.icp_iterations, settings_.icp_tolerance, settings_.icp_rejection, settings_.icp_levels);
     std::vector<Eigen::Isometry3d> poses;
     for (const ppf::Pose3DPtr& pose : found) {
@@ -71,6 +77,8 @@ class PpfRival final : public SurfaceRival {
     }
     return poses;
   }
+
+  double spacing_m(const ObjectModel& model) const { return settings_.spacing * 2.0 * model.radius; }
 
   PpfSettings settings_;
   std::map<std::string, std::unique_ptr<ppf::PPF3DDetector>> detectors_;

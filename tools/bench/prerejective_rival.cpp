@@ -50,7 +50,7 @@ class PrerejectiveRival final : public SurfaceRival {
                     const PrerejectiveSettings& settings)
       : SurfaceRival(meshes, pose, settings.surface), settings_(settings) {
     for (const auto& [name, model] : models()) {
-      described_.emplace(name, describe(model_surface(model, settings.surface), settings.feature_radius_m));
+      described_.emplace(name, describe(model_surface(model, spacing_m(model)), feature_radius_m(model)));
     }
   }
 
@@ -59,21 +59,27 @@ class PrerejectiveRival final : public SurfaceRival {
 
   std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& seen) const override {
     const DescribedSurface& model = described_.at(name);
-    const DescribedSurface measured = describe(seen.cloud, settings_.feature_radius_m);
+    const DescribedSurface measured =
+        describe(thinned(*seen.cloud, spacing_m(models().at(name))), feature_radius_m(models().at(name)));
     const auto least = static_cast<std::size_t>(std::max(settings_.samples, settings_.similar_features));
     if (model.points->size() < least || measured.points->size() < least) return {};
     Alignment alignment;
-    configure(alignment, model, measured);
+    configure(alignment, model, measured, 2.0 * models().at(name).radius);
+    const std::vector<Eigen::Vector3f> points = region_points(seen.frame, seen.region, settings_.icp_points);
     std::vector<Eigen::Isometry3d> poses;
     for (int run = 0; run < settings_.runs; ++run) {
       if (const auto start = align(alignment, static_cast<unsigned>(run + 1))) {
-        if (const auto pose = refine(*start, name, seen)) poses.push_back(*pose);
+        if (const auto pose = refine(*start, models().at(name), points)) poses.push_back(*pose);
       }
     }
     return poses;
   }
 
-  void configure(Alignment& alignment, const DescribedSurface& model, const DescribedSurface& measured) const {
+  double spacing_m(const ObjectModel& model) const { return settings_.spacing * 2.0 * model.radius; }
+  double feature_radius_m(const ObjectModel& model) const { return settings_.feature_radius * 2.0 * model.radius; }
+
+  void configure(Alignment& alignment, const DescribedSurface& model, const DescribedSurface& measured,
+                 double diameter_m) const {
     alignment.setInputSource(model.points);
     alignment.setSourceFeatures(model.features);
     alignment.setInputTarget(measured.points);
@@ -82,7 +88,7 @@ class PrerejectiveRival final : public SurfaceRival {
     alignment.setNumberOfSamples(settings_.samples);
     alignment.setCorrespondenceRandomness(settings_.similar_features);
     alignment.setSimilarityThreshold(settings_.similarity);
-    alignment.setMaxCorrespondenceDistance(settings_.inlier_m);
+    alignment.setMaxCorrespondenceDistance(settings_.inlier_distance * diameter_m);
     alignment.setInlierFraction(settings_.inlier_share);
   }
 
@@ -96,12 +102,11 @@ class PrerejectiveRival final : public SurfaceRival {
     return rigid(alignment.getFinalTransformation());
   }
 
-  std::optional<Eigen::Isometry3d> refine(const Eigen::Isometry3d& start, const std::string& name,
-                                          const SeenSurface& seen) const {
+  std::optional<Eigen::Isometry3d> refine(const Eigen::Isometry3d& start, const ObjectModel& model,
+                                          const std::vector<Eigen::Vector3f>& points_camera) const {
     const RegistrationStage stage{settings_.icp_iterations, settings_.icp_points, settings_.icp_start_m,
                                   settings_.icp_end_m};
-    const RegistrationResult result =
-        register_pcl(seen.points, models().at(name), start, stage, pose_settings().registration);
+    const RegistrationResult result = register_pcl(points_camera, model, start, stage, pose_settings().registration);
     if (result.inliers == 0) return std::nullopt;
     return result.T_camera_object;
   }

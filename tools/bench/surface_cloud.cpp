@@ -10,7 +10,7 @@
 namespace houghstream {
 namespace {
 
-/// A cube of space and the side that the surface faces: the two sides of a thin wall stay apart.
+/// A cube of space and the side that the surface faces.
 using Cell = std::array<int, 4>;
 
 Cell cell_of(const pcl::PointNormal& point, double spacing_m) {
@@ -26,25 +26,6 @@ struct Sum {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   int count = 0;
 };
-
-/// The mean of each cell. A map keeps the order of the points the same everywhere.
-SurfaceCloud::Ptr thinned(const SurfaceCloud& cloud, double spacing_m) {
-  std::map<Cell, Sum> cells;
-  for (const pcl::PointNormal& point : cloud) {
-    Sum& sum = cells[cell_of(point, spacing_m)];
-    sum.point += point.getVector3fMap();
-    sum.normal += point.getNormalVector3fMap();
-    ++sum.count;
-  }
-  const SurfaceCloud::Ptr out(new SurfaceCloud);
-  for (const auto& [cell, sum] : cells) {
-    pcl::PointNormal mean;
-    mean.getVector3fMap() = sum.point / static_cast<float>(sum.count);
-    mean.getNormalVector3fMap() = sum.normal.normalized();
-    out->push_back(mean);
-  }
-  return out;
-}
 
 SurfaceCloud::Ptr with_normals(const SurfaceCloud::Ptr& points, const SurfaceCloud::Ptr& among, double radius_m) {
   pcl::NormalEstimation<pcl::PointNormal, pcl::PointNormal> estimation;
@@ -65,7 +46,25 @@ SurfaceCloud::Ptr with_normals(const SurfaceCloud::Ptr& points, const SurfaceClo
 
 }  // namespace
 
-SurfaceCloud::Ptr model_surface(const ObjectModel& model, const SurfaceSettings& settings) {
+SurfaceCloud::Ptr thinned(const SurfaceCloud& cloud, double spacing_m) {
+  std::map<Cell, Sum> cells;
+  for (const pcl::PointNormal& point : cloud) {
+    Sum& sum = cells[cell_of(point, spacing_m)];
+    sum.point += point.getVector3fMap();
+    sum.normal += point.getNormalVector3fMap();
+    ++sum.count;
+  }
+  const SurfaceCloud::Ptr out(new SurfaceCloud);
+  for (const auto& [cell, sum] : cells) {
+    pcl::PointNormal mean;
+    mean.getVector3fMap() = sum.point / static_cast<float>(sum.count);
+    mean.getNormalVector3fMap() = sum.normal.normalized();
+    out->push_back(mean);
+  }
+  return out;
+}
+
+SurfaceCloud::Ptr model_surface(const ObjectModel& model, double spacing_m) {
   SurfaceCloud all;
   for (const ModelView& view : model.views) {
     for (std::size_t i = 0; i < view.points.size(); ++i) {
@@ -74,7 +73,7 @@ SurfaceCloud::Ptr model_surface(const ObjectModel& model, const SurfaceSettings&
       all.back().getNormalVector3fMap() = view.normals[i];
     }
   }
-  return thinned(all, settings.spacing_m);
+  return thinned(all, spacing_m);
 }
 
 SurfaceCloud::Ptr measured_surface(const RgbdFrame& frame, const DepthRegion& region, const SurfaceSettings& settings) {

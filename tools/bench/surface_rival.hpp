@@ -11,10 +11,11 @@ namespace houghstream {
 
 /// What is seen of a detection, as the rivals get it.
 struct SeenSurface {
-  SurfaceCloud::Ptr cloud;              ///< measured_surface()
-  std::vector<Eigen::Vector3f> points;  ///< of the region, not thinned as the cloud is, camera frame, metres
-  Eigen::Vector3d centre_camera;        ///< of the detection, metres
-  double max_shift_m = 0.0;             ///< a pose whose origin is farther from it will not be taken
+  const RgbdFrame& frame;
+  const DepthRegion& region;
+  SurfaceCloud::Ptr cloud;        ///< measured_surface()
+  Eigen::Vector3d centre_camera;  ///< of the detection, metres
+  double max_shift_m = 0.0;       ///< a pose whose origin is farther from it will not be taken
 
   bool reaches(const Eigen::Isometry3d& T_camera_object) const {
     return (T_camera_object.translation() - centre_camera).norm() <= max_shift_m;
