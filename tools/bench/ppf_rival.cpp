@@ -1,6 +1,9 @@
+#include <algorithm>
+#include <array>
 #include <opencv2/surface_matching.hpp>
 #include <opencv2/surface_matching/icp.hpp>
 
+#include "pipeline/checks.hpp"
 #include "tools/bench/surface_rival.hpp"
 
 namespace houghstream {
@@ -42,6 +45,18 @@ Eigen::Isometry3d rigid(const cv::Matx44d& matrix) {
   T.linear() = Eigen::Quaterniond(m.topLeftCorner<3, 3>()).normalized().toRotationMatrix();
   T.translation() = m.topRightCorner<3, 1>();
   return T;
+}
+
+void check_settings(const PpfSettings& s) {
+  require(s.spacing >= 0.01 && s.spacing <= 0.5, "ppf: spacing {}, expected 0.01 to 0.5 diameters", s.spacing);
+  require(s.distance_step >= 0.01 && s.distance_step <= 0.5, "ppf: distance step {}, expected 0.01 to 0.5 diameters",
+          s.distance_step);
+  require(s.angles >= 4 && s.angles <= 360, "ppf: {} angles, expected 4 to 360", s.angles);
+  require(s.reference_share > 0.0 && s.reference_share <= 1.0, "ppf: reference share {}, expected above 0, at most 1",
+          s.reference_share);
+  require(s.kept >= 1 && s.icp_iterations >= 1 && s.icp_levels >= 1,
+          "ppf: {} poses, {} iterations of ICP in {} levels, expected at least 1 of each", s.kept, s.icp_iterations,
+          s.icp_levels);
 }
 
 class PpfRival final : public SurfaceRival {
@@ -88,6 +103,7 @@ class PpfRival final : public SurfaceRival {
 
 std::unique_ptr<PoseRival> make_ppf_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
                                           const PpfSettings& settings) {
+  check_settings(settings);
   return std::make_unique<PpfRival>(models, pose, settings);
 }
 

@@ -2,9 +2,11 @@
 #include <pcl/registration/sample_consensus_prerejective.h>
 #include <pcl/search/kdtree.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <mutex>
 
+#include "pipeline/checks.hpp"
 #include "pose/registration.hpp"
 #include "tools/bench/surface_rival.hpp"
 
@@ -44,6 +46,18 @@ Eigen::Isometry3d rigid(const Eigen::Matrix4f& matrix) {
   return T;
 }
 
+void check_settings(const PrerejectiveSettings& s) {
+  require(s.spacing >= 0.01 && s.spacing <= 0.5, "fpfh: spacing {}, expected 0.01 to 0.5 diameters", s.spacing);
+  require(s.feature_radius > s.spacing && s.feature_radius <= 2.0,
+          "fpfh: feature radius {}, expected more than the spacing, at most 2 diameters", s.feature_radius);
+  require(s.runs >= 1 && s.iterations >= 1 && s.samples >= 3 && s.similar_features >= 1,
+          "fpfh: {} runs of {} iterations, {} samples, {} similar features, expected at least 1, 1, 3, 1", s.runs,
+          s.iterations, s.samples, s.similar_features);
+  require(s.similarity >= 0.0F && s.similarity < 1.0F, "fpfh: similarity {}, expected 0 to below 1", s.similarity);
+  require(s.least_inliers >= 0.0F && s.least_inliers <= s.most_inliers && s.most_inliers <= 1.0F,
+          "fpfh: {} to {} inliers, expected shares from 0 to 1, the least first", s.least_inliers, s.most_inliers);
+}
+
 class PrerejectiveRival final : public SurfaceRival {
  public:
   PrerejectiveRival(const std::map<std::string, Mesh>& meshes, const PoseSettings& pose,
@@ -58,18 +72,19 @@ class PrerejectiveRival final : public SurfaceRival {
   using Alignment = pcl::SampleConsensusPrerejective<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33>;
 
   std::vector<Eigen::Isometry3d> propose(const std::string& name, const SeenSurface& seen) const override {
-    const DescribedSurface& model = described_.at(name);
-    const DescribedSurface measured =
-        describe(thinned(*seen.cloud, spacing_m(models().at(name))), feature_radius_m(models().at(name)));
+    const ObjectModel& model = models().at(name);
+    const DescribedSurface& taught = described_.at(name);
+    const DescribedSurface measured = describe(thinned(*seen.cloud, spacing_m(model)), feature_radius_m(model));
     const auto least = static_cast<std::size_t>(std::max(settings_.samples, settings_.similar_features));
-    if (model.points->size() < least || measured.points->size() < least) return {};
+    if (taught.points->size() < least || measured.points->size() < least) return {};
     Alignment alignment;
-    configure(alignment, model, measured, 2.0 * models().at(name).radius);
+    configure(alignment, taught, measured, 2.0 * model.radius);
     const std::vector<Eigen::Vector3f> points = region_points(seen.frame, seen.region, settings_.icp_points);
     std::vector<Eigen::Isometry3d> poses;
     for (int run = 0; run < settings_.runs; ++run) {
+      alignment.setInlierFraction(inlier_share(run));
       if (const auto start = align(alignment, static_cast<unsigned>(run + 1))) {
-        if (const auto pose = refine(*start, models().at(name), points)) poses.push_back(*pose);
+        if (const auto pose = refine(*start, model, points)) poses.push_back(*pose);
       }
     }
     return poses;
@@ -78,10 +93,16 @@ class PrerejectiveRival final : public SurfaceRival {
   double spacing_m(const ObjectModel& model) const { return settings_.spacing * 2.0 * model.radius; }
   double feature_radius_m(const ObjectModel& model) const { return settings_.feature_radius * 2.0 * model.radius; }
 
-  void configure(Alignment& alignment, const DescribedSurface& model, const DescribedSurface& measured,
+  /// From one run to the next evenly less.
+  float inlier_share(int run) const {
+    const float part = settings_.runs > 1 ? static_cast<float>(run) / static_cast<float>(settings_.runs - 1) : 0.0F;
+    return settings_.most_inliers + part * (settings_.least_inliers - settings_.most_inliers);
+  }
+
+  void configure(Alignment& alignment, const DescribedSurface& taught, const DescribedSurface& measured,
                  double diameter_m) const {
-    alignment.setInputSource(model.points);
-    alignment.setSourceFeatures(model.features);
+    alignment.setInputSource(taught.points);
+    alignment.setSourceFeatures(taught.features);
     alignment.setInputTarget(measured.points);
     alignment.setTargetFeatures(measured.features);
     alignment.setMaximumIterations(settings_.iterations);
@@ -89,7 +110,6 @@ class PrerejectiveRival final : public SurfaceRival {
     alignment.setCorrespondenceRandomness(settings_.similar_features);
     alignment.setSimilarityThreshold(settings_.similarity);
     alignment.setMaxCorrespondenceDistance(settings_.inlier_distance * diameter_m);
-    alignment.setInlierFraction(settings_.inlier_share);
   }
 
   static std::optional<Eigen::Isometry3d> align(Alignment& alignment, unsigned seed) {
@@ -119,6 +139,7 @@ class PrerejectiveRival final : public SurfaceRival {
 
 std::unique_ptr<PoseRival> make_prerejective_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
                                                    const PrerejectiveSettings& settings) {
+  check_settings(settings);
   return std::make_unique<PrerejectiveRival>(models, pose, settings);
 }
 

@@ -14,14 +14,18 @@ struct SurfaceSettings {
 /// FPFH, pcl::SampleConsensusPrerejective, ICP.
 struct PrerejectiveSettings {
   SurfaceSettings surface;
-  double spacing = 0.06;          ///< of the points of model and region, a share
-  double feature_radius = 0.2;    ///< of a histogram's neighbours, a share
-  int runs = 20;                  ///< each with its own draw and its own ICP
-  int iterations = 5000;          ///< of a run
-  int samples = 3;                ///< pairs that make a pose
-  int similar_features = 10;      ///< a sample's partner is drawn among so many
-  float similarity = 0.9F;        ///< of the samples' mutual distances, 0 to 1
-  float inlier_share = 0.1F;      ///< of the model's points; the far side is never seen
+  double spacing = 0.06;        ///< of the points of model and region, a share
+  double feature_radius = 0.2;  ///< of a histogram's neighbours, a share
+  int runs = 20;                ///< each with its own draw and its own ICP
+  int iterations = 5000;        ///< of a run
+  int samples = 3;              ///< pairs that make a pose
+  int similar_features = 10;    ///< a sample's partner is drawn among so many
+  float similarity = 0.9F;      ///< of the samples' mutual distances, 0 to 1
+  /// Of the model's points, what must be inliers in the first and in the last run. Of the poses with so many, PCL takes
+  /// the one whose inliers fit best, which with too small a share touches the scene at an edge; too large a share finds
+  /// nothing where much is hidden, and the far side always is.
+  float most_inliers = 0.4F;
+  float least_inliers = 0.1F;
   double inlier_distance = 0.04;  ///< an inlier has a measured point so near, a share
   int icp_iterations = 30;        ///< at each of two distances
   int icp_points = 400;           ///< of the region, about

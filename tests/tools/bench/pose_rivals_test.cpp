@@ -91,16 +91,29 @@ TEST_P(PoseRivals, GiveNothingWhereThereIsNothing) {
   EXPECT_FALSE(it->estimate(table.frame, table.detection));
 }
 
-TEST_P(PoseRivals, GiveNothingFarFromTheDetectedCentre) {
+TEST_P(PoseRivals, StayNearTheDetectedCentre) {
   Table table = with_mug();
   table.detection.centre_camera.x() += 0.12F;
-  EXPECT_FALSE(rival(table)->estimate(table.frame, table.detection));
+  const auto T_camera_object = rival(table)->estimate(table.frame, table.detection);
+  if (!T_camera_object) return;
+  EXPECT_LE((T_camera_object->translation() - table.detection.centre_camera.cast<double>()).norm(),
+            PoseSettings().registration.max_shift_m);
 }
 
 TEST_P(PoseRivals, RefuseAFrameWithoutDepthImage) {
   Table table = with_mug();
   table.frame.depth = cv::Mat();
   EXPECT_THROW(rival(table)->estimate(table.frame, table.detection), InputError);
+}
+
+TEST(PoseRivalSettings, OutOfRangeAreRefused) {
+  const std::map<std::string, Mesh> models = {{"it", mug()}};
+  PrerejectiveSettings sampling;
+  sampling.samples = 2;
+  EXPECT_THROW(make_prerejective_rival(models, PoseSettings(), sampling), InputError);
+  PpfSettings pairs;
+  pairs.reference_share = 0.0;
+  EXPECT_THROW(make_ppf_rival(models, PoseSettings(), pairs), InputError);
 }
 
 INSTANTIATE_TEST_SUITE_P(Libraries, PoseRivals, testing::Values(Make(prerejective), Make(point_pairs)),
