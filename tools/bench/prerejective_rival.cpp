@@ -54,8 +54,8 @@ void check_settings(const PrerejectiveSettings& s) {
           "fpfh: {} runs of {} iterations, {} samples, {} similar features, expected at least 1, 1, 3, 1", s.runs,
           s.iterations, s.samples, s.similar_features);
   require(s.similarity >= 0.0F && s.similarity < 1.0F, "fpfh: similarity {}, expected 0 to below 1", s.similarity);
-  require(s.least_inliers >= 0.0F && s.least_inliers <= s.most_inliers && s.most_inliers <= 1.0F,
-          "fpfh: {} to {} inliers, expected shares from 0 to 1, the least first", s.least_inliers, s.most_inliers);
+  require(s.inlier_share > 0.0F && s.inlier_share <= 1.0F, "fpfh: inlier share {}, expected above 0, at most 1",
+          s.inlier_share);
 }
 
 class PrerejectiveRival final : public SurfaceRival {
@@ -82,7 +82,6 @@ class PrerejectiveRival final : public SurfaceRival {
     const std::vector<Eigen::Vector3f> points = region_points(seen.frame, seen.region, settings_.icp_points);
     std::vector<Eigen::Isometry3d> poses;
     for (int run = 0; run < settings_.runs; ++run) {
-      alignment.setInlierFraction(inlier_share(run));
       if (const auto start = align(alignment, static_cast<unsigned>(run + 1))) {
         if (const auto pose = refine(*start, model, points)) poses.push_back(*pose);
       }
@@ -92,12 +91,6 @@ class PrerejectiveRival final : public SurfaceRival {
 
   double spacing_m(const ObjectModel& model) const { return settings_.spacing * 2.0 * model.radius; }
   double feature_radius_m(const ObjectModel& model) const { return settings_.feature_radius * 2.0 * model.radius; }
-
-  /// From one run to the next evenly less.
-  float inlier_share(int run) const {
-    const float part = settings_.runs > 1 ? static_cast<float>(run) / static_cast<float>(settings_.runs - 1) : 0.0F;
-    return settings_.most_inliers + part * (settings_.least_inliers - settings_.most_inliers);
-  }
 
   void configure(Alignment& alignment, const DescribedSurface& taught, const DescribedSurface& measured,
                  double diameter_m) const {
@@ -110,6 +103,7 @@ class PrerejectiveRival final : public SurfaceRival {
     alignment.setCorrespondenceRandomness(settings_.similar_features);
     alignment.setSimilarityThreshold(settings_.similarity);
     alignment.setMaxCorrespondenceDistance(settings_.inlier_distance * diameter_m);
+    alignment.setInlierFraction(settings_.inlier_share);
   }
 
   static std::optional<Eigen::Isometry3d> align(Alignment& alignment, unsigned seed) {
