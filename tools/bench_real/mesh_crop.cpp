@@ -1,7 +1,9 @@
 #include "tools/bench_real/mesh_crop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
 
 #include "pipeline/checks.hpp"
 
@@ -40,6 +42,21 @@ Mesh crop_below(const Mesh& mesh, const Eigen::Hyperplane<float, 3>& plane) {
   keep(mesh.colours, new_index, kept, out.colours);
   keep(mesh.uvs, new_index, kept, out.uvs);
   out.texture = mesh.texture;
+  return out;
+}
+
+Mesh welded(const Mesh& mesh) {
+  Mesh out;
+  std::map<std::array<float, 3>, std::uint32_t> index_at;
+  std::vector<std::uint32_t> new_index;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const auto next = static_cast<std::uint32_t>(out.vertices.size());
+    const auto [place, is_new] = index_at.try_emplace({vertex.x(), vertex.y(), vertex.z()}, next);
+    if (is_new) out.vertices.push_back(vertex);
+    new_index.push_back(place->second);
+  }
+  for (const auto& [a, b, c] : mesh.triangles) out.triangles.push_back({new_index[a], new_index[b], new_index[c]});
+  compute_normals(out);
   return out;
 }
 

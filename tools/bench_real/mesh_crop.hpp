@@ -11,6 +11,11 @@ namespace houghstream {
 /// The edge follows the triangles; nothing is cut. A mesh that lies below as a whole becomes an empty one.
 Mesh crop_below(const Mesh& mesh, const Eigen::Hyperplane<float, 3>& plane);
 
+/// The mesh's shape with vertices of one place made one, so that triangles that touch are connected: files give a
+/// vertex of its own to each triangle corner where texture coordinates differ. Normals are made anew; no colours, no
+/// texture.
+Mesh welded(const Mesh& mesh);
+
 /// The height (z, metres) on which a standing mesh rests: its lowest vertices, but for a few strays. Throws InputError
 /// for a mesh without vertices.
 double base_height(const Mesh& mesh);

@@ -18,7 +18,34 @@ void draw_outline(cv::Mat& image, const Mesh& mesh, const ObjectPose& pose, cons
   cv::drawContours(image, contours, -1, class_colour(pose.class_id), 1);
 }
 
+/// Of a seen point of a triangle; `bary` holds the weights of its second and third vertex.
+cv::Vec3b colour_at(const Mesh& mesh, int triangle, const cv::Vec2f& bary) {
+  if (mesh.colours.empty()) return cv::Vec3b::all(255);
+  const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(triangle)];
+  const cv::Vec3f sum = (1.0F - bary[0] - bary[1]) * cv::Vec3f(mesh.colours[a]) + bary[0] * cv::Vec3f(mesh.colours[b]) +
+                        bary[1] * cv::Vec3f(mesh.colours[c]);
+  return {cv::saturate_cast<std::uint8_t>(sum[0]), cv::saturate_cast<std::uint8_t>(sum[1]),
+          cv::saturate_cast<std::uint8_t>(sum[2])};
+}
+
 }  // namespace
+
+cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models) {
+  cv::Mat image = 0.4 * frame.colour;
+  for (const ObjectPose& pose : poses.poses) {
+    const auto model = models.find(pose.class_name);
+    if (!pose.T_camera_object || model == models.end()) continue;
+    const RenderedGeometry seen = render_geometry({{&model->second, *pose.T_camera_object, 1}}, frame.camera);
+    for (int y = 0; y < image.rows; ++y) {
+      for (int x = 0; x < image.cols; ++x) {
+        const int triangle = seen.triangle.at<std::int32_t>(y, x);
+        if (triangle < 0) continue;
+        image.at<cv::Vec3b>(y, x) = colour_at(model->second, triangle, seen.bary.at<cv::Vec2f>(y, x));
+      }
+    }
+  }
+  return image;
+}
 
 cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models,
                    const std::string& title) {
@@ -37,7 +64,7 @@ cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const Class
 }
 
 std::vector<cv::Mat> make_sheets(const std::vector<cv::Mat>& tiles) {
-  constexpr std::size_t kOnSheet = 6;
+  constexpr std::size_t kOnSheet = 4;
   constexpr int kColumns = 2;
   std::vector<cv::Mat> sheets;
   for (auto first = tiles.begin(); first != tiles.end();) {

@@ -16,7 +16,11 @@ namespace houghstream {
 cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models,
                    const std::string& title);
 
-/// Tiles of one size on sheets of 2 by 3; at least one sheet where there are tiles.
+/// The picture, darkened, with each valid pose's model in its own colours (white where it has none): a wrong turn shows
+/// beside draw_poses' picture.
+cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models);
+
+/// Tiles of one size on sheets of 2 by 2; at least one sheet where there are tiles.
 std::vector<cv::Mat> make_sheets(const std::vector<cv::Mat>& tiles);
 
 }  // namespace houghstream

@@ -65,6 +65,7 @@ RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& came
     if (is_compared) bench.compared.push_back(compare(pair.name, reference->second, poses, object));
     const std::string title = title_of(pair.name, is_compared ? &bench.compared.back() : nullptr);
     bench.pictures.push_back(draw_poses(frame, poses, models, title));
+    bench.pictures.push_back(paint_models(frame, poses, models));
   }
   require(bench.compared.size() == object.references.size(), "{}: {} of the {} frames with reference poses",
           scenes.string(), bench.compared.size(), object.references.size());

@@ -25,7 +25,7 @@ struct ComparedObject {
 /// What came of a folder of frames.
 struct RealBench {
   std::vector<ComparedFrame> compared;  ///< frames with a reference, in natural order
-  std::vector<cv::Mat> pictures;        ///< of every frame: draw_poses
+  std::vector<cv::Mat> pictures;        ///< of every frame two: draw_poses, paint_models
 };
 
 /// Detects in every image pair of the folder and estimates poses; of several detections of the compared object the

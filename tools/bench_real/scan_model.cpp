@@ -1,6 +1,7 @@
 #include "tools/bench_real/scan_model.hpp"
 
 #include "pipeline/checks.hpp"
+#include "pose/fusion/grid_surface.hpp"
 #include "pose/surface_tree.hpp"
 #include "tools/bench_real/mesh_crop.hpp"
 
@@ -23,9 +24,6 @@ cv::Vec3b colour_at(const Mesh& mesh, const SurfaceHit& hit) {
 }
 
 void take_colours(const Mesh& from, Mesh& to) {
-  to.colours.clear();
-  to.uvs.clear();
-  to.texture = cv::Mat();
   if (from.colours.empty()) return;
   const SurfaceTree tree(from);
   for (const Eigen::Vector3f& vertex : to.vertices) to.colours.push_back(colour_at(from, tree.nearest(vertex)));
@@ -35,9 +33,9 @@ void take_colours(const Mesh& from, Mesh& to) {
 
 ScanModel fit_scan(const Mesh& scan, const Mesh& fused, double base_m) {
   const MeshAlignment with_disc = align_meshes(scan, fused);
-  Mesh standing = moved(scan, with_disc.T_target_source);
+  Mesh standing = moved(welded(scan), with_disc.T_target_source);
   const auto ground = static_cast<float>(base_height(standing) + base_m);
-  standing = crop_below(standing, Eigen::Hyperplane<float, 3>(Eigen::Vector3f::UnitZ(), -ground));
+  standing = largest_part(crop_below(standing, Eigen::Hyperplane<float, 3>(Eigen::Vector3f::UnitZ(), -ground)));
   require(!standing.triangles.empty(), "scan: nothing is left {:.0f} mm above its base", 1e3 * base_m);
   ScanModel model;
   model.alignment = align_meshes(standing, fused);
