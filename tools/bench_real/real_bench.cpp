@@ -60,6 +60,7 @@ RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& came
   for (const FramePair& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, camera, ++utime);
     const ObjectPoses poses = estimator.estimate(frame, detector.detect(frame));
+    for (const ObjectPose& pose : poses.poses) bench.poses += pose.T_camera_object ? 1 : 0;
     const auto reference = object.references.find(pair.name);
     const bool is_compared = reference != object.references.end();
     if (is_compared) bench.compared.push_back(compare(pair.name, reference->second, poses, object));
@@ -75,6 +76,7 @@ RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& came
 OrderedJson to_json(const RealBench& bench, const ComparedObject& object) {
   const AgreementSummary summary = summarise(bench.compared);
   OrderedJson out = {{"object", object.class_name},
+                     {"poses", bench.poses},
                      {"frames", summary.frames},
                      {"with_pose", summary.with_pose},
                      {"within_5mm_5deg", summary.within_5mm_5deg}};

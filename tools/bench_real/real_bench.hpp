@@ -25,6 +25,7 @@ struct ComparedObject {
 /// What came of a folder of frames.
 struct RealBench {
   std::vector<ComparedFrame> compared;  ///< frames with a reference, in natural order
+  int poses = 0;                        ///< valid ones, of all classes in all frames
   std::vector<cv::Mat> pictures;        ///< of every frame two: draw_poses, paint_models
 };
 
@@ -33,9 +34,9 @@ struct RealBench {
 RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& camera, const Detector& detector,
                          const PoseEstimator& estimator, const ClassModels& models, const ComparedObject& object);
 
-/// {"object", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries", "alignment",
-/// "per_frame": [{"frame", "reliable", "outcome", "mm", "deg"}]}; null where there is no pose. The counts and medians
-/// are of reliable references.
+/// {"object", "poses", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries", "alignment",
+/// "per_frame": [{"frame", "reliable", "outcome", "mm", "deg"}]}; null where there is no pose. "poses" is of all
+/// classes and frames; the other counts and medians are of reliable references.
 OrderedJson to_json(const RealBench& bench, const ComparedObject& object);
 
 }  // namespace houghstream
