@@ -1,0 +1,98 @@
+#include "tools/bench_real/real_bench.hpp"
+
+#include <cmath>
+
+#include "drivers/frame_folder.hpp"
+#include "pipeline/checks.hpp"
+#include "tools/bench_real/pose_sheets.hpp"
+
+namespace houghstream {
+namespace {
+
+/// The strongest with a pose, else the strongest; null where the object was not detected.
+const ObjectPose* pose_of(const ObjectPoses& poses, const std::string& class_name) {
+  const ObjectPose* best = nullptr;
+  for (const ObjectPose& pose : poses.poses) {
+    if (pose.class_name != class_name) continue;
+    if (best == nullptr || (!best->T_camera_object && pose.T_camera_object)) best = &pose;
+  }
+  return best;
+}
+
+ComparedFrame compare(const std::string& frame, const ReferencePose& reference, const ObjectPoses& poses,
+                      const ComparedObject& object) {
+  ComparedFrame out;
+  out.frame = frame;
+  out.reliable = reference.reliable;
+  const ObjectPose* pose = pose_of(poses, object.class_name);
+  out.outcome = pose == nullptr ? "not detected" : to_string(pose->status);
+  if (pose == nullptr || !pose->T_camera_object) return out;
+  // Compared in the frame of the views: that of the scan has its origin far from the object.
+  const Eigen::Isometry3d T_reference = reference.T_camera_object * object.scan.alignment.T_target_source.inverse();
+  out.difference = compare_poses(*pose->T_camera_object, T_reference, object.symmetries);
+  return out;
+}
+
+std::string title_of(const std::string& frame, const ComparedFrame* compared) {
+  if (compared == nullptr || !compared->difference) return frame;
+  return fmt::format("{}: {:.1f} mm {:.1f} deg{}", frame, 1e3 * compared->difference->shift_m,
+                     compared->difference->turn_deg, compared->reliable ? "" : " (unreliable reference)");
+}
+
+/// Null for what is no finite number.
+OrderedJson millimetres(double metres) {
+  return std::isfinite(metres) ? OrderedJson(1e3 * metres) : OrderedJson(nullptr);
+}
+
+OrderedJson to_json(const ComparedFrame& frame) {
+  OrderedJson out = {{"frame", frame.frame}, {"reliable", frame.reliable}, {"outcome", frame.outcome}};
+  out["mm"] = frame.difference ? OrderedJson(1e3 * frame.difference->shift_m) : OrderedJson(nullptr);
+  out["deg"] = frame.difference ? OrderedJson(frame.difference->turn_deg) : OrderedJson(nullptr);
+  return out;
+}
+
+}  // namespace
+
+RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& camera, const Detector& detector,
+                         const PoseEstimator& estimator, const ClassModels& models, const ComparedObject& object) {
+  RealBench bench;
+  std::int64_t utime = 0;
+  for (const FramePair& pair : list_frame_pairs(scenes)) {
+    const RgbdFrame frame = read_frame_pair(pair, camera, ++utime);
+    const ObjectPoses poses = estimator.estimate(frame, detector.detect(frame));
+    for (const ObjectPose& pose : poses.poses) bench.poses += pose.T_camera_object ? 1 : 0;
+    const auto reference = object.references.find(pair.name);
+    const bool is_compared = reference != object.references.end();
+    if (is_compared) bench.compared.push_back(compare(pair.name, reference->second, poses, object));
+    const std::string title = title_of(pair.name, is_compared ? &bench.compared.back() : nullptr);
+    bench.pictures.push_back(draw_poses(frame, poses, models, title));
+    bench.pictures.push_back(paint_models(frame, poses, models));
+  }
+  require(bench.compared.size() == object.references.size(), "{}: {} of the {} frames with reference poses",
+          scenes.string(), bench.compared.size(), object.references.size());
+  return bench;
+}
+
+OrderedJson to_json(const RealBench& bench, const ComparedObject& object) {
+  const AgreementSummary summary = summarise(bench.compared);
+  OrderedJson out = {{"object", object.class_name},
+                     {"poses", bench.poses},
+                     {"frames", summary.frames},
+                     {"with_pose", summary.with_pose},
+                     {"within_5mm_5deg", summary.within_5mm_5deg}};
+  out["median_mm"] = summary.median ? OrderedJson(1e3 * summary.median->shift_m) : OrderedJson(nullptr);
+  out["median_deg"] = summary.median ? OrderedJson(summary.median->turn_deg) : OrderedJson(nullptr);
+  out["symmetries"] = object.symmetries.continuous.size() + object.symmetries.discrete.size();
+  const MeshAlignment& alignment = object.scan.alignment;
+  const Eigen::Quaterniond q(alignment.T_target_source.linear());
+  const Eigen::Vector3d t = 1e3 * alignment.T_target_source.translation();
+  out["alignment"] = {{"rms_mm", millimetres(alignment.rms_m)},
+                      {"next_rms_mm", millimetres(alignment.next_rms_m)},
+                      {"wxyz", {q.w(), q.x(), q.y(), q.z()}},
+                      {"t_mm", {t.x(), t.y(), t.z()}}};
+  out["per_frame"] = OrderedJson::array();
+  for (const ComparedFrame& frame : bench.compared) out["per_frame"].push_back(to_json(frame));
+  return out;
+}
+
+}  // namespace houghstream

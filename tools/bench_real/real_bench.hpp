@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "detector/detector.hpp"
+#include "drivers/json_file.hpp"
+#include "pose/pose_estimator.hpp"
+#include "tools/bench_real/pose_agreement.hpp"
+#include "tools/bench_real/scan_model.hpp"
+#include "tools/view/overlay.hpp"
+
+namespace houghstream {
+
+/// The object whose poses are compared. Reference poses are those of the scan's frame.
+struct ComparedObject {
+  std::string class_name;
+  ScanModel scan;
+  Symmetries symmetries;  ///< of the scan's shape, object frame of the views
+  std::map<std::string, ReferencePose> references;
+};
+
+/// What came of a folder of frames.
+struct RealBench {
+  std::vector<ComparedFrame> compared;  ///< frames with a reference, in natural order
+  int poses = 0;                        ///< valid ones, of all classes in all frames
+  std::vector<cv::Mat> pictures;        ///< of every frame two: draw_poses, paint_models
+};
+
+/// Detects in every image pair of the folder and estimates poses; of several detections of the compared object the
+/// strongest one that has a pose counts. Throws InputError, also for references to frames that are not there.
+RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& camera, const Detector& detector,
+                         const PoseEstimator& estimator, const ClassModels& models, const ComparedObject& object);
+
+/// {"object", "poses", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries", "alignment",
+/// "per_frame": [{"frame", "reliable", "outcome", "mm", "deg"}]}; null where there is no pose. "poses" is of all
+/// classes and frames; the other counts and medians are of reliable references.
+OrderedJson to_json(const RealBench& bench, const ComparedObject& object);
+
+}  // namespace houghstream
