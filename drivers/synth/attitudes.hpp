@@ -28,8 +28,11 @@ class AttitudeChoice {
   /// Works out how the mesh rests. Throws InputError for a mesh without volume, or that rests upright only.
   explicit AttitudeChoice(const Mesh& mesh);
 
-  /// Rotation from the object into the table frame (z up). Consecutive indices go through the families of resting
-  /// attitudes, those of several attitudes twice as often as single ones; the rest follows `random`.
+  /// How many ways of lying are told apart: one of a family of one, two of a larger one.
+  int lying_count() const { return static_cast<int>(turns_.size()); }
+
+  /// Rotation from the object into the table frame (z up). Consecutive indices go through the ways of lying; the
+  /// rest follows `random`.
   Eigen::Matrix3d R_table_object(Attitude attitude, int index, Random& random) const;
 
  private:

@@ -49,11 +49,26 @@ Turntable::Turntable(const TurntableSettings& settings, std::uint64_t seed) : se
   }
 }
 
+int Turntable::azimuths(Attitude attitude, const AttitudeChoice* choice) const {
+  if (attitude != Attitude::kLying) return settings_.azimuths;
+  require(choice != nullptr, "turntable: lying views wanted, and no attitudes to choose from");
+  return choice->lying_count() * ((settings_.azimuths + 1) / 2);
+}
+
+int Turntable::view_count(const AttitudeChoice* choice) const {
+  int count = 0;
+  for (const Attitude attitude : settings_.attitudes) count += azimuths(attitude, choice) * settings_.pitches;
+  return count;
+}
+
 SceneFrame Turntable::render(const TaughtObject& object, const AttitudeChoice* choice, int index) const {
-  const Attitude attitude = settings_.attitudes[static_cast<std::size_t>(index / turn_count())];
-  index %= turn_count();
-  const int pitch_index = index / settings_.azimuths;
-  const int azimuth_index = index % settings_.azimuths;
+  std::size_t block = 0;
+  while (index >= azimuths(settings_.attitudes.at(block), choice) * settings_.pitches)
+    index -= azimuths(settings_.attitudes.at(block++), choice) * settings_.pitches;
+  const Attitude attitude = settings_.attitudes[block];
+  const int azimuths_here = azimuths(attitude, choice);
+  const int pitch_index = index / azimuths_here;
+  const int azimuth_index = index % azimuths_here;
   const std::uint64_t first = kAttitudeViews * static_cast<std::uint64_t>(attitude);
   const auto number = static_cast<std::uint64_t>(object.id) * 1000003U + first + static_cast<std::uint64_t>(index);
   Random random(aspect_seed(world_seed(WorldUse::kTraining, seed_), number));
@@ -67,8 +82,7 @@ SceneFrame Turntable::render(const TaughtObject& object, const AttitudeChoice* c
   Placed placed{object.thing, Eigen::Isometry3d::Identity(), object.id, true};
   const double centre = kTopM + height_above_table(object.thing->mesh, R_table_object);
   placed.T_world_object.translate(Eigen::Vector3d(0, 0, centre));
-  placed.T_world_object.rotate(
-      Eigen::AngleAxisd(2.0 * M_PI * azimuth_index / settings_.azimuths, Eigen::Vector3d::UnitZ()));
+  placed.T_world_object.rotate(Eigen::AngleAxisd(2.0 * M_PI * azimuth_index / azimuths_here, Eigen::Vector3d::UnitZ()));
   placed.T_world_object.rotate(R_table_object);
   world.items.push_back(placed);
 

@@ -9,7 +9,7 @@
 namespace houghstream {
 
 /// Training views as in the paper's Section 4 (and Lai et al. 2011): an object on a turntable in front of a fixed
-/// camera, all round at several pitches; in each of several attitudes as many times.
+/// camera, all round at several pitches; for each way of lying in steps twice as long.
 struct TurntableSettings {
   int azimuths = 36;  ///< steps of a full turn
   int pitches = 3;    ///< camera heights, evenly spread over lowest to highest
@@ -24,14 +24,15 @@ class Turntable {
  public:
   Turntable(const TurntableSettings& settings, std::uint64_t seed);
 
-  int view_count() const { return turn_count() * static_cast<int>(settings_.attitudes.size()); }
+  /// Of an object with these attitudes; may be null where none of them is lying.
+  int view_count(const AttitudeChoice* choice) const;
 
   /// View `index` (attitude by attitude, pitch by pitch, azimuth by azimuth) of an object, with its truth. utime is
   /// left 0. `choice`: of the object; may be null where all views are upright.
   SceneFrame render(const TaughtObject& object, const AttitudeChoice* choice, int index) const;
 
  private:
-  int turn_count() const { return settings_.azimuths * settings_.pitches; }
+  int azimuths(Attitude attitude, const AttitudeChoice* choice) const;
 
   TurntableSettings settings_;
   std::uint64_t seed_;

@@ -39,7 +39,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   training->add_option("--pitches", arguments.turntable.pitches, "camera heights")->capture_default_str();
   training
       ->add_option("--attitudes", arguments.attitudes,
-                   "upright, tilted (as if held) and lying (on its sides or upside down), as many views of each")
+                   "upright, tilted (as if held) and lying (on its sides or upside down; half a turn's views for each)")
       ->delimiter(',')
       ->capture_default_str();
   training->callback([&] {

@@ -74,9 +74,10 @@ void render_training(const RenderOptions& options, const std::vector<std::string
     std::optional<AttitudeChoice> choice;
     if (!all_upright) choice.emplace(object.thing->mesh);
     BopWriter writer(fresh_scene(options.out / fmt::format("{:06d}", object.id)));
+    const AttitudeChoice* attitudes = choice ? &*choice : nullptr;
     render_in_order(
-        object.name, options.threads, table.view_count(),
-        [&](int index) { return table.render(object, choice ? &*choice : nullptr, index); },
+        object.name, options.threads, table.view_count(attitudes),
+        [&](int index) { return table.render(object, attitudes, index); },
         [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
     writer.finish();
   }
