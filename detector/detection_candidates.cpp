@@ -1,8 +1,10 @@
 #include "detector/detection_candidates.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "detector/evidence/attitude_spread.hpp"
 #include "detector/evidence/view_alignment.hpp"
 #include "detector/hypotheses.hpp"
 #include "detector/scale_space_search.hpp"
@@ -13,22 +15,45 @@
 namespace houghstream {
 namespace {
 
-/// The remembered view that agrees best with the frame, of those that most votes remember.
-ViewFit best_fit(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame,
-                 const std::vector<std::uint32_t>& forgotten) {
-  constexpr int kViews = 8;
-  ViewFit best;
-  std::uint32_t best_view = 0;
-  int compared = 0;
+/// A remembered view, put at the hypothesis.
+struct ComparedView {
+  std::uint32_t view = 0;
+  ViewFit fit;
+};
+
+/// The first views that most votes remember, compared with the frame; more where a class was taught in many attitudes.
+std::vector<ComparedView> compare_views(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame,
+                                        float spread, const std::vector<std::uint32_t>& forgotten) {
+  constexpr float kViews = 8.0F;
+  const auto wanted = static_cast<std::size_t>(kViews * spread);
+  std::vector<ComparedView> compared;
   for (const auto& [view, weight] : hypothesis.views) {
-    if (compared == kViews) break;
+    if (compared.size() == wanted) break;
     if (std::find(forgotten.begin(), forgotten.end(), view) != forgotten.end()) continue;
-    const ViewFit fit = fit_view(forest.views[view], hypothesis.centre_camera, frame);
-    if (compared++ != 0 && agreement(fit) <= agreement(best)) continue;
-    best = fit;
-    best_view = view;
+    compared.push_back({view, fit_view(forest.views[view], hypothesis.centre_camera, frame)});
   }
-  return compared == 0 ? best : align_view(forest.views[best_view], hypothesis.centre_camera, best, frame);
+  return compared;
+}
+
+/// The view that agrees best with the frame; ties go to the first.
+ViewFit best_fit(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame,
+                 const std::vector<ComparedView>& compared) {
+  if (compared.empty()) return {};
+  const auto worse = [](const ComparedView& a, const ComparedView& b) { return agreement(a.fit) < agreement(b.fit); };
+  const ComparedView& best = *std::max_element(compared.begin(), compared.end(), worse);
+  return align_view(forest.views[best.view], hypothesis.centre_camera, best.fit, frame);
+}
+
+/// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was
+/// taught in many attitudes the views lie far apart, and how they agree with the frame says more.
+std::vector<std::pair<std::uint32_t, float>> weighed_views(const Hypothesis& hypothesis, float spread,
+                                                           const std::vector<ComparedView>& compared) {
+  constexpr float kSharpness = 4.0F;
+  if (spread == 1.0F || compared.empty()) return {hypothesis.views.begin(), hypothesis.views.end()};
+  std::vector<std::pair<std::uint32_t, float>> weighed;
+  for (const ComparedView& seen : compared) weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
+  std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return weighed;
 }
 
 /// Votes say which patches belong to the object, depth says where the remembered view is not hidden: their errors are
@@ -41,9 +66,11 @@ cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const 
           0.5F * (voted.height + inside.height)};
 }
 
-Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hypothesis& hypothesis,
-                       const SeenPatches& seen, const LabFrame& frame, int max_rotations,
-                       const std::vector<std::uint32_t>& forgotten) {
+Candidate to_candidate(const Forest& forest, int class_index, const Hypothesis& hypothesis, const SeenPatches& seen,
+                       const LabFrame& frame, int max_rotations, const std::vector<std::uint32_t>& forgotten) {
+  const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
+  const float spread = attitude_spread(forest, static_cast<std::uint32_t>(class_index));
+  std::vector<ComparedView> compared;
   Candidate candidate;
   Detection& detection = candidate.detection;
   candidate.evidence.mass_share = hypothesis.mass / object.expected_mass;
@@ -51,7 +78,8 @@ Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hy
   detection.score = vote_score(candidate.evidence.mass_share);
   if (forest.scoring == Scoring::kEvidence) {
     ViewFit& fit = candidate.evidence.fit;
-    fit = best_fit(forest, hypothesis, frame, forgotten);
+    compared = compare_views(forest, hypothesis, frame, spread, forgotten);
+    fit = best_fit(forest, hypothesis, frame, compared);
     detection.score = score(object.score_model, candidate.evidence);
     detection.box_px = visible_box(detection.box_px, fit.visible_box_px, frame.frame.camera);
   }
@@ -61,7 +89,7 @@ Candidate to_candidate(const Forest& forest, const ObjectClass& object, const Hy
   detection.vote_weight = hypothesis.weight;
   detection.vote_count = hypothesis.vote_count;
   const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis.centre_camera));
-  for (const auto& [view, weight] : hypothesis.views) {
+  for (const auto& [view, weight] : weighed_views(hypothesis, spread, compared)) {
     if (detection.rotations.size() >= static_cast<std::size_t>(max_rotations)) break;
     detection.rotations.push_back({R_camera_ray * Eigen::Quaternionf(forest.views[view].R_ray_object), weight});
   }
@@ -77,7 +105,7 @@ std::vector<Candidate> class_candidates(const Forest& forest, int class_index, c
   std::vector<Candidate> candidates;
   for (const Hypothesis& hypothesis : find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
     if (candidates.size() >= static_cast<std::size_t>(settings.max_per_class)) break;
-    candidates.push_back(to_candidate(forest, object, hypothesis, seen, frame, settings.max_rotations, forgotten));
+    candidates.push_back(to_candidate(forest, class_index, hypothesis, seen, frame, settings.max_rotations, forgotten));
   }
   return candidates;
 }

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "drivers/synth/objects.hpp"
-#include "drivers/synth/table_layout.hpp"
+#include "drivers/synth/table_setter.hpp"
 #include "pipeline/checks.hpp"
 
 namespace houghstream {
@@ -18,47 +18,17 @@ constexpr int kMonitor = 13;
 constexpr int kKeyboard = 9;
 constexpr int kBook = 1;
 
-class TableSetter {
- public:
-  TableSetter(World& world, const Eigen::Vector2d& table_half, std::uint64_t seed)
-      : world_(world), half_(table_half.cwiseMin(Eigen::Vector2d(0.62, 0.5))), layout_(table_half), random_(seed) {}
-
-  bool stand(const ThingPtr& thing, const Eigen::AlignedBox2d& region, double turn_rad, int object_id) {
-    const auto T_world_object = layout_.place(*thing, region, turn_rad, random_);
-    if (T_world_object) world_.items.push_back({thing, *T_world_object, object_id, true});
-    return T_world_object.has_value();
-  }
-
-  // Part of the surface, in shares of its half extent.
-  Eigen::AlignedBox2d region(double x_low, double x_high, double y_low, double y_high) const {
-    return {Eigen::Vector2d(x_low * half_.x(), y_low * half_.y()),
-            Eigen::Vector2d(x_high * half_.x(), y_high * half_.y())};
-  }
-
-  void stand_object(int id, const Eigen::AlignedBox2d& where) {
-    const TaughtObject object = make_taught_object(id);
-    const bool look_alike = id > kClassCount && id <= kTaughtObjectCount;  // the truth does not name them
-    require(stand(object.thing, where, M_PI, look_alike ? 0 : id), "scene: no place left for {}", object.name);
-  }
-
-  void stand_object(int id) { stand_object(id, region(-0.62, 0.62, -0.75, 0.6)); }
-
-  Random& random() { return random_; }
-
- private:
-  World& world_;
-  Eigen::Vector2d half_;
-  TableLayout layout_;
-  Random random_;
-};
-
 // Bowls, cartons, mugs and cans that were never taught, as a real kitchen has them.
-void add_other_instances(TableSetter& setter, int count, std::uint64_t seed) {
+void add_other_instances(TableSetter& setter, const Clutter& clutter, std::uint64_t seed) {
   const int first = Random(aspect_seed(seed, kFirstInstance - 1)).below(kClassCount);
-  for (int i = 0; i < count; ++i) {
+  const Eigen::AlignedBox2d where = setter.region(-0.95, 0.95, -0.85, 0.95);
+  for (int i = 0; i < clutter.other_instances; ++i) {
     const ThingPtr thing = make_other_instance(1 + (first + i) % kClassCount,
                                                aspect_seed(seed, kFirstInstance + static_cast<std::uint64_t>(i)));
-    setter.stand(thing, setter.region(-0.95, 0.95, -0.85, 0.95), M_PI, 0);
+    if (clutter.lying)
+      setter.put(put_lying(thing, 0, setter.random()), where);
+    else
+      setter.stand(thing, where, M_PI, 0);
   }
 }
 
@@ -84,6 +54,34 @@ void add_many_objects(TableSetter& setter, FurtherClasses further) {
   }
 }
 
+// Each class once lying and once tilted.
+void add_lying_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
+  for (int id = 1; id <= kClassCount; ++id) {
+    setter.tilt_object(id, where);
+    setter.lay_object(id, where);
+  }
+}
+
+void add_objects(TableSetter& setter, const Clutter& clutter) {
+  const Eigen::AlignedBox2d where =
+      clutter.lying ? setter.region(-0.75, 0.75, -0.7, 0.75) : setter.region(-0.62, 0.62, -0.75, 0.6);
+  if (clutter.further != FurtherClasses::kNone) {
+    add_many_objects(setter, clutter.further);
+  } else if (clutter.lying) {
+    add_lying_objects(setter, where);
+  } else {
+    for (int id = 1; clutter.taught_objects && id <= kClassCount; ++id) setter.stand_object(id, where);
+  }
+  const int first = setter.random().below(kClassCount);
+  for (int i = 0; i < clutter.look_alikes; ++i) {
+    const int id = kClassCount + 1 + (first + i) % kClassCount;
+    if (clutter.lying)
+      setter.lay_object(id, where);
+    else
+      setter.stand_object(id, where);
+  }
+}
+
 }  // namespace
 
 Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed) {
@@ -95,14 +93,8 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
   if (style == RoomStyle::kDesk)
     setter.stand(make_distractor(kMonitor, aspect_seed(seed, kFirstDistractor + 500)),
                  setter.region(-0.4, 0.4, 0.4, 0.9), 0.3, 0);
-  if (clutter.further != FurtherClasses::kNone) {
-    add_many_objects(setter, clutter.further);
-  } else {
-    for (int id = 1; clutter.taught_objects && id <= kClassCount; ++id) setter.stand_object(id);
-  }
-  const int first = setter.random().below(kClassCount);
-  for (int i = 0; i < clutter.look_alikes; ++i) setter.stand_object(kClassCount + 1 + (first + i) % kClassCount);
-  add_other_instances(setter, clutter.other_instances, seed);
+  add_objects(setter, clutter);
+  add_other_instances(setter, clutter, seed);
   add_distractors(setter, style, clutter, seed);
   return scene;
 }
@@ -130,7 +122,7 @@ constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
 // Tables on which most things have the taught objects' colours: only shape tells them apart.
 constexpr double kAlike = 0.7;
 
-constexpr std::array<Plan, 13> kPlans = {
+constexpr std::array<Plan, 16> kPlans = {
     {{kTestScenes[0], kTest, 0, RoomStyle::kTable, kDay, {true, 1, 3, 14, kNone, kAlike}},
      {kTestScenes[1], kTest, 1, RoomStyle::kTable, kEvening, {true, 2, 8, 10, kNone}},
      {kTestScenes[2], kTest, 2, RoomStyle::kDesk, kDay, {true, 1, 8, 8, kNone}},
@@ -148,12 +140,15 @@ constexpr std::array<Plan, 13> kPlans = {
       RoomStyle::kMeeting,
       kDay,
       {true, 1, 0, 14, kOdd}},
-     {kTwentyClassDevelopmentScenes[1],
+     {kTwentyClassDevelopmentScenes[1], kTraining, kDevelopment + 21, RoomStyle::kTable, kDay, {true, 1, 0, 12, kEven}},
+     {kLyingScenes[0], kTest, 30, RoomStyle::kTable, kDay, {true, 1, 4, 12, kNone, 0.0, true}},
+     {kLyingScenes[1], kTest, 31, RoomStyle::kMeeting, kEvening, {true, 1, 4, 12, kNone, 0.0, true}},
+     {kLyingDevelopmentScenes[0],
       kTraining,
-      kDevelopment + 21,
+      kDevelopment + 30,
       RoomStyle::kTable,
       kDay,
-      {true, 1, 0, 12, kEven}}}};
+      {true, 1, 4, 12, kNone, 0.0, true}}}};
 
 /// The number N of "development_world_N", 0 to 999.
 std::optional<int> development_number(const std::string& name) {
@@ -178,14 +173,19 @@ Scene planned_scene(const std::string& name, const Plan& plan) {
 
 }  // namespace
 
+std::string scene_names() {
+  return fmt::format("{}, {}, {}, or for choosing settings {}, {}, {}, {}0 to {}999", fmt::join(kTestScenes, ", "),
+                     fmt::join(kTwentyClassScenes, ", "), fmt::join(kLyingScenes, ", "),
+                     fmt::join(kDevelopmentScenes, ", "), fmt::join(kTwentyClassDevelopmentScenes, ", "),
+                     fmt::join(kLyingDevelopmentScenes, ", "), kDevelopmentWorld, kDevelopmentWorld);
+}
+
 Scene make_named_scene(const std::string& name) {
   for (const Plan& plan : kPlans) {
     if (name == plan.name) return planned_scene(name, plan);
   }
   if (const std::optional<int> number = development_number(name)) return planned_scene(name, development_plan(*number));
-  fail("scene \"{}\": expected one of {}, {}, or for choosing settings {}, {}, {}0 to {}999", name,
-       fmt::join(kTestScenes, ", "), fmt::join(kTwentyClassScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
-       fmt::join(kTwentyClassDevelopmentScenes, ", "), kDevelopmentWorld, kDevelopmentWorld);
+  fail("scene \"{}\": expected one of {}", name, scene_names());
 }
 
 Scene make_background_scene(int index, std::uint64_t seed) {

@@ -29,6 +29,7 @@ struct Clutter {
   int distractors = 10;                            ///< how many things are tried; those that find no place are left out
   FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each
   double taught_colours = 0.0;                     ///< share of the distractors' surfaces that have the four's colours
+  bool lying = false;  ///< the four classes twice, once lying and once on a wedge; their like lie too
 };
 
 Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed);
@@ -51,6 +52,15 @@ inline constexpr std::array<const char*, 2> kTwentyClassScenes = {"objects_20_a"
 /// Their like to choose settings on.
 inline constexpr std::array<const char*, 2> kTwentyClassDevelopmentScenes = {"development_objects_20_a",
                                                                              "development_objects_20_b"};
+
+/// Test scenes in which the four classes lie and tilt among things that lie.
+inline constexpr std::array<const char*, 2> kLyingScenes = {"table_lying", "meeting_lying"};
+
+/// Their like to choose settings on.
+inline constexpr std::array<const char*, 1> kLyingDevelopmentScenes = {"development_lying"};
+
+/// All of them, for people to read.
+std::string scene_names();
 
 /// One of the test or development scenes. Throws InputError listing the known names.
 Scene make_named_scene(const std::string& name);

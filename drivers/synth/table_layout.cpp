@@ -43,25 +43,32 @@ bool TableLayout::on_table(const Footprint& footprint) const {
   });
 }
 
-std::optional<Eigen::Isometry3d> TableLayout::place(const Thing& thing, const Eigen::AlignedBox2d& region,
-                                                    double turn_rad, Random& random) {
-  const Eigen::AlignedBox3d bounds = mesh_bounds(thing.mesh).cast<double>();
+std::optional<Footprint> TableLayout::claim(const Eigen::Vector2d& half, const Eigen::AlignedBox2d& region,
+                                            double turn_rad, Random& random) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     Footprint footprint;
     const double x = random.uniform(region.min().x(), region.max().x());
     const double y = random.uniform(region.min().y(), region.max().y());
     footprint.centre = {x, y};
-    footprint.half = 0.5 * bounds.sizes().head<2>();
+    footprint.half = half;
     footprint.yaw_rad = random.uniform(-turn_rad, turn_rad);
     const auto touches = [&footprint](const Footprint& other) { return footprints_touch(footprint, other, kGapM); };
     if (!on_table(footprint) || std::any_of(taken_.begin(), taken_.end(), touches)) continue;
     taken_.push_back(footprint);
-    Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-    T_world_object.translate(Eigen::Vector3d(x, y, -bounds.min().z()));
-    T_world_object.rotate(Eigen::AngleAxisd(footprint.yaw_rad, Eigen::Vector3d::UnitZ()));
-    return T_world_object;
+    return footprint;
   }
   return std::nullopt;
+}
+
+std::optional<Eigen::Isometry3d> TableLayout::place(const Thing& thing, const Eigen::AlignedBox2d& region,
+                                                    double turn_rad, Random& random) {
+  const Eigen::AlignedBox3d bounds = mesh_bounds(thing.mesh).cast<double>();
+  const auto footprint = claim(0.5 * bounds.sizes().head<2>(), region, turn_rad, random);
+  if (!footprint) return std::nullopt;
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  T_world_object.translate(Eigen::Vector3d(footprint->centre.x(), footprint->centre.y(), -bounds.min().z()));
+  T_world_object.rotate(Eigen::AngleAxisd(footprint->yaw_rad, Eigen::Vector3d::UnitZ()));
+  return T_world_object;
 }
 
 }  // namespace houghstream

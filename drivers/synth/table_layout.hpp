@@ -28,6 +28,10 @@ class TableLayout {
   std::optional<Eigen::Isometry3d> place(const Thing& thing, const Eigen::AlignedBox2d& region, double turn_rad,
                                          Random& random);
 
+  /// A free footprint of that half extent, as for place(); it is taken from then on.
+  std::optional<Footprint> claim(const Eigen::Vector2d& half, const Eigen::AlignedBox2d& region, double turn_rad,
+                                 Random& random);
+
   const std::vector<Footprint>& footprints() const { return taken_; }
 
  private:

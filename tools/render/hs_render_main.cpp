@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <thread>
 
@@ -12,19 +13,13 @@ namespace {
 struct Arguments {
   houghstream::RenderOptions common;
   std::vector<std::string> objects = {"all"};
+  std::vector<std::string> attitudes = {"upright"};
   houghstream::TurntableSettings turntable;
   int background_count = 215;
   std::string scene;
   int frames = 300;
   int every = 1;
 };
-
-std::string scene_names() {
-  using namespace houghstream;
-  return fmt::format("{}, {}; for choosing settings {}, {}", fmt::join(kTestScenes, ", "),
-                     fmt::join(kTwentyClassScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
-                     fmt::join(kTwentyClassDevelopmentScenes, ", "));
-}
 
 void add_common(CLI::App& command, Arguments& arguments) {
   command.add_option("--out", arguments.common.out, "folder to write to")->required();
@@ -42,7 +37,17 @@ void add_commands(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   training->add_option("--azimuths", arguments.turntable.azimuths, "views a turn")->capture_default_str();
   training->add_option("--pitches", arguments.turntable.pitches, "camera heights")->capture_default_str();
-  training->callback([&] { render_training(arguments.common, arguments.objects, arguments.turntable); });
+  training
+      ->add_option("--attitudes", arguments.attitudes,
+                   "upright, tilted (as if held) and lying (on its sides or upside down; half a turn's views for each)")
+      ->delimiter(',')
+      ->capture_default_str();
+  training->callback([&] {
+    arguments.turntable.attitudes.resize(arguments.attitudes.size());
+    std::transform(arguments.attitudes.begin(), arguments.attitudes.end(), arguments.turntable.attitudes.begin(),
+                   houghstream::parse_attitude);
+    render_training(arguments.common, arguments.objects, arguments.turntable);
+  });
 
   CLI::App* background = app.add_subcommand("background", "training rooms without the objects");
   add_common(*background, arguments);
@@ -52,7 +57,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
 
   CLI::App* scene = app.add_subcommand("scene", "one of the test scenes");
   add_common(*scene, arguments);
-  scene->add_option("name", arguments.scene, scene_names())->required();
+  scene->add_option("name", arguments.scene, houghstream::scene_names())->required();
   scene->add_option("--frames", arguments.frames, "frames along the camera's whole way")->capture_default_str();
   scene->add_option("--every", arguments.every, "write only every Nth of them")->capture_default_str();
   scene->callback([&] { render_scene(arguments.common, arguments.scene, arguments.frames, arguments.every); });

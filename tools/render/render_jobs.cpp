@@ -1,6 +1,7 @@
 #include "tools/render/render_jobs.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "drivers/bop_writer.hpp"
 #include "pipeline/checks.hpp"
@@ -67,11 +68,16 @@ void render_training(const RenderOptions& options, const std::vector<std::string
                      const TurntableSettings& turntable) {
   const std::vector<TaughtObject> taught = taught_objects(object_ids(objects));
   const Turntable table(turntable, options.seed);
+  const bool all_upright = turntable.attitudes == std::vector<Attitude>{Attitude::kUpright};
   write_models(taught, options.out / "models");
   for (const TaughtObject& object : taught) {
+    std::optional<AttitudeChoice> choice;
+    if (!all_upright) choice.emplace(object.thing->mesh);
     BopWriter writer(fresh_scene(options.out / fmt::format("{:06d}", object.id)));
+    const AttitudeChoice* attitudes = choice ? &*choice : nullptr;
     render_in_order(
-        object.name, options.threads, table.view_count(), [&](int index) { return table.render(object, index); },
+        object.name, options.threads, table.view_count(attitudes),
+        [&](int index) { return table.render(object, attitudes, index); },
         [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
     writer.finish();
   }
