@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "pipeline/renderer.hpp"
 
@@ -29,47 +28,29 @@ cv::Rect bounds_px(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, c
   return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
 }
 
-/// Depth as far beyond `z` as that is beyond `z_inside`, on the plane through both: 1/z is linear in the pixel.
-float gone_on(float z_inside, float z) {
-  const float inverse = 2.0F / z - 1.0F / z_inside;
-  return inverse > 0.0F ? 1.0F / inverse : std::numeric_limits<float>::infinity();
-}
-
-bool is_model(const cv::Mat& rendered, const cv::Point& at) {
-  return cv::Rect(cv::Point(), rendered.size()).contains(at) && !std::isnan(rendered.at<float>(at));
-}
-
-/// Looks `outwards` from a pixel of the model's outline.
-void compare_beyond(const RgbdFrame& frame, const cv::Mat& rendered, const cv::Point& corner, const cv::Point& at,
-                    const cv::Point& outwards, float limit, Verification& result) {
-  if (is_model(rendered, at + outwards)) return;  // across a notch
-  const cv::Point pixel = at + outwards + corner;
-  if (!cv::Rect(cv::Point(), frame.depth.size()).contains(pixel)) return;
-  const float z = rendered.at<float>(at);
-  const float z_on = is_model(rendered, at - outwards) ? gone_on(rendered.at<float>(at - outwards), z) : z;
-  const float measured = frame.depth.at<float>(pixel);  // NaN fails both comparisons
-  const bool is_behind = measured > std::max(z, z_on) + limit;
-  result.outline_ends += is_behind ? 1 : 0;
-  result.outline_continues += !is_behind && measured >= std::min(z, z_on) - limit ? 1 : 0;
-}
-
-/// Looks outside the outline, to the left and right of each row's and above and below each column's. Structured light
-/// finds depth by correlating windows of about 9 pixels, so what it measures of an object is up to half a window wider
-/// than the object: only beyond that does a surface go on.
+/// Looks `reach_px` outside the outline, to the left and right of each row's and above and below each column's.
 void compare_outline(const RgbdFrame& frame, const cv::Mat& rendered, const cv::Rect& region,
                      const DepthTolerance& tolerance, Verification& result) {
   constexpr double kReach = 0.008;  // metres outside
-  constexpr int kHalfWindow_px = 5;
+  const auto is_model = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < rendered.cols && y < rendered.rows && !std::isnan(rendered.at<float>(y, x));
+  };
   const std::array<cv::Point, 4> sides{cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}};
   for (int y = 0; y < rendered.rows; ++y) {
     for (int x = 0; x < rendered.cols; ++x) {
-      const cv::Point at(x, y);
-      if (!is_model(rendered, at)) continue;
-      const float z = rendered.at<float>(at);
+      if (!is_model(x, y)) continue;
+      const float z = rendered.at<float>(y, x);
       for (const cv::Point& side : sides) {
-        if (is_model(rendered, at + side)) continue;
-        const int reach_px = 1 + kHalfWindow_px + static_cast<int>(kReach / frame.camera.metres_per_px(z));
-        compare_beyond(frame, rendered, region.tl(), at, reach_px * side, static_cast<float>(tolerance.at(z)), result);
+        if (is_model(x + side.x, y + side.y)) continue;
+        const int reach_px = 1 + static_cast<int>(kReach / frame.camera.metres_per_px(z));
+        const cv::Point there = cv::Point(x, y) + reach_px * side;
+        if (is_model(there.x, there.y)) continue;  // across a notch
+        const cv::Point pixel = there + region.tl();
+        if (!cv::Rect(cv::Point(), frame.depth.size()).contains(pixel)) continue;
+        const float beyond = frame.depth.at<float>(pixel) - z;
+        const auto limit = static_cast<float>(tolerance.at(z));
+        result.outline_ends += beyond > limit ? 1 : 0;
+        result.outline_continues += std::abs(beyond) <= limit ? 1 : 0;
       }
     }
   }

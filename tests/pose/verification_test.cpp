@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgproc.hpp>
-
 #include "tests/pose/test_scene.hpp"
 
 namespace houghstream {
@@ -60,18 +58,6 @@ TEST(Verification, FaceSunkIntoTheTableAgreesButHasNoOutline) {
   EXPECT_LT(found.free_space_violation(), 0.01F);
   EXPECT_GT(found.outline_continues, 20 * found.outline_ends);
   EXPECT_FALSE(is_supported(found, VerificationSettings()));
-}
-
-TEST(Verification, MeasuredWiderThanItIsAnObjectStillEndsAtItsOutline) {
-  const BoxOnTable scene;
-  RgbdFrame frame = scene.frame;
-  const cv::Mat near_first = cv::Mat::ones(9, 9, CV_8UC1);  // a sensor's window: the nearer surface grows
-  cv::Mat depth = frame.depth.clone();
-  depth.setTo(9.0F, frame.depth != frame.depth);
-  cv::erode(depth, frame.depth, near_first);
-  const Verification found = verify_pose(frame, scene.object, scene.truth, kTolerance);
-  EXPECT_GT(found.outline_ends, 2 * found.outline_continues);
-  EXPECT_TRUE(is_supported(found, VerificationSettings()));
 }
 
 TEST(Verification, OutsideTheImageNothingIsRenderedAndNothingSupported) {
