@@ -60,7 +60,8 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
       place_candidates(frame, *model, detection.centre_camera, rotations, settings);
 
   const SeenRegion seen{frame, lab_region(frame, region.box_px), region};
-  const RegistrationResult registered = refine_candidates(seen, *model, detection.centre_camera, candidates, settings);
+  const RegistrationResult registered =
+      refine_candidates(seen, *model, detection.centre_camera, candidates, rotations, settings);
   pose.converged = registered.converged;
   pose.iterations = registered.iterations;
   pose.inliers = registered.inliers;

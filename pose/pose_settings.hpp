@@ -90,12 +90,14 @@ struct VerificationSettings {
   double tolerance_m = 0.008;  ///< measured and model depth agree; 3 sigma is added
 };
 
-/// The probability that a pose is right, by logistic regression on the evidence (pose/quality.hpp, kQualityTerms).
+/// The probability that a pose is right, by logistic regression on the evidence (pose/quality.hpp). Fitted to 912 poses
+/// of detections from score 0.1 on in the scenes development_world_0 to 11, of which 512 were right; with four of the
+/// scenes left out in turn, 98 % of the poses from 0.8 on were.
 struct QualitySettings {
-  double bias = 0.0;
-  std::array<double, 6> weights = {};
-  std::array<double, 6> typical =
-      {};              ///< means of right poses: what is farthest below them is the reason for "no pose"
+  double bias = 0.73;
+  std::array<double, 6> weights = {1.33, 2.13, 1.50, 1.20, 1.90, 3.65};
+  /// Means of right poses: what is farthest below them is the reason for "no pose".
+  std::array<double, 6> typical = {1.56, 3.58, -0.16, 1.49, -0.64, -1.41};
   float least = 0.8F;  ///< poses of lower quality are not published
 };
 

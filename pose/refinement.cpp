@@ -1,19 +1,37 @@
 #include "pose/refinement.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "pose/turn_search.hpp"
 
+#ifndef GAIN
+#define GAIN 0.5F
+#endif
 namespace houghstream {
 namespace {
+
+float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object) {
+  constexpr double kWidth = 25.0 * kRadPerDeg;
+  const Eigen::Quaternionf R(Eigen::Quaterniond(T_camera_object.linear()).cast<float>());
+  float sum = 0.0F;
+  float most = 0.0F;
+  for (const RotationCandidate& vote : votes) {
+    const double ratio = static_cast<double>(R.angularDistance(vote.R_camera_object)) / kWidth;
+    sum += vote.weight * static_cast<float>(std::exp(-0.5 * ratio * ratio));
+    most = std::max(most, vote.weight);
+  }
+  return most > 0.0F ? std::min(1.0F, sum / most) : 0.0F;
+}
 
 /// The steps of refining one detection, with what they share.
 class Refinement {
  public:
   Refinement(const SeenRegion& seen, const ObjectModel& model, const Eigen::Vector3f& centre_camera,
-             const PoseSettings& settings)
+             const std::vector<RotationCandidate>& votes, const PoseSettings& settings)
       : seen_(seen),
+        votes_(votes),
         model_(model),
         centre_(centre_camera.cast<double>()),
         settings_(settings),
@@ -26,7 +44,7 @@ class Refinement {
     float best_score = -std::numeric_limits<float>::infinity();
     for (const PoseCandidate& candidate : candidates) {
       const RegistrationResult coarse = coarsely(candidate.T_camera_object, start_m_);
-      const float score = judge(coarse).score;
+      const float score = believe(coarse);
       if (!is_near(coarse) || !(score > best_score)) continue;
       best = coarse;
       best_score = score;
@@ -38,7 +56,7 @@ class Refinement {
   RegistrationResult turned(const RegistrationResult& result, double step_deg, double reach_deg,
                             std::size_t most) const {
     RegistrationResult best = result;
-    float best_score = judge(result).score;
+    float best_score = believe(result);
     const TurnRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
     for (const ScoredPose& turn :
          best_turns(seen_.frame, seen_.colours, model_, result.T_camera_object, range, tolerance_)) {
@@ -48,7 +66,7 @@ class Refinement {
                         settings_.turn.climb_rounds, settings_.turn.points};
       const ScoredPose top = climb_pose(seen_.frame, seen_.colours, model_, judge(again), climb, tolerance_);
       again.T_camera_object = top.T_camera_object;
-      const float score = judge(again).score;
+      const float score = believe(again);
       if (!is_near(again) || !(score > best_score)) continue;
       best = again;
       best_score = score;
@@ -70,6 +88,11 @@ class Refinement {
                       tolerance_);
   }
 
+  /// How depth, colour and votes speak for the result.
+  float believe(const RegistrationResult& result) const {
+    return judge(result).score * (1.0F + GAIN * vote_support(votes_, result.T_camera_object));
+  }
+
   RegistrationResult coarsely(const Eigen::Isometry3d& T_camera_object, double start_m) const {
     const RegistrationSettings& registration = settings_.registration;
     return registered(T_camera_object, {registration.coarse_iterations, registration.coarse_points, start_m, end_m_});
@@ -88,6 +111,7 @@ class Refinement {
   }
 
   const SeenRegion& seen_;
+  const std::vector<RotationCandidate>& votes_;
   const ObjectModel& model_;
   Eigen::Vector3d centre_;
   const PoseSettings& settings_;
@@ -100,8 +124,8 @@ class Refinement {
 
 RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& model,
                                      const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
-                                     const PoseSettings& settings) {
-  const Refinement refinement(seen, model, centre_camera, settings);
+                                     const std::vector<RotationCandidate>& votes, const PoseSettings& settings) {
+  const Refinement refinement(seen, model, centre_camera, votes, settings);
   const RegistrationResult best = refinement.best_of(candidates);
   if (best.inliers == 0) return best;
   const TurnSettings& turn = settings.turn;

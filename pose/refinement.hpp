@@ -4,6 +4,7 @@
 #include "pose/colour_score.hpp"
 #include "pose/region.hpp"
 #include "pose/registration.hpp"
+#include "pose/rotation_clusters.hpp"
 
 namespace houghstream {
 
@@ -19,6 +20,6 @@ struct SeenRegion {
 /// registration has the last word. No inliers where nothing stayed near `centre_camera`.
 RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& model,
                                      const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
-                                     const PoseSettings& settings);
+                                     const std::vector<RotationCandidate>& votes, const PoseSettings& settings);
 
 }  // namespace houghstream
