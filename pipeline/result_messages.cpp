@@ -130,10 +130,10 @@ ObjectPose pose_from_message(const object_pose_t& message) {
   require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::REJECTED_BY_COLOUR,
           "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
           object_pose_t::REJECTED_BY_COLOUR);
-  require(
-      is_share(message.inlier_fraction) && is_share(message.visible_fraction) && is_share(message.free_space_violation),
-      "{}: shares {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,
-      message.visible_fraction, message.free_space_violation);
+  const bool are_shares = is_share(message.inlier_fraction) && is_share(message.visible_fraction) &&
+                          is_share(message.free_space_violation) && is_share(message.quality);
+  require(are_shares, "{}: shares {}, {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,
+          message.visible_fraction, message.free_space_violation, message.quality);
   ObjectPose out;
   out.class_id = message.class_id;
   out.class_name = message.class_name;

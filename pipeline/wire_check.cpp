@@ -21,7 +21,7 @@ constexpr std::size_t kLeastImage = 8 + 5 * 4 + 4;
 constexpr std::size_t kLeastStage = 5 + 8;
 constexpr std::size_t kVote = 4 * 4 + 4;
 constexpr std::size_t kDetectionNumbers = 5 * 4 + 3 * 4 + 4 + 4;  // score to n_votes_total
-constexpr std::size_t kPoseNumbers = 4 + 4 + 1 + 3 * 8 + 4 * 8 + 1 + 4 + 4 + 4 * 4;
+constexpr std::size_t kPoseNumbers = 4 + 4 + 1 + 3 * 8 + 4 * 8 + 1 + 4 + 4 + 5 * 4;
 constexpr std::size_t kStatusNumbers = 4 + 4 + 5 * 8 + 3 * 4;
 
 void walk_image(WireReader& reader, std::optional<std::int64_t>& sequence) {

@@ -110,7 +110,7 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
 float joint_score(float depth_value, const std::optional<ColourComparison>& colour) {
   constexpr float kUnknown = 0.5F;
   const float kept = 0.1F + 0.9F * std::clamp(colour ? colour->agreement : kUnknown, 0.0F, 1.0F);
-  return depth_value > 0.0F ? kept * depth_value : depth_value;
+  return depth_value > 0.0F ? kept * std::sqrt(depth_value) : depth_value;
 }
 
 }  // namespace houghstream

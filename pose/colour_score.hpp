@@ -31,8 +31,9 @@ struct ColourComparison {
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
                                                 const DepthTolerance& tolerance);
 
-/// Depth and colour together: `depth_value` (DepthScore::value), less a part where the colours do not explain what is
-/// seen.
+/// Depth and colour together: the square root of `depth_value` (DepthScore::value), whose noise would else drown what
+/// little the turns of a round thing differ in colour, less a part where the colours do not explain what is seen.
+/// `depth_value` itself where that is not above 0.
 float joint_score(float depth_value, const std::optional<ColourComparison>& colour);
 
 }  // namespace houghstream

@@ -1,29 +1,12 @@
 #include "pose/refinement.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "pose/turn_search.hpp"
 
-#ifndef GAIN
-#define GAIN 0.5F
-#endif
 namespace houghstream {
 namespace {
-
-float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object) {
-  constexpr double kWidth = 25.0 * kRadPerDeg;
-  const Eigen::Quaternionf R(Eigen::Quaterniond(T_camera_object.linear()).cast<float>());
-  float sum = 0.0F;
-  float most = 0.0F;
-  for (const RotationCandidate& vote : votes) {
-    const double ratio = static_cast<double>(R.angularDistance(vote.R_camera_object)) / kWidth;
-    sum += vote.weight * static_cast<float>(std::exp(-0.5 * ratio * ratio));
-    most = std::max(most, vote.weight);
-  }
-  return most > 0.0F ? std::min(1.0F, sum / most) : 0.0F;
-}
 
 /// The steps of refining one detection, with what they share.
 class Refinement {
@@ -60,12 +43,8 @@ class Refinement {
     const TurnRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
     for (const ScoredPose& turn :
          best_turns(seen_.frame, seen_.colours, model_, result.T_camera_object, range, tolerance_)) {
-      RegistrationResult again = coarsely(turn.T_camera_object, 0.5 * (start_m_ + end_m_));
+      RegistrationResult again = uphill(coarsely(turn.T_camera_object, 0.5 * (start_m_ + end_m_)));
       again.iterations += result.iterations;
-      const Climb climb{settings_.turn.fine_step_deg * kRadPerDeg, settings_.turn.climb_step_m,
-                        settings_.turn.climb_rounds, settings_.turn.points};
-      const ScoredPose top = climb_pose(seen_.frame, seen_.colours, model_, judge(again), climb, tolerance_);
-      again.T_camera_object = top.T_camera_object;
       const float score = believe(again);
       if (!is_near(again) || !(score > best_score)) continue;
       best = again;
@@ -88,9 +67,17 @@ class Refinement {
                       tolerance_);
   }
 
+  RegistrationResult uphill(RegistrationResult result) const {
+    const TurnSettings& turn = settings_.turn;
+    const Climb climb{turn.fine_step_deg * kRadPerDeg, turn.climb_step_m, turn.climb_rounds, turn.points};
+    result.T_camera_object =
+        climb_pose(seen_.frame, seen_.colours, model_, result.T_camera_object, climb, tolerance_).T_camera_object;
+    return result;
+  }
+
   /// How depth, colour and votes speak for the result.
   float believe(const RegistrationResult& result) const {
-    return judge(result).score * (1.0F + GAIN * vote_support(votes_, result.T_camera_object));
+    return judge(result).score * (1.0F + settings_.initial.vote_gain * vote_support(votes_, result.T_camera_object));
   }
 
   RegistrationResult coarsely(const Eigen::Isometry3d& T_camera_object, double start_m) const {

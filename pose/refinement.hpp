@@ -15,9 +15,10 @@ struct SeenRegion {
   const DepthRegion& region;
 };
 
-/// Registration from coarse to fine: coarsely from all candidates; the one for which depth and colour speak most is
-/// turned about its z axis, where votes err most, and registered finely; then its print may turn it a little, and
-/// registration has the last word. No inliers where nothing stayed near `centre_camera`.
+/// Registration from coarse to fine: coarsely from all candidates; the best is registered finely and turned about its z
+/// axis, where votes err most; of the turns, each registered again and moved a little uphill, the one for which depth,
+/// colour and votes speak most goes on; then its print may turn it a little, and registration has the last word. No
+/// inliers where nothing stayed near `centre_camera`.
 RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& model,
                                      const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
                                      const std::vector<RotationCandidate>& votes, const PoseSettings& settings);

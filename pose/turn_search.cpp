@@ -36,8 +36,8 @@ Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectM
 }  // namespace
 
 ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                      const ScoredPose& start, const Climb& climb, const DepthTolerance& tolerance) {
-  ScoredPose best = start;
+                      const Eigen::Isometry3d& T_camera_object, const Climb& climb, const DepthTolerance& tolerance) {
+  ScoredPose best = judge_pose(frame, colours, model, T_camera_object, climb.points, tolerance);
   double size = 1.0;
   for (int round = 0; round < climb.rounds; ++round) {
     bool improved = false;

@@ -41,6 +41,6 @@ struct Climb {
 /// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
 /// round thing stands along its axis.
 ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                      const ScoredPose& start, const Climb& climb, const DepthTolerance& tolerance);
+                      const Eigen::Isometry3d& T_camera_object, const Climb& climb, const DepthTolerance& tolerance);
 
 }  // namespace houghstream

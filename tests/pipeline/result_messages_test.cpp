@@ -153,6 +153,7 @@ TEST(ResultMessages, AbsurdPosesAreRefused) {
   refused([](object_pose_t& p) { p.trans[0] = kNan; });
   refused([](object_pose_t& p) { p.quat[0] = 2.0; });
   refused([](object_pose_t& p) { p.visible_fraction = 1.5F; });
+  refused([](object_pose_t& p) { p.quality = -0.1F; });
   refused([](object_pose_t& p) { p.inlier_fraction = kNan; });
 }
 

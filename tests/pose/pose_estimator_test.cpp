@@ -122,6 +122,7 @@ TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   weak.score = 0.99F * settings.min_score;
   EXPECT_EQ(estimator_for("mug", mug()).estimate(scene.frame, only(weak)).poses.at(0).status, PoseStatus::kLowScore);
   settings.min_score = 0.0F;
+  settings.quality.least = 0.0F;
   const ObjectPose found = estimator_for("mug", mug(), settings).estimate(scene.frame, only(weak)).poses.at(0);
   EXPECT_EQ(found.status, PoseStatus::kValid);
 }

@@ -17,7 +17,7 @@ struct Boxed {
   DepthRegion region{cv::Rect(0, 0, 640, 480), 0.5F, 1.2F, 10000};
 
   RegistrationResult refine(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {
-    return refine_candidates({frame, lab_region(frame, region.box_px), region}, model, centre, candidates, {});
+    return refine_candidates({frame, lab_region(frame, region.box_px), region}, model, centre, candidates, {}, {});
   }
 };
 

@@ -49,5 +49,19 @@ TEST(TurnSearch, AHandleDoesNotMoveTheAxis) {
   EXPECT_GT(make_object_model("mug", mug(), {}).centre.head<2>().norm(), 0.01F);
 }
 
+TEST(TurnSearch, ClimbsBackFromASmallTurnAndShift) {
+  const Mesh box = printed_box();
+  const ObjectModel model = make_object_model("box", box, {});
+  const Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
+  const RgbdFrame frame = coloured_frame(box, truth, 3);
+  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  Eigen::Isometry3d start = turned(truth, 5.0);
+  start.translate(Eigen::Vector3d(0.0, 0.0, 0.004));
+  const Climb climb{3.0 * kRad, 0.004, 5, 250};
+  const ScoredPose top = climb_pose(frame, colours, model, start, climb, kTolerance);
+  EXPECT_GT(top.score, judge_pose(frame, colours, model, start, 250, kTolerance).score);
+  EXPECT_LT(turn_between_deg(top.T_camera_object, truth), 3.0);
+}
+
 }  // namespace
 }  // namespace houghstream
