@@ -2,6 +2,9 @@
 #include <pcl/console/print.h>
 #include <spdlog/spdlog.h>
 
+#include <opencv2/core/utility.hpp>
+#include <set>
+
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/checks.hpp"
@@ -60,6 +63,8 @@ DetectedScene detect_scene(const std::string& name, const BopScene& scene, const
 void run(const BenchOptions& options) {
   // PCL prints a line for each start that finds no pairs; such a start is merely not converged.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  // A thread's CPU time is all of a pose's only where OpenCV starts no threads of its own.
+  cv::setNumThreads(1);
   Forest forest = load_forest(options.forest);
   std::set<std::string> classes;
   for (const ObjectClass& known : forest.classes) classes.insert(known.name);

@@ -10,7 +10,6 @@ namespace houghstream {
 namespace {
 
 constexpr double kMinVisible = 0.6;
-constexpr double kShareOfDiameter = 0.1;
 constexpr float kStrong = 0.5F;
 
 double ratio(int part, int whole) {
@@ -26,8 +25,8 @@ PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score) {
   for (const PoseTrial& trial : trials) {
     if (trial.verdict != Verdict::kTrue || trial.score < min_score || trial.visible_fraction < kMinVisible) continue;
     ++out.detections;
-    by_add_s += trial.add_s < kShareOfDiameter ? 1 : 0;  // false for NaN
-    by_add += (trial.symmetric ? trial.add_s : trial.add) < kShareOfDiameter ? 1 : 0;
+    by_add_s += trial.is_right() ? 1 : 0;
+    by_add += (trial.symmetric ? trial.add_s : trial.add) < PoseTrial::kRightBelow ? 1 : 0;  // false for NaN
   }
   out.add_s = ratio(by_add_s, out.detections);
   out.add = ratio(by_add, out.detections);

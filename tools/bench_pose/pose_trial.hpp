@@ -14,6 +14,7 @@ namespace houghstream {
 /// What came of one detection's pose, beside the truth. Where a number cannot be known it is NaN.
 struct PoseTrial {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kRightBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
 
   std::string scene;
   std::size_t image = 0;  ///< position in the scene's images
@@ -37,8 +38,8 @@ struct PoseTrial {
   double shift_m = kUnknown;
   double turn_deg = kUnknown;  ///< the smallest over the object's symmetries
 
-  /// The pose of a true detection, ADD-S below 10 % of the diameter.
-  bool is_right() const { return verdict == Verdict::kTrue && add_s < 0.1; }
+  /// The pose of a true detection, right by ADD-S.
+  bool is_right() const { return verdict == Verdict::kTrue && add_s < kRightBelow; }
 };
 
 }  // namespace houghstream

@@ -77,8 +77,11 @@ SceneModels load_scene_models(const std::filesystem::path& models, const std::se
 std::vector<PoseTrial> judge_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models) {
   std::vector<PoseTrial> trials;
   for (const auto& [name, model] : models) {
-    for (const JudgedDetection& judged : evaluate_class(run.frames, name, DetectionRules{}).judged)
+    for (const JudgedDetection& judged : evaluate_class(run.frames, name, DetectionRules{}).judged) {
+      const std::vector<NamedObject>& objects = run.frames[judged.frame].objects;
+      if (judged.verdict == Verdict::kTrue && !objects[judged.object].truth.has_pose) continue;
       trials.push_back(judge_one(run, judged, model));
+    }
   }
   return trials;
 }

@@ -37,8 +37,8 @@ struct PoseRun {
   std::vector<std::vector<double>> ms;  ///< by frame and detection
 };
 
-/// All detections that count, of the classes with a model, judged; by class, then strongest first, so that the order is
-/// the same whoever made the poses.
+/// All detections that count, of the classes with a model, judged; those of objects whose truth has no pose are left
+/// out. By class, then strongest first, so that the order is the same whoever made the poses.
 std::vector<PoseTrial> judge_run(const PoseRun& run, const std::map<std::string, ScoredModel>& models);
 
 }  // namespace houghstream
