@@ -71,8 +71,8 @@ def rivals_section(results):
         return []
     return [
         f"<h2>Beside other methods, on {results['rival_frames']} frames</h2>",
-        "<p>They are given the same boxes and centres and look at depth alone; what they find is published. So they compare"
-        " with ours and with ours without its verification.</p>",
+        "<p>They are given the same boxes and centres and look at depth alone; all that they find is published. Ours,"
+        " with nothing withheld, is what compares with that; it also looks at colour.</p>",
         table(HEADER, variant_rows(results["on_rival_frames"])),
     ]
 

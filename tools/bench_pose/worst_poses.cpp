@@ -21,9 +21,8 @@ std::tuple<bool, bool, double> order_of(const PoseTrial& trial) {
 
 std::string error_words(const PoseTrial& trial) {
   if (!std::isfinite(trial.add_s)) return "false: none of its kind is there";
-  const std::string words =
-      fmt::format("ADD-S {:.3f} diameters, {:.0f} mm, {:.0f} deg", trial.add_s, 1e3 * trial.shift_m, trial.turn_deg);
-  return trial.verdict == Verdict::kTrue ? words : "false; nearest: " + words;
+  if (trial.verdict != Verdict::kTrue) return fmt::format("false; the nearest: ADD-S {:.3f} diameters", trial.add_s);
+  return fmt::format("ADD-S {:.3f} diameters, {:.0f} mm, {:.0f} deg", trial.add_s, 1e3 * trial.shift_m, trial.turn_deg);
 }
 
 }  // namespace
