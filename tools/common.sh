@@ -1,4 +1,4 @@
-# What tools/setup, tools/test and tools/demo share. Sourced, not run.
+# What the scripts of this folder share. Sourced, not run.
 
 start_seconds=$(date +%s)
 
@@ -26,4 +26,21 @@ configure_and_build() {
   cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" "${options[@]}" -Wno-dev |
     sed -n '/Houghstream/,$p' || return 1
   NINJA_STATUS='[%f/%t, %e s] ' cmake --build "$folder" --parallel "$(nproc)" ${1:+--target "$@"}
+}
+
+# cached NAME INPUTS COMMAND...: makes $data/NAME by the command, unless the same command of the same build has made it
+# before from the same inputs (names of earlier ones, as one word). Needs $data, and $fresh: yes makes it anyway.
+cached() {
+  local name=$1 inputs=$2 stamp
+  shift 2
+  stamp=$(echo "$*"; sha256sum "$1"; for input in $inputs; do sha256sum "$data/$input.stamp"; done)
+  if [ "$fresh" = no ] && [ "$(cat "$data/$name.stamp" 2>/dev/null)" = "$stamp" ]; then
+    step "$name: unchanged"
+    return
+  fi
+  step "$name"
+  rm -rf "${data:?}/$name" "$data/$name.stamp"
+  mkdir -p "$(dirname "$data/$name")"
+  "$@" | tee "$data/$name.words"
+  echo "$stamp" >"$data/$name.stamp"
 }

@@ -11,13 +11,6 @@
 namespace houghstream {
 namespace {
 
-void draw_outline(cv::Mat& image, const Mesh& mesh, const ObjectPose& pose, const Camera& camera) {
-  const cv::Mat depth = render_depth(mesh, *pose.T_camera_object, camera, {0, 0, camera.width, camera.height});
-  std::vector<std::vector<cv::Point>> contours;
-  cv::findContours(depth == depth, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_NONE);  // NaN where nothing is
-  cv::drawContours(image, contours, -1, class_colour(pose.class_id), 1);
-}
-
 /// Of a seen point of a triangle; `bary` holds the weights of its second and third vertex.
 cv::Vec3b colour_at(const Mesh& mesh, int triangle, const cv::Vec2f& bary) {
   if (mesh.colours.empty()) return cv::Vec3b::all(255);
@@ -29,6 +22,14 @@ cv::Vec3b colour_at(const Mesh& mesh, int triangle, const cv::Vec2f& bary) {
 }
 
 }  // namespace
+
+void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
+                  const cv::Scalar& colour) {
+  const cv::Mat depth = render_depth(mesh, T_camera_object, camera, {0, 0, camera.width, camera.height});
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(depth == depth, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_NONE);  // NaN where nothing is
+  cv::drawContours(image, contours, -1, colour, 1);
+}
 
 cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models) {
   cv::Mat image = 0.4 * frame.colour;
@@ -55,7 +56,8 @@ cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const Class
   draw_text(image, title, at);
   for (const ObjectPose& pose : poses.poses) {
     const auto model = models.find(pose.class_name);
-    if (pose.T_camera_object && model != models.end()) draw_outline(image, model->second, pose, frame.camera);
+    if (pose.T_camera_object && model != models.end())
+      draw_outline(image, model->second, *pose.T_camera_object, frame.camera, class_colour(pose.class_id));
     at.y += kLine_px;
     draw_text(image, fmt::format("{} {:.2f} {}", pose.class_name, pose.detection_score, to_string(pose.status)), at,
               0.45, class_colour(pose.class_id));

@@ -11,6 +11,10 @@
 
 namespace houghstream {
 
+/// The thinnest outline of a posed model, holes and all, into a picture of the camera (CV_8UC3, BGR, its size).
+void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
+                  const cv::Scalar& colour);
+
 /// The frame's picture (CV_8UC3, BGR, its size) with each valid pose's model as the thinnest outline, holes and all, so
 /// that what lies under it can be judged; below the title a line for each pose: class, score, outcome.
 cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models,

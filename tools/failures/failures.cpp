@@ -59,17 +59,6 @@ std::vector<Failure> missed_ones(const std::vector<EvaluatedFrame>& frames, cons
   return out;
 }
 
-/// A part of the frame in the tile's proportions with the box in its middle.
-cv::Rect surroundings(const cv::Rect2f& box, const cv::Size& frame) {
-  const float height = std::max({2.2F * box.height, 2.2F * box.width * kTileHeight / kTileWidth, 90.0F});
-  const int rows = std::min(static_cast<int>(height), frame.height);
-  const int columns = std::min(rows * kTileWidth / kTileHeight, frame.width);
-  const cv::Point2f middle = 0.5F * (box.tl() + box.br());
-  const int left = std::clamp(static_cast<int>(middle.x) - columns / 2, 0, frame.width - columns);
-  const int top = std::clamp(static_cast<int>(middle.y) - rows / 2, 0, frame.height - rows);
-  return {left, top, columns, rows};
-}
-
 }  // namespace
 
 std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& classes,
@@ -90,6 +79,16 @@ std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, 
     }
   }
   return chosen;
+}
+
+cv::Rect surroundings(const cv::Rect2f& box, const cv::Size& frame) {
+  const float height = std::max({2.2F * box.height, 2.2F * box.width * kTileHeight / kTileWidth, 90.0F});
+  const int rows = std::min(static_cast<int>(height), frame.height);
+  const int columns = std::min(rows * kTileWidth / kTileHeight, frame.width);
+  const cv::Point2f middle = 0.5F * (box.tl() + box.br());
+  const int left = std::clamp(static_cast<int>(middle.x) - columns / 2, 0, frame.width - columns);
+  const int top = std::clamp(static_cast<int>(middle.y) - rows / 2, 0, frame.height - rows);
+  return {left, top, columns, rows};
 }
 
 cv::Mat draw_failure(const Failure& failure, const cv::Mat& colour) {

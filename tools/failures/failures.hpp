@@ -25,6 +25,9 @@ std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, 
                                      const DetectionRules& rules, float operating_score, std::size_t count,
                                      std::size_t apart);
 
+/// A part of the frame, four wide and three high where the frame lets it, with the box in its middle.
+cv::Rect surroundings(const cv::Rect2f& box, const cv::Size& frame);
+
 /// The failure's surroundings with its box, and a line that says what it is. `colour` is the whole frame, CV_8UC3.
 cv::Mat draw_failure(const Failure& failure, const cv::Mat& colour);
 

@@ -1,4 +1,4 @@
-#include "tools/bench/surface_cloud.hpp"
+#include "tools/bench_pose/surface_cloud.hpp"
 
 #include <pcl/features/normal_3d.h>
 #include <pcl/search/kdtree.h>

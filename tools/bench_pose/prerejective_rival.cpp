@@ -8,7 +8,7 @@
 
 #include "pipeline/checks.hpp"
 #include "pose/registration.hpp"
-#include "tools/bench/surface_rival.hpp"
+#include "tools/bench_pose/surface_rival.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,7 +4,7 @@
 #include <opencv2/surface_matching/icp.hpp>
 
 #include "pipeline/checks.hpp"
-#include "tools/bench/surface_rival.hpp"
+#include "tools/bench_pose/surface_rival.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/pose_rivals.hpp"
-#include "tools/bench/surface_cloud.hpp"
+#include "tools/bench_pose/pose_rivals.hpp"
+#include "tools/bench_pose/surface_cloud.hpp"
 
 namespace houghstream {
 

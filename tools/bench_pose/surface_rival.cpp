@@ -1,4 +1,4 @@
-#include "tools/bench/surface_rival.hpp"
+#include "tools/bench_pose/surface_rival.hpp"
 
 #include <limits>
 

@@ -6,7 +6,7 @@
 #include "pipeline/frame.hpp"
 #include "pose/object_model.hpp"
 #include "pose/region.hpp"
-#include "tools/bench/rival_settings.hpp"
+#include "tools/bench_pose/rival_settings.hpp"
 
 namespace houghstream {
 

@@ -1,4 +1,4 @@
-#include "tools/bench/pose_rivals.hpp"
+#include "tools/bench_pose/pose_rivals.hpp"
 
 #include <gtest/gtest.h>
 

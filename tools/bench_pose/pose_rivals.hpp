@@ -10,7 +10,7 @@
 #include "pipeline/frame.hpp"
 #include "pipeline/mesh.hpp"
 #include "pose/pose_settings.hpp"
-#include "tools/bench/rival_settings.hpp"
+#include "tools/bench_pose/rival_settings.hpp"
 
 namespace houghstream {
 
