@@ -73,6 +73,6 @@ def poses_of(data):
         name = wire.text()
         _, index, status = wire.read("fib")
         translation = wire.read("3d")
-        wire.read("4dbii4f")
+        wire.read("4dbii5f")
         poses.append((name, index, status, translation))
     return poses
