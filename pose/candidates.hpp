@@ -5,6 +5,7 @@
 
 #include "pipeline/detection.hpp"
 #include "pipeline/frame.hpp"
+#include "pipeline/object_pose.hpp"
 #include "pose/object_model.hpp"
 #include "pose/pose_settings.hpp"
 #include "pose/rotation_clusters.hpp"
@@ -23,5 +24,11 @@ std::vector<PoseCandidate> place_candidates(const RgbdFrame& frame, const Object
                                             const Eigen::Vector3f& centre_camera,
                                             const std::vector<RotationCandidate>& rotations,
                                             const PoseSettings& settings);
+
+/// What an earlier frame's poses add: those of the class that lie near the detected centre, as they were then. None of
+/// a frame that is later or too long ago.
+std::vector<PoseCandidate> earlier_candidates(const RgbdFrame& frame, const ObjectModel& model,
+                                              const Detection& detection, const ObjectPoses& earlier,
+                                              const PoseSettings& settings);
 
 }  // namespace houghstream

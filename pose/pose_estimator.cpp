@@ -37,7 +37,7 @@ PoseStatus judge_registered(const SeenRegion& seen, const ObjectModel& model, co
 }
 
 ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, const ObjectModel* model,
-                        const PoseSettings& settings) {
+                        const ObjectPoses& earlier, const PoseSettings& settings) {
   ObjectPose pose;
   pose.class_id = detection.class_id;
   pose.class_name = detection.class_name;
@@ -55,9 +55,10 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
   if (region.points < settings.region.min_points) return without(PoseStatus::kTooFewPoints);
 
   const std::vector<RotationCandidate> rotations = rotation_clusters(detection.rotations, settings.initial);
-  if (rotations.empty()) return without(PoseStatus::kNoInitialPose);
-  const std::vector<PoseCandidate> candidates =
-      place_candidates(frame, *model, detection.centre_camera, rotations, settings);
+  std::vector<PoseCandidate> candidates = place_candidates(frame, *model, detection.centre_camera, rotations, settings);
+  const std::vector<PoseCandidate> warm = earlier_candidates(frame, *model, detection, earlier, settings);
+  candidates.insert(candidates.end(), warm.begin(), warm.end());
+  if (candidates.empty()) return without(PoseStatus::kNoInitialPose);
 
   const SeenRegion seen{frame, lab_region(frame, region.box_px), region};
   const RegistrationResult registered =
@@ -90,6 +91,11 @@ PoseEstimator::~PoseEstimator() = default;
 PoseEstimator::PoseEstimator(PoseEstimator&&) noexcept = default;
 
 ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections) const {
+  return estimate(frame, detections, {});
+}
+
+ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections,
+                                    const ObjectPoses& earlier) const {
   if (frame.utime != detections.utime) {
     throw std::logic_error(fmt::format("detections of frame {} given with frame {}", detections.utime, frame.utime));
   }
@@ -105,8 +111,8 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     const auto i = static_cast<std::size_t>(index);
     const Detection& detection = detections.detections[i];
     const auto model = state_->models.find(detection.class_name);
-    result.poses[i] =
-        estimate_one(frame, detection, model == state_->models.end() ? nullptr : &model->second, state_->settings);
+    const ObjectModel* known = model == state_->models.end() ? nullptr : &model->second;
+    result.poses[i] = estimate_one(frame, detection, known, earlier, state_->settings);
     result.poses[i].detection_index = index;
   });
   clock.mark("pose.estimate");

@@ -24,6 +24,10 @@ class PoseEstimator {
   /// The detections must be of this frame (same utime); throws std::logic_error otherwise.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
+  /// The same with the poses of an earlier frame (warm start): they are candidates beside those of the votes, never the
+  /// only ones, so that a wrong pose does not stick and what was lost comes back by itself.
+  ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) const;
+
  private:
   struct State;
   std::unique_ptr<State> state_;

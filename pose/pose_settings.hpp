@@ -52,6 +52,12 @@ struct InitialSettings {
   float vote_gain = 0.3F;   ///< how much a rotation that the votes agree on is preferred after registration
 };
 
+/// Poses of an earlier frame as further candidates.
+struct WarmStartSettings {
+  double max_age_s = 0.5;  ///< between the frames
+  double reach_m = 0.1;    ///< from the detected centre; objects farther away are others
+};
+
 /// Coarse choice by depth score: each rotation at several places, the best go to registration.
 struct SearchSettings {
   double reach_m = 0.06;      ///< along the line of sight, to each side of the detected centre
@@ -108,6 +114,7 @@ struct PoseSettings {
   DepthNoise noise;
   RegionSettings region;
   InitialSettings initial;
+  WarmStartSettings warm_start;
   SearchSettings search;
   RegistrationSettings registration;
   TurnSettings turn;

@@ -32,5 +32,37 @@ TEST(Candidates, BestPlacedRotationComesFirst) {
   EXPECT_LT(R_camera_object.angularDistance(Eigen::Quaterniond(truth.linear())), 0.01);
 }
 
+TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
+  const Mesh object = cereal_box();
+  const Eigen::Isometry3d truth = standing(60.0, 30.0, 0.9);
+  RgbdFrame frame = noisy_frame({{&object, truth, 1}}, 1);
+  frame.utime = 2000000;
+  const ObjectModel model = make_object_model("box", object, ModelSettings());
+  Detection detection;
+  detection.class_name = "box";
+  detection.centre_camera = truth.translation().cast<float>();
+  ObjectPose pose;
+  pose.class_name = "box";
+  pose.T_camera_object = truth;
+  const auto count = [&](std::int64_t utime, const ObjectPose& earlier) {
+    ObjectPoses poses;
+    poses.utime = utime;
+    poses.poses = {earlier};
+    return earlier_candidates(frame, model, detection, poses, {}).size();
+  };
+  EXPECT_EQ(count(1900000, pose), 1U);
+  EXPECT_EQ(count(1400000, pose), 0U);  // too long ago
+  EXPECT_EQ(count(2000000, pose), 0U);  // this frame
+  EXPECT_EQ(count(2100000, pose), 0U);  // later: the log was started again
+  ObjectPose other = pose;
+  other.class_name = "mug";
+  EXPECT_EQ(count(1900000, other), 0U);
+  other = pose;
+  other.T_camera_object = Eigen::Translation3d(0.2, 0.0, 0.0) * truth;
+  EXPECT_EQ(count(1900000, other), 0U);
+  other.T_camera_object.reset();
+  EXPECT_EQ(count(1900000, other), 0U);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -115,6 +115,39 @@ TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
   }
 }
 
+ObjectPoses earlier_pose(const std::string& name, const Eigen::Isometry3d& T_camera_object, std::int64_t utime) {
+  ObjectPose pose;
+  pose.class_name = name;
+  pose.status = PoseStatus::kValid;
+  pose.T_camera_object = T_camera_object;
+  ObjectPoses poses;
+  poses.utime = utime;
+  poses.poses = {pose};
+  return poses;
+}
+
+TEST(PoseEstimator, AWrongEarlierPoseDoesNotStick) {
+  const StandingScene scene(cereal_box(), -0.13, standing(30.0, 30.0, 1.0), 3);
+  const Detections seen = only(detection_of("box", scene.object, scene.truth, 5));
+  const Eigen::Isometry3d wrong = scene.truth * Eigen::AngleAxisd(M_PI_2, Eigen::Vector3d::UnitX());
+  const ObjectPose found =
+      estimator_for("box", cereal_box()).estimate(scene.frame, seen, earlier_pose("box", wrong, 500)).poses.at(0);
+  ASSERT_EQ(found.status, PoseStatus::kValid);
+  EXPECT_LT(error_of(scene, found), 0.003);
+}
+
+TEST(PoseEstimator, AnEarlierPoseHelpsWhereNoVoteRemembersTheRotation) {
+  const StandingScene scene(cereal_box(), -0.13, standing(30.0, 30.0, 1.0), 3);
+  Detections seen = only(detection_of("box", scene.object, scene.truth, 5));
+  seen.detections[0].rotations.clear();
+  const PoseEstimator estimator = estimator_for("box", cereal_box());
+  EXPECT_EQ(estimator.estimate(scene.frame, seen).poses.at(0).status, PoseStatus::kNoInitialPose);
+  const Eigen::Isometry3d moved = Eigen::Translation3d(0.01, 0.005, -0.01) * scene.truth;
+  const ObjectPose found = estimator.estimate(scene.frame, seen, earlier_pose("box", moved, 500)).poses.at(0);
+  ASSERT_EQ(found.status, PoseStatus::kValid);
+  EXPECT_LT(error_of(scene, found), 0.003);
+}
+
 TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   PoseSettings settings;

@@ -44,8 +44,10 @@ int main(int argc, char** argv) {
     if (!camera.empty()) options.camera = parse_camera(camera);
     const PoseEstimator estimator(load_models(models, model_unit_m), settings);
     LcmBus bus(url, output_log);
+    ObjectPoses last;
     run_pose_process(bus, options, [&](const RgbdFrame& frame, const Detections& detections) {
-      return estimator.estimate(frame, detections);
+      last = estimator.estimate(frame, detections, last);
+      return last;
     });
   });
 }
