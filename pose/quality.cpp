@@ -20,6 +20,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   constexpr double kFraction = 0.05;
   constexpr double kCount = 3.0;
   constexpr double kColourUnits = 10.0;
+  constexpr double kUsualContrast = 18.0;
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
   QualityTerms terms = settings.typical;
@@ -29,7 +30,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   terms[3] = std::log((depth.outline_ends + kCount) / (depth.outline_continues + kCount));
   if (evidence.colour) {
     terms[4] = -static_cast<double>(evidence.colour->chroma_shift) / kColourUnits;
-    terms[5] = -static_cast<double>(evidence.colour->left_over) / kColourUnits;
+    terms[5] = -std::max(0.0, static_cast<double>(evidence.colour->left_over) - kUsualContrast) / kColourUnits;
   }
   return terms;
 }

@@ -22,7 +22,8 @@ struct PoseEvidence {
 /// 2 log of the visible fraction
 /// 3 log of outline ends over outline that goes on
 /// 4 shift of chroma, tens of CIE L*a*b* units (negated)
-/// 5 contrast that the model's colours leave unexplained, tens of units (negated)
+/// 5 contrast that the model's colours leave unexplained, beyond the 18 units that right poses have, tens of units
+///   (negated)
 /// Those of colour are the typical ones where the model has none.
 using QualityTerms = std::array<double, 6>;
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);
