@@ -113,7 +113,7 @@ RegistrationResult refine_candidates(const SeenRegion& seen, const ObjectModel& 
                                      const Eigen::Vector3f& centre_camera, const std::vector<PoseCandidate>& candidates,
                                      const std::vector<RotationCandidate>& votes, const PoseSettings& settings) {
   const Refinement refinement(seen, model, centre_camera, votes, settings);
-  const RegistrationResult best = refinement.best_of(candidates);
+  RegistrationResult best = refinement.best_of(candidates);
   if (best.inliers == 0) return best;
   const TurnSettings& turn = settings.turn;
   const RegistrationResult settled = refinement.finely(best);
