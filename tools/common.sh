@@ -44,3 +44,18 @@ cached() {
   "$@" | tee "$data/$name.words"
   echo "$stamp" >"$data/$name.stamp"
 }
+
+# Rendered views and rooms, and the forest that is trained on them: $data/training, background, forest. Needs $bin too.
+rendered_forest() {
+  cached training '' "$bin/hs-render" training --out "$data/training"
+  cached background '' "$bin/hs-render" background --count 215 --out "$data/background"
+  cached forest 'training background' "$bin/hs-train" --threads "$(nproc)" --out "$data/forest" \
+    --views "bop:$data/training" --background "bop:$data/background"
+}
+
+# Camera-recorded data in DIR/objects, background, scenes: its camera, and the options that name the training views in $real.
+recorded_camera=640x480,525,525,319.5,239.5
+set_recorded_views() {
+  recorded_views=(--views "uw:$real/objects" --camera $recorded_camera --rename can_1=can,can_2=can
+    --instances ornament_3,ornament_1,koaramarch_1,pack_2,bottle_2,can_1,can_2)
+}
