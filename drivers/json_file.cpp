@@ -25,6 +25,10 @@ int index_of(const std::string& key, const std::string& file) {
 
 }  // namespace
 
+OrderedJson finite_or_null(double value) {
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
+}
+
 nlohmann::json read_json_object(const std::filesystem::path& file) {
   std::ifstream in(file);
   require(in.good(), "{}: missing or unreadable, expected a JSON file", file.string());

@@ -11,6 +11,9 @@ namespace houghstream {
 /// Keys keep the order in which they are written, so that image 10 follows image 9.
 using OrderedJson = nlohmann::ordered_json;
 
+/// JSON has no NaN and no infinity: null stands for what is not known.
+OrderedJson finite_or_null(double value);
+
 /// Throws InputError when the file is missing or no JSON object.
 nlohmann::json read_json_object(const std::filesystem::path& file);
 

@@ -43,19 +43,16 @@ std::vector<PoseCandidate> place_candidates(const RgbdFrame& frame, const Object
   return candidates;
 }
 
-std::vector<PoseCandidate> earlier_candidates(const RgbdFrame& frame, const ObjectModel& model,
-                                              const Detection& detection, const ObjectPoses& earlier,
-                                              const PoseSettings& settings) {
+std::vector<PoseCandidate> earlier_candidates(std::int64_t utime, const Detection& detection,
+                                              const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<PoseCandidate> candidates;
-  const double age_s = 1e-6 * static_cast<double>(frame.utime - earlier.utime);
-  if (!(age_s > 0.0 && age_s <= settings.warm_start.max_age_s)) return candidates;
-  const DepthTolerance tolerance{settings.search.tolerance_m, settings.noise};
+  const double age_s = 1e-6 * static_cast<double>(utime - earlier.utime);
+  if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return candidates;
   for (const ObjectPose& pose : earlier.poses) {
     if (!pose.T_camera_object || pose.class_name != detection.class_name) continue;
     const Eigen::Vector3d apart = pose.T_camera_object->translation() - detection.centre_camera.cast<double>();
-    if (apart.norm() > settings.warm_start.reach_m) continue;
-    const DepthScore score = score_pose(frame, model, *pose.T_camera_object, settings.search.points, tolerance);
-    candidates.push_back({*pose.T_camera_object, score.value});
+    if (apart.norm() > settings.reach_m) continue;
+    candidates.push_back({*pose.T_camera_object, 0.0F});
   }
   return candidates;
 }

@@ -15,7 +15,7 @@ namespace houghstream {
 /// A place to start registration from.
 struct PoseCandidate {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
-  float score = 0.0F;  ///< DepthScore::value
+  float score = 0.0F;  ///< DepthScore::value; 0 for poses of an earlier frame, which are not chosen by it
 };
 
 /// Tries each rotation at places about the detected centre, moved along the line of sight onto the measured surface;
@@ -26,9 +26,8 @@ std::vector<PoseCandidate> place_candidates(const RgbdFrame& frame, const Object
                                             const PoseSettings& settings);
 
 /// What an earlier frame's poses add: those of the class that lie near the detected centre, as they were then. None of
-/// a frame that is later or too long ago.
-std::vector<PoseCandidate> earlier_candidates(const RgbdFrame& frame, const ObjectModel& model,
-                                              const Detection& detection, const ObjectPoses& earlier,
-                                              const PoseSettings& settings);
+/// a frame that is later than `utime` or too long before it.
+std::vector<PoseCandidate> earlier_candidates(std::int64_t utime, const Detection& detection,
+                                              const ObjectPoses& earlier, const WarmStartSettings& settings);
 
 }  // namespace houghstream

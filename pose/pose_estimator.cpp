@@ -56,7 +56,7 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
 
   const std::vector<RotationCandidate> rotations = rotation_clusters(detection.rotations, settings.initial);
   std::vector<PoseCandidate> candidates = place_candidates(frame, *model, detection.centre_camera, rotations, settings);
-  const std::vector<PoseCandidate> warm = earlier_candidates(frame, *model, detection, earlier, settings);
+  const std::vector<PoseCandidate> warm = earlier_candidates(frame.utime, detection, earlier, settings.warm_start);
   candidates.insert(candidates.end(), warm.begin(), warm.end());
   if (candidates.empty()) return without(PoseStatus::kNoInitialPose);
 

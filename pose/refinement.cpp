@@ -62,11 +62,6 @@ class Refinement {
   }
 
  private:
-  ScoredPose judge(const RegistrationResult& result) const {
-    return judge_pose(seen_.frame, seen_.colours, model_, result.T_camera_object, settings_.registration.fine_points,
-                      tolerance_);
-  }
-
   RegistrationResult uphill(RegistrationResult result) const {
     const TurnSettings& turn = settings_.turn;
     const Climb climb{turn.fine_step_deg * kRadPerDeg, turn.climb_step_m, turn.climb_rounds, turn.points};
@@ -77,7 +72,10 @@ class Refinement {
 
   /// How depth, colour and votes speak for the result.
   float believe(const RegistrationResult& result) const {
-    return judge(result).score * (1.0F + settings_.initial.vote_gain * vote_support(votes_, result.T_camera_object));
+    const ScoredPose judged = judge_pose(seen_.frame, seen_.colours, model_, result.T_camera_object,
+                                         settings_.registration.fine_points, tolerance_);
+    const float support = vote_support(votes_, result.T_camera_object, settings_.initial);
+    return judged.score * (1.0F + settings_.initial.vote_gain * support);
   }
 
   RegistrationResult coarsely(const Eigen::Isometry3d& T_camera_object, double start_m) const {

@@ -70,6 +70,14 @@ void set_evidence(const Cloud& aligned, const ModelView& view, double distance,
 
 }  // namespace
 
+Eigen::Isometry3d rigid_motion(const Eigen::Matrix4d& matrix) {
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  T.translation() = matrix.topRightCorner<3, 1>();
+  return T;
+}
+
 RegistrationResult register_pcl(const std::vector<Eigen::Vector3f>& points_camera, const ObjectModel& model,
                                 const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
                                 const RegistrationSettings& settings) {
@@ -102,11 +110,7 @@ RegistrationResult register_pcl(const std::vector<Eigen::Vector3f>& points_camer
   }
   set_evidence(aligned, view, stage.end_distance_m, *tree, result);
   // The measured points moved by M in the object frame, so the object moves the other way in the camera frame.
-  const Eigen::Matrix3d R = icp.getFinalTransformation().topLeftCorner<3, 3>().cast<double>();
-  Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
-  M.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
-  M.translation() = icp.getFinalTransformation().topRightCorner<3, 1>().cast<double>();
-  result.T_camera_object = T_camera_object * M.inverse();
+  result.T_camera_object = T_camera_object * rigid_motion(icp.getFinalTransformation().cast<double>()).inverse();
   return result;
 }
 

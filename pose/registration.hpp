@@ -20,6 +20,9 @@ struct RegistrationResult {
   float residual = std::numeric_limits<float>::quiet_NaN();  ///< RMS distance of the inliers along normals, metres
 };
 
+/// The motion that a 4x4 matrix stands for, its rotation made exact again after rounding.
+Eigen::Isometry3d rigid_motion(const Eigen::Matrix4d& matrix);
+
 /// How far one registration goes: pairs farther apart than the distance, which shrinks from start to end, have no
 /// weight. Distances in metres.
 struct RegistrationStage {

@@ -83,13 +83,14 @@ std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>
   return candidates;
 }
 
-float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object) {
-  constexpr double kWidth_rad = 25.0 * kRadPerDeg;
+float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object,
+                   const InitialSettings& settings) {
+  const double width_rad = settings.cluster_radius_deg * kRadPerDeg;
   const Eigen::Quaternionf R_camera_object(Eigen::Quaterniond(T_camera_object.linear()).cast<float>());
   float sum = 0.0F;
   float most = 0.0F;
   for (const RotationCandidate& vote : votes) {
-    const double ratio = static_cast<double>(R_camera_object.angularDistance(vote.R_camera_object)) / kWidth_rad;
+    const double ratio = static_cast<double>(R_camera_object.angularDistance(vote.R_camera_object)) / width_rad;
     sum += vote.weight * static_cast<float>(std::exp(-0.5 * ratio * ratio));
     most = std::max(most, vote.weight);
   }

@@ -21,8 +21,9 @@ struct RotationCandidate {
 std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>& votes,
                                                  const InitialSettings& settings);
 
-/// How much the votes speak for a pose's rotation: weight of the modes about it, relative to the heaviest mode's, 0
-/// to 1.
-float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object);
+/// How much the votes speak for a pose's rotation: weight of the modes about it, as near as the clusters are wide,
+/// relative to the heaviest mode's, 0 to 1.
+float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object,
+                   const InitialSettings& settings);
 
 }  // namespace houghstream

@@ -81,12 +81,12 @@ TEST(RotationClusters, VotesSupportWhatTheyAgreeOn) {
   };
   const std::vector<RotationCandidate> votes = {{about_z(0.0), 4.0F}, {about_z(120.0), 1.0F}, {about_z(200.0), 0.0F}};
   const auto support = [&](double degrees) {
-    return vote_support(votes, Eigen::Isometry3d(about_z(degrees).cast<double>()));
+    return vote_support(votes, Eigen::Isometry3d(about_z(degrees).cast<double>()), {});
   };
   EXPECT_NEAR(support(0.0), 1.0F, 1e-3F);
   EXPECT_NEAR(support(120.0), 0.25F, 1e-2F);
   EXPECT_LT(support(200.0), 0.05F);
-  EXPECT_EQ(vote_support({}, Eigen::Isometry3d::Identity()), 0.0F);
+  EXPECT_EQ(vote_support({}, Eigen::Isometry3d::Identity(), {}), 0.0F);
 }
 
 }  // namespace

@@ -16,12 +16,15 @@ double turn_between_deg(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) 
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() / kRad;
 }
 
+struct SeenBox {
+  ObjectModel model = make_object_model("box", printed_box(), {});
+  Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
+  RgbdFrame frame = coloured_frame(model.mesh, truth, 3);
+  LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+};
+
 TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
-  const Mesh box = printed_box();
-  const ObjectModel model = make_object_model("box", box, {});
-  const Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
-  const RgbdFrame frame = coloured_frame(box, truth, 3);
-  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  const auto& [model, truth, frame, colours] = SeenBox();
   for (const double degrees : {90.0, 180.0, 270.0}) {
     const auto turns =
         best_turns(frame, colours, model, turned(truth, degrees), {15.0 * kRad, 180.0 * kRad, 3, 250}, kTolerance);
@@ -31,11 +34,7 @@ TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
 }
 
 TEST(TurnSearch, TheBestComesFirstAndNeighboursOfABetterOneAreLeftOut) {
-  const Mesh box = printed_box();
-  const ObjectModel model = make_object_model("box", box, {});
-  const Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
-  const RgbdFrame frame = coloured_frame(box, truth, 3);
-  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  const auto& [model, truth, frame, colours] = SeenBox();
   const auto turns = best_turns(frame, colours, model, truth, {5.0 * kRad, 180.0 * kRad, 4, 250}, kTolerance);
   ASSERT_LE(turns.size(), 4U);
   for (std::size_t i = 1; i < turns.size(); ++i) {
@@ -50,11 +49,7 @@ TEST(TurnSearch, AHandleDoesNotMoveTheAxis) {
 }
 
 TEST(TurnSearch, ClimbsBackFromASmallTurnAndShift) {
-  const Mesh box = printed_box();
-  const ObjectModel model = make_object_model("box", box, {});
-  const Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
-  const RgbdFrame frame = coloured_frame(box, truth, 3);
-  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  const auto& [model, truth, frame, colours] = SeenBox();
   Eigen::Isometry3d start = turned(truth, 5.0);
   start.translate(Eigen::Vector3d(0.0, 0.0, 0.004));
   const Climb climb{3.0 * kRad, 0.004, 5, 250};

@@ -26,7 +26,7 @@ PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score) {
     if (trial.verdict != Verdict::kTrue || trial.score < min_score || trial.visible_fraction < kMinVisible) continue;
     ++out.detections;
     by_add_s += trial.is_right() ? 1 : 0;
-    by_add += (trial.symmetric ? trial.add_s : trial.add) < PoseTrial::kRightBelow ? 1 : 0;  // false for NaN
+    by_add += (trial.symmetric ? trial.add_s : trial.add) < kRightBelow ? 1 : 0;  // false for NaN
   }
   out.add_s = ratio(by_add_s, out.detections);
   out.add = ratio(by_add, out.detections);
@@ -77,10 +77,6 @@ std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>
     counts.right += unchecked[i].is_right() ? 1 : 0;
   }
   return out;
-}
-
-OrderedJson finite_or_null(double value) {
-  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
 }
 
 OrderedJson to_json(const PoseFigures& figures) {

@@ -46,9 +46,8 @@ struct WithheldPoses {
 std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>& trials,
                                                     const std::vector<PoseTrial>& unchecked);
 
-/// What is not finite becomes null.
+/// What is not finite becomes null (finite_or_null).
 OrderedJson to_json(const PoseFigures& figures);
 OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld);
-OrderedJson finite_or_null(double value);
 
 }  // namespace houghstream

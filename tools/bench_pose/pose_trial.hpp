@@ -7,14 +7,13 @@
 #include <string>
 
 #include "pipeline/object_pose.hpp"
-#include "tools/evaluate/detection_metrics.hpp"
+#include "tools/evaluate/pose_metrics.hpp"
 
 namespace houghstream {
 
 /// What came of one detection's pose, beside the truth. Where a number cannot be known it is NaN.
 struct PoseTrial {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  static constexpr double kRightBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
 
   std::string scene;
   std::size_t image = 0;  ///< position in the scene's images

@@ -4,6 +4,7 @@
 #include <opencv2/surface_matching/icp.hpp>
 
 #include "pipeline/checks.hpp"
+#include "pose/registration.hpp"
 #include "tools/bench_pose/surface_rival.hpp"
 
 namespace houghstream {
@@ -26,25 +27,8 @@ cv::Mat rows_of(const SurfaceCloud& cloud) {
   return rows;
 }
 
-cv::Mat rows_of(const ModelView& view) {
-  SurfaceCloud cloud;
-  for (std::size_t i = 0; i < view.points.size(); ++i) {
-    cloud.push_back({});
-    cloud.back().getVector3fMap() = view.points[i];
-    cloud.back().getNormalVector3fMap() = view.normals[i];
-  }
-  return rows_of(cloud);
-}
-
 Eigen::Isometry3d rigid(const cv::Matx44d& matrix) {
-  Eigen::Matrix4d m;
-  for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) m(r, c) = matrix(r, c);
-  }
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::Quaterniond(m.topLeftCorner<3, 3>()).normalized().toRotationMatrix();
-  T.translation() = m.topRightCorner<3, 1>();
-  return T;
+  return rigid_motion(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(matrix.val));
 }
 
 void check_settings(const PpfSettings& s) {
@@ -86,7 +70,7 @@ class PpfRival final : public SurfaceRival {
       const Eigen::Isometry3d start = rigid(pose->pose);
       if (!start.matrix().allFinite() || !seen.reaches(start)) continue;
       std::vector<ppf::Pose3DPtr> refined = {pose->clone()};
-      icp.registerModelToScene(rows_of(nearest_view(models().at(name), start)), measured, refined);
+      icp.registerModelToScene(rows_of(view_surface(nearest_view(models().at(name), start))), measured, refined);
       poses.push_back(rigid(refined.front()->pose));
       if (static_cast<int>(poses.size()) == settings_.kept) break;
     }

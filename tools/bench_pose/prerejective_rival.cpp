@@ -38,14 +38,6 @@ DescribedSurface describe(const SurfaceCloud::Ptr& cloud, double radius_m) {
   return out;
 }
 
-Eigen::Isometry3d rigid(const Eigen::Matrix4f& matrix) {
-  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>().cast<double>();
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
-  T.translation() = matrix.topRightCorner<3, 1>().cast<double>();
-  return T;
-}
-
 void check_settings(const PrerejectiveSettings& s) {
   require(s.spacing >= 0.01 && s.spacing <= 0.5, "fpfh: spacing {}, expected 0.01 to 0.5 diameters", s.spacing);
   require(s.feature_radius > s.spacing && s.feature_radius <= 2.0,
@@ -113,7 +105,7 @@ class PrerejectiveRival final : public SurfaceRival {
     SurfaceCloud aligned;
     alignment.align(aligned);
     if (!alignment.hasConverged()) return std::nullopt;
-    return rigid(alignment.getFinalTransformation());
+    return rigid_motion(alignment.getFinalTransformation().cast<double>());
   }
 
   std::optional<Eigen::Isometry3d> refine(const Eigen::Isometry3d& start, const ObjectModel& model,

@@ -64,15 +64,19 @@ SurfaceCloud::Ptr thinned(const SurfaceCloud& cloud, double spacing_m) {
   return out;
 }
 
+SurfaceCloud view_surface(const ModelView& view) {
+  SurfaceCloud cloud;
+  for (std::size_t i = 0; i < view.points.size(); ++i) {
+    cloud.push_back({});
+    cloud.back().getVector3fMap() = view.points[i];
+    cloud.back().getNormalVector3fMap() = view.normals[i];
+  }
+  return cloud;
+}
+
 SurfaceCloud::Ptr model_surface(const ObjectModel& model, double spacing_m) {
   SurfaceCloud all;
-  for (const ModelView& view : model.views) {
-    for (std::size_t i = 0; i < view.points.size(); ++i) {
-      all.push_back({});
-      all.back().getVector3fMap() = view.points[i];
-      all.back().getNormalVector3fMap() = view.normals[i];
-    }
-  }
+  for (const ModelView& view : model.views) all += view_surface(view);
   return thinned(all, spacing_m);
 }
 

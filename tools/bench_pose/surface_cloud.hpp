@@ -17,6 +17,9 @@ using SurfaceCloud = pcl::PointCloud<pcl::PointNormal>;
 /// wall stay apart): the mean, in an order that depends on the points alone.
 SurfaceCloud::Ptr thinned(const SurfaceCloud& cloud, double spacing_m);
 
+/// A view's points, object frame.
+SurfaceCloud view_surface(const ModelView& view);
+
 /// What of a model can be seen from somewhere, object frame, thinned; normals outwards.
 SurfaceCloud::Ptr model_surface(const ObjectModel& model, double spacing_m);
 

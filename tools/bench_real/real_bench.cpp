@@ -39,11 +39,6 @@ std::string title_of(const std::string& frame, const ComparedFrame* compared) {
                      compared->difference->turn_deg, compared->reliable ? "" : " (unreliable reference)");
 }
 
-/// Null for what is no finite number.
-OrderedJson millimetres(double metres) {
-  return std::isfinite(metres) ? OrderedJson(1e3 * metres) : OrderedJson(nullptr);
-}
-
 OrderedJson to_json(const ComparedFrame& frame) {
   OrderedJson out = {{"frame", frame.frame}, {"reliable", frame.reliable}, {"outcome", frame.outcome}};
   out["mm"] = frame.difference ? OrderedJson(1e3 * frame.difference->shift_m) : OrderedJson(nullptr);
@@ -86,8 +81,8 @@ OrderedJson to_json(const RealBench& bench, const ComparedObject& object) {
   const MeshAlignment& alignment = object.scan.alignment;
   const Eigen::Quaterniond q(alignment.T_target_source.linear());
   const Eigen::Vector3d t = 1e3 * alignment.T_target_source.translation();
-  out["alignment"] = {{"rms_mm", millimetres(alignment.rms_m)},
-                      {"next_rms_mm", millimetres(alignment.next_rms_m)},
+  out["alignment"] = {{"rms_mm", finite_or_null(1e3 * alignment.rms_m)},
+                      {"next_rms_mm", finite_or_null(1e3 * alignment.next_rms_m)},
                       {"wxyz", {q.w(), q.x(), q.y(), q.z()}},
                       {"t_mm", {t.x(), t.y(), t.z()}}};
   out["per_frame"] = OrderedJson::array();

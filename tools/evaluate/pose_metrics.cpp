@@ -25,13 +25,12 @@ const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_inde
 }
 
 double recall(const std::vector<JudgedPose>& poses, double JudgedPose::*error, double diameter, double min_visible) {
-  constexpr double kShareOfDiameter = 0.1;
   int counted = 0;
   int good = 0;
   for (const JudgedPose& pose : poses) {
     if (pose.visible_fraction < min_visible) continue;
     ++counted;
-    good += pose.*error < kShareOfDiameter * diameter ? 1 : 0;  // false for NaN
+    good += pose.*error < kRightBelow * diameter ? 1 : 0;  // false for NaN
   }
   return counted > 0 ? static_cast<double>(good) / counted : kNaN;
 }

@@ -12,6 +12,8 @@ namespace houghstream {
 
 using Points = std::vector<Eigen::Vector3f>;
 
+constexpr double kRightBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
+
 /// ADD (Hinterstoisser et al. 2012): mean distance in metres of the model's points under the two poses.
 double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
 

@@ -11,9 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// JSON has no NaN.
 OrderedJson number(double value) {
-  return std::isfinite(value) ? OrderedJson(std::round(value * 1e4) / 1e4) : OrderedJson(nullptr);
+  return finite_or_null(std::round(value * 1e4) / 1e4);
 }
 
 OrderedJson ratio(int part, int whole) {
