@@ -10,6 +10,31 @@
 namespace houghstream {
 namespace {
 
+/// Share of a jar's surface, of several jars, that has about a colour of the four classes.
+double taught_share_of_jars(double taught_colours) {
+  constexpr int kJar = 15;  // two plain surfaces
+  constexpr int kJars = 20;
+  double share = 0.0;
+  for (std::uint64_t seed = 1; seed <= kJars; ++seed) {
+    const cv::Mat texture = make_distractor(kJar, seed, taught_colours)->mesh.texture;
+    cv::Mat taught = cv::Mat::zeros(texture.size(), CV_8UC1);
+    for (int id = 1; id <= kClassCount; ++id) {
+      for (const Hsv& colour : {class_colours(id).base, class_colours(id).accent}) {
+        constexpr double kNear = 75.0;
+        cv::Mat near;
+        cv::inRange(texture, bgr(colour) - cv::Scalar::all(kNear), bgr(colour) + cv::Scalar::all(kNear), near);
+        taught |= near;
+      }
+    }
+    share += static_cast<double>(cv::countNonZero(taught)) / static_cast<double>(taught.total()) / kJars;
+  }
+  return share;
+}
+
+TEST(TaughtColours, JarsHaveThemAsOftenAsAsked) {
+  EXPECT_GT(taught_share_of_jars(1.0), taught_share_of_jars(0.0) + 0.3);
+}
+
 TEST(TaughtColours, NearOnesLookTheSame) {
   Random random(4);
   for (int id = 1; id <= kClassCount; ++id) {
