@@ -22,7 +22,7 @@ class Likeness {
 
  private:
   /// Sums of a, b, a * a, b * b and a * b.
-  using Sums = std::array<double, 5>;
+  using Sums = std::array<std::int32_t, 5>;  // exact for 33 000 pairs, many times what a view has
 
   double seen_variance(std::size_t channel) const;
 

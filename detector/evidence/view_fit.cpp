@@ -5,7 +5,6 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <utility>
-#include <vector>
 
 #include "detector/evidence/likeness.hpp"
 
@@ -45,18 +44,25 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
   // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
   out.left = static_cast<float>(centre_px.x()) + 0.5F + px_per_metre * view.box[0] - Appearance::kRim * out.cell_width;
   out.top = static_cast<float>(centre_px.y()) + 0.5F + px_per_metre * view.box[1] - Appearance::kRim * out.cell_height;
-  for (std::size_t cell = 0; cell < out.excess.size(); ++cell) {
-    const cv::Point2f px = out.cell_centre(cell);
-    const int x = static_cast<int>(std::floor(px.x));
-    const int y = static_cast<int>(std::floor(px.y));
-    if (x < 0 || y < 0 || x >= frame.depth.cols || y >= frame.depth.rows) continue;
-    const float beyond_centre = frame.depth.at<float>(y, x) - centre.z();
-    const std::int16_t remembered = view.appearance.mm[cell];
-    const std::int16_t neighbour = view.appearance.beside[cell];
-    out.on_object[cell] = remembered != Appearance::kBeside;
-    out.beside[cell] = neighbour != Appearance::kBeside;
-    out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - 0.001F * remembered : kNone;
-    out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - 0.001F * neighbour : kNone;
+  std::array<int, kSide> column_px{};
+  for (std::size_t column = 0; column < kSide; ++column)
+    column_px[column] = static_cast<int>(std::floor(out.cell_centre(column).x));
+  for (std::size_t row = 0; row < kSide; ++row) {
+    const int y = static_cast<int>(std::floor(out.cell_centre(row * kSide).y));
+    if (y < 0 || y >= frame.depth.rows) continue;
+    const auto* depth = frame.depth.ptr<float>(y);
+    for (std::size_t column = 0; column < kSide; ++column) {
+      const int x = column_px[column];
+      if (x < 0 || x >= frame.depth.cols) continue;
+      const std::size_t cell = row * kSide + column;
+      const float beyond_centre = depth[x] - centre.z();
+      const std::int16_t remembered = view.appearance.mm[cell];
+      const std::int16_t neighbour = view.appearance.beside[cell];
+      out.on_object[cell] = remembered != Appearance::kBeside;
+      out.beside[cell] = neighbour != Appearance::kBeside;
+      out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - 0.001F * remembered : kNone;
+      out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - 0.001F * neighbour : kNone;
+    }
   }
   return out;
 }
@@ -64,13 +70,15 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
 /// Median of what lies within reach of the expected depth.
 float common_shift(const Comparison& comparison) {
   constexpr float kReach = 0.03F;
-  std::vector<float> near;
-  for (const float e : comparison.excess) {
-    if (std::abs(e) < kReach) near.push_back(e);
+  std::array<float, kSide * kSide> near;
+  std::size_t count = 0;
+  for (std::size_t cell = 0; cell < near.size(); ++cell) {
+    near[count] = comparison.excess[cell];
+    count += std::abs(near[count]) < kReach ? 1 : 0;
   }
-  if (near.empty()) return 0.0F;
-  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-  std::nth_element(near.begin(), middle, near.end());
+  if (count == 0) return 0.0F;
+  auto* middle = near.data() + count / 2;
+  std::nth_element(near.data(), middle, near.data() + count);
   return *middle;
 }
 
