@@ -1,7 +1,5 @@
 #pragma once
 
-#include <hwy/cache_control.h>
-
 #include <cstdint>
 #include <vector>
 
@@ -39,9 +37,6 @@ class PatchBeliefs {
       const Believers& believers = believers_[b];
       std::uint32_t begin = 0;
       for (std::size_t i = 0; i < believers.patches.size(); ++i) {
-        for (std::uint32_t e = begin; e < believers.ends[i]; ++e) {  // the caller's cache misses overlap
-          hwy::Prefetch(forest_->votes.data() + forest_->leaf_classes[believers.entries[e]].first_vote);
-        }
         visit(believers.patches[i], believers.entries.data() + begin, believers.ends[i] - begin);
         begin = believers.ends[i];
       }

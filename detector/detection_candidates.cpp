@@ -100,10 +100,12 @@ std::vector<Candidate> class_candidates(const Forest& forest, int class_index, c
                                         const LabFrame& frame, const DetectionSettings& settings,
                                         const std::vector<std::uint32_t>& forgotten) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
-  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings);
+  static thread_local HoughSpace space;  // its memory is kept from class to class
+  cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings, space);
   const float least_mass = settings.min_mass_share * object.expected_mass;
   std::vector<Candidate> candidates;
-  for (const Hypothesis& hypothesis : find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
+  for (const Hypothesis& hypothesis :
+       find_hypotheses(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
     if (candidates.size() >= static_cast<std::size_t>(settings.max_per_class)) break;
     candidates.push_back(to_candidate(forest, class_index, hypothesis, seen, frame, settings.max_rotations, forgotten));
   }

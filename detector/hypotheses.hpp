@@ -17,10 +17,10 @@ struct Hypothesis {
   std::vector<std::pair<std::uint32_t, float>> views;    ///< remembered training view and its weight, heaviest first
 };
 
-/// Maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D by mean shift (Comaniciu & Meer
-/// 2002), those that meet merged. Those of at least `least_mass`, strongest first.
-std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
-                                    const Camera& working_camera, float least_mass, const DetectionSettings& settings);
+/// The maxima of a class's votes with at least `least_mass`, strongest first.
+std::vector<Hypothesis> find_hypotheses(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
+                                        const Camera& working_camera, float least_mass,
+                                        const DetectionSettings& settings);
 
 /// Box by back-projection of all supporting patches (paper, Section 2), frame pixels. Patches at an object's rim see
 /// little of it and support it weakly, so each side moves out to where the training views that the votes

@@ -40,8 +40,9 @@ std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
   const std::vector<std::int32_t> leaves(patches.size(), 0);
   PatchBeliefs beliefs(forest, 1, 0.0F);
   beliefs.note(0, {0, patches.size(), 0}, leaves.data());
-  const HoughSpace space = cast_votes(forest, 0, patches, beliefs, kCamera, {});
-  return find_maxima(forest, space, patches, kCamera, least_mass, {});
+  HoughSpace space;
+  cast_votes(forest, 0, patches, beliefs, kCamera, {}, space);
+  return find_hypotheses(forest, space, patches, kCamera, least_mass, {});
 }
 
 TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
