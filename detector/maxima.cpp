@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "detector/mean_shift.hpp"
+#include "detector/weighted_median.hpp"
 
 namespace houghstream {
 namespace {
@@ -47,40 +48,18 @@ std::vector<Cell> image_maxima(const HoughSpace& space, const DetectionSettings&
   return maxima;
 }
 
-/// The value with half the weight below it, by looking at that half only where it lies. 0 where there are none.
-float weighted_median(std::vector<std::pair<float, float>>& values, float total) {
-  float below = 0.0F;
-  auto begin = values.begin();
-  auto end = values.end();
-  while (end - begin > 1) {
-    const auto middle = begin + (end - begin) / 2;
-    std::nth_element(begin, middle, end);
-    float sum = below;
-    for (auto value = begin; value != middle; ++value) sum += value->second;
-    if (sum >= 0.5F * total) {
-      end = middle;
-    } else {
-      begin = middle;
-      below = sum;
-    }
-  }
-  return begin == end ? 0.0F : begin->first;
-}
-
 /// Weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
 float start_depth(const HoughSpace& space, const Cell& cell) {
   static thread_local std::vector<VoteRange> ranges;  // both kept from cell to cell
   static thread_local std::vector<std::pair<float, float>> depths;
   ranges_near(space, cell.x, cell.y, 1, ranges);
   depths.clear();
-  float total = 0.0F;
   for (const VoteRange& range : ranges) {
     for (std::uint32_t v = range.begin; v < range.end; ++v) {
       depths.emplace_back(space.votes[v].centre_camera.z(), space.votes[v].weight);
-      total += space.votes[v].weight;
     }
   }
-  return weighted_median(depths, total);
+  return weighted_median(depths);
 }
 
 }  // namespace

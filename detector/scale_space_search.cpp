@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/beliefs.hpp"
+#include "detector/boxes.hpp"
 #include "detector/features/features.hpp"
-#include "detector/hypotheses.hpp"
 #include "detector/voting.hpp"
 #include "pipeline/parallel.hpp"
 

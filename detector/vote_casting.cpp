@@ -78,8 +78,7 @@ HWY_INLINE void prefetch_ahead(const Forest& forest, const std::vector<Voter>& v
   if (now + kClasses >= voters.size()) return;
   hwy::Prefetch(forest.leaf_classes.data() + voters[now + kClasses].leaf_class);
   const LeafClass& soon = forest.leaf_classes[voters[now + kVotes].leaf_class];
-  hwy::Prefetch(forest.votes.data() + soon.first_vote);
-  hwy::Prefetch(forest.votes.data() + soon.first_vote + 4);
+  for (std::size_t line = 0; line < 3; ++line) hwy::Prefetch(forest.votes.data() + soon.first_vote + 4 * line);
 }
 
 /// Casts the votes of voters from `first` on, as many as there is room for; returns the first who did not vote.

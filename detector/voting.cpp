@@ -1,5 +1,6 @@
 #include "detector/voting.hpp"
 
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 
 #include "detector/vote_casting.hpp"
@@ -16,10 +17,12 @@ struct CellSum {
 /// The last element is of the votes outside the image.
 void sum_by_cell(const CastVotes& cast, const CellGrid& grid, std::vector<CellSum>& sums) {
   sums.assign(grid.outside() + 1, CellSum{});
-  for (std::size_t v = 0; v < cast.count; ++v) {
-    CellSum& sum = sums[cast.cells[v]];
-    ++sum.votes;
-    sum.weight += cast.votes[v].weight;
+  CellSum* const by_cell = sums.data();
+  const std::uint32_t* cell = cast.cells.data();
+  const Vote* const end = cast.votes.data() + cast.count;
+  for (const Vote* vote = cast.votes.data(); vote != end; ++vote, ++cell) {
+    ++by_cell[*cell].votes;
+    by_cell[*cell].weight += vote->weight;
   }
 }
 
@@ -41,10 +44,16 @@ void lay_out(const std::vector<CellSum>& sums, std::vector<std::uint32_t>& next,
 
 /// Counting sort: stable, so the order does not depend on anything but the votes.
 void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, HoughSpace& space) {
-  for (std::size_t v = 0; v < cast.count; ++v) {
-    const std::uint32_t place = next[cast.cells[v]]++;
-    space.votes[place] = cast.votes[v];
-    space.voter[place] = cast.voters[v];
+  std::uint32_t* const free = next.data();
+  Vote* const votes = space.votes.data();
+  std::uint32_t* const voters = space.voter.data();
+  const std::uint32_t* cell = cast.cells.data();
+  const std::uint32_t* voter = cast.voters.data();
+  const Vote* const end = cast.votes.data() + cast.count;
+  for (const Vote* vote = cast.votes.data(); vote != end; ++vote) {
+    const std::uint32_t place = free[*cell++]++;
+    std::memcpy(static_cast<void*>(votes + place), vote, sizeof(Vote));  // at once, not member by member
+    voters[place] = *voter++;
   }
   space.votes.resize(space.first_vote.back() + kSpareVotes);  // without those outside
   space.voter.resize(space.first_vote.back());
