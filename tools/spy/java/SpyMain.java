@@ -1,0 +1,34 @@
+package houghstream.spy;
+
+import java.awt.Frame;
+import java.awt.GraphicsEnvironment;
+import javax.swing.SwingUtilities;
+import lcm.spy.Spy;
+
+/** Starts lcm-spy, saying in one line what it would say in a page when it cannot start. */
+public final class SpyMain {
+  private static final int SPY_WIDTH = 1000;
+
+  private SpyMain() {}
+
+  public static void main(String[] arguments) {
+    try {
+      if (GraphicsEnvironment.isHeadless()) fail("no display for a window (DISPLAY is not set)");
+      GraphicsEnvironment.getLocalGraphicsEnvironment().getDefaultScreenDevice();
+    } catch (java.awt.AWTError error) {
+      fail("no display for a window (" + error.getMessage() + ")");
+    } catch (LinkageError error) {
+      fail("this Java has no windows; sudo apt-get install default-jre");
+    }
+    Spy.main(arguments);
+    // Spy's own window is too narrow for the names of our channels.
+    SwingUtilities.invokeLater(() -> {
+      for (Frame frame : Frame.getFrames()) frame.setSize(SPY_WIDTH, frame.getHeight());
+    });
+  }
+
+  private static void fail(String reason) {
+    System.err.println("hs-spy: " + reason);
+    System.exit(1);
+  }
+}
