@@ -13,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-const std::string kTitle = "Houghstream (q end, space pause, d depth, s save)";
+const std::string kTitle = "Houghstream";
 
 bool is_set(const char* variable) {
   const char* value = std::getenv(variable);
@@ -24,27 +24,23 @@ bool is_set(const char* variable) {
 
 ViewWindow::ViewWindow() {
   require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"),
-          "no display for a window (DISPLAY is not set); without one use --snapshot FILE.png, --video FILE.mp4 or "
-          "--pictures FOLDER");
+          "no display for a window (DISPLAY is not set); without one use --snapshot FILE.png, --video FILE.mp4, "
+          "--pictures FOLDER or --preview");
   cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
 }
 
 void ViewWindow::show(const cv::Mat& picture, std::int64_t utime) {
-  if (paused_) return;
   shown_ = picture;
   utime_ = utime;
   cv::imshow(kTitle, picture);
 }
 
-bool ViewWindow::handle_keys(FrameViewSettings& settings) {
-  constexpr int kEscape = 27;
+KeyAction ViewWindow::handle_keys(FrameViewSettings& settings) {
   constexpr int kMoment = 5;  // milliseconds
   const int key = cv::waitKey(kMoment);
-  if (key == 'q' || key == kEscape) return false;
-  if (key == ' ') paused_ = !paused_;
-  if (key == 'd') settings.show_depth = !settings.show_depth;
   if (key == 's') save();
-  return cv::getWindowProperty(kTitle, cv::WND_PROP_VISIBLE) >= 1.0;
+  const KeyAction action = apply_key(key, settings);
+  return cv::getWindowProperty(kTitle, cv::WND_PROP_VISIBLE) >= 1.0 ? action : KeyAction::kEnd;
 }
 
 void ViewWindow::save() const {

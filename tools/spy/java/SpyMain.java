@@ -13,7 +13,7 @@ public final class SpyMain {
 
   public static void main(String[] arguments) {
     try {
-      if (GraphicsEnvironment.isHeadless()) fail("no display for a window (DISPLAY is not set)");
+      if (GraphicsEnvironment.isHeadless()) fail("this Java has no windows; sudo apt-get install default-jre");
       GraphicsEnvironment.getLocalGraphicsEnvironment().getDefaultScreenDevice();
     } catch (java.awt.AWTError error) {
       fail("no display for a window (" + error.getMessage() + ")");
