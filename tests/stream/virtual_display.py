@@ -18,8 +18,8 @@ class VirtualDisplay:
     def __enter__(self):
         read_end, write_end = os.pipe()
         width, height = self.size
-        command = ["Xvfb", "-displayfd", str(write_end), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp",
-                   "-fbdir", str(self.folder)]
+        command = ["Xvfb", "-displayfd", str(write_end), "-screen", "0", f"{width}x{height}x24", "-noreset", "-nolisten",
+                   "tcp", "-fbdir", str(self.folder)]
         self.server = subprocess.Popen(command, pass_fds=[write_end], stderr=subprocess.DEVNULL)
         os.close(write_end)
         with os.fdopen(read_end) as answer:
@@ -39,7 +39,7 @@ class VirtualDisplay:
         assert result.returncode == 0, (words, result.stderr)
         return result.stdout
 
-    def window(self, name, seconds=30):
+    def window(self, name, seconds=120):
         """The newest visible window whose title holds `name`, waited for."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:

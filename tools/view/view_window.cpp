@@ -1,8 +1,13 @@
 #include "tools/view/view_window.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <opencv2/highgui.hpp>
 #include <string>
@@ -20,12 +25,33 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
+// Whether a window opens. Tried in a process of its own: where a display is named but does not answer, the window
+// library aborts the process instead of saying so.
+bool window_opens() {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+    try {
+      cv::namedWindow("display check");
+    } catch (const cv::Exception&) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
 }  // namespace
 
 ViewWindow::ViewWindow() {
-  require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"),
-          "no display for a window (DISPLAY is not set); without one use --snapshot FILE.png, --video FILE.mp4, "
-          "--pictures FOLDER or --preview");
+  const std::string advice = "without one use --snapshot FILE.png, --video FILE.mp4, --pictures FOLDER or --preview";
+  require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"), "no display for a window (DISPLAY is not set); {}", advice);
+  require(window_opens(), "no display for a window (the one named by DISPLAY does not answer); {}", advice);
   cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
 }
 

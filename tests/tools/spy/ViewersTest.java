@@ -1,7 +1,6 @@
 package houghstream.spy;
 
 import houghstream.detections_t;
-import houghstream.image_t;
 import houghstream.images_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
@@ -11,10 +10,9 @@ import java.awt.Container;
 import java.awt.Dimension;
 import java.awt.image.BufferedImage;
 import java.util.List;
-import javax.swing.JDesktopPane;
-import lcm.spy.SpyPlugin;
+import java.util.Random;
 
-/** The plug-ins as spy asks for them, and what the viewers draw, without a display. */
+/** What the viewers draw, without a display. */
 public final class ViewersTest {
   private static final int[][] SIZES = {{0, 0}, {1, 1}, {3, 200}, {300, 240}, {1200, 300}, {240, 900}};
 
@@ -22,46 +20,15 @@ public final class ViewersTest {
 
   public static void main(String[] arguments) {
     ImagesTest.run();
-    Check.test("plug-ins tell name and types without a place", ViewersTest::plugins);
-    Check.test("frames, detections and poses meet by utime", ViewersTest::matching);
+    PluginsTest.run();
     Check.test("box and axes are drawn where they belong", ViewersTest::overlay);
     Check.test("pictures fit every size", ViewersTest::sizes);
     Check.test("the panel of detections survives every size", ViewersTest::panel);
+    Check.test("damaged detections and poses do no harm", ViewersTest::damaged);
     Check.end();
   }
 
-  private static void plugins() {
-    SpyPlugin[] plugins = {new RgbdPlugin(), new ImagePlugin(), new DetectionPlugin()};
-    long[] types = {images_t.LCM_FINGERPRINT, image_t.LCM_FINGERPRINT, detections_t.LCM_FINGERPRINT};
-    for (int i = 0; i < plugins.length; ++i) {
-      for (int k = 0; k < types.length; ++k) Check.equal(plugins[i].canHandle(types[k]), i == k);
-      Check.that(plugins[i].getAction(null, null).getValue("Name") instanceof String, "a name");
-      plugins[i].getAction(null, null).actionPerformed(null);
-      plugins[i].getAction(new JDesktopPane(), null).actionPerformed(null);
-    }
-    Check.that(plugins[2].canHandle(object_poses_t.LCM_FINGERPRINT), "poses");
-  }
-
-  private static void matching() throws Exception {
-    ResultMatcher matcher = new ResultMatcher();
-    Check.equal(matcher.newest(0), null);
-    matcher.addFrame(frame(10));
-    matcher.addDetections(Samples.detections(10));
-    Check.equal(matcher.newest(0).utime, 10L); // poses never came: detections alone
-    matcher.addPoses(Samples.poses(10, object_pose_t.VALID), 0);
-    matcher.addDetections(Samples.detections(20));
-    Check.equal(matcher.newest(1).utime, 10L); // poses of 20 are still to come
-    Check.equal(matcher.newest(9_000_000).utime, 10L); // 20 came without its frame
-    matcher.addDetections(Samples.detections(3_000_000));
-    Check.equal(matcher.newest(9_000_000).utime, 3_000_000L); // a second later the frame of 10 is too old
-    Check.equal(matcher.arrivedPercent(), 33);
-    for (int i = 0; i < 200; ++i) matcher.addFrame(frame(i)); // a log that is played again, from an earlier time
-    matcher.addDetections(Samples.detections(150));
-    Check.equal(matcher.newest(9_000_000).utime, 150L);
-    Check.refused("message of 8 bytes", () -> matcher.addFrame(new byte[8]));
-  }
-
-  private static byte[] frame(long utime) throws Exception {
+  static byte[] frame(long utime) throws Exception {
     images_t message = Samples.frame(Samples.jpeg(9), images_t.DEPTH_MM, Samples.depth(900, 0));
     message.utime = utime;
     return Samples.bytes(message);
@@ -134,5 +101,33 @@ public final class ViewersTest {
     for (int[] size : SIZES) painted(panel.component(), size[0], size[1]);
     Dimension least = panel.component().getMinimumSize();
     Check.that(least.width > 0 && least.height > 0, "a smallest size");
+  }
+
+  // Whatever can be decoded can be drawn: boxes of NaN, of astronomic size, poses inside out.
+  private static void damaged() throws Exception {
+    byte[] detections = Samples.bytes(Samples.detections(5));
+    byte[] poses = Samples.bytes(Samples.poses(5, object_pose_t.VALID));
+    RgbdFrame frame = RgbdFrame.decode(frame(5));
+    DetectionPanel panel = new DetectionPanel();
+    Random random = new Random(1);
+    int shown = 0;
+    for (int i = 0; i < 80; ++i) {
+      try {
+        detections_t odd = Wire.decode(damaged(detections, random), "detections_t", detections_t::new);
+        object_poses_t oddPoses = Wire.decode(damaged(poses, random), "object_poses_t", object_poses_t::new);
+        panel.show(frame.colour, new DetectionOverlay(odd, oddPoses, frame.camera), odd, oddPoses, oddPoses.stages);
+        painted(panel.component(), 800, 300);
+        ++shown;
+      } catch (BadMessage refused) {
+        Check.that(refused.getMessage().startsWith("damaged"), refused.getMessage());
+      }
+    }
+    Check.that(shown > 10 && shown < 70, shown + " of 80 shown");
+  }
+
+  private static byte[] damaged(byte[] good, Random random) {
+    byte[] bad = good.clone();
+    for (int i = 0; i < 3; ++i) bad[8 + random.nextInt(bad.length - 8)] = (byte) random.nextInt();
+    return bad;
   }
 }
