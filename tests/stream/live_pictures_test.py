@@ -105,6 +105,13 @@ def check_spy(tools, logs, display, out):
         spy.kill()
 
 
+def check_no_route(tools):
+    """Where there is no multicast route hs-spy says so, instead of showing an empty table."""
+    command = ["unshare", "-rn", str(tools / "hs-spy")]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    assert result.returncode == 1 and "is there a multicast route?" in result.stderr, result
+
+
 def check_frames(display, window, out):
     """Colour beside depth: the right half holds the warm and cold colours of the map, the left hardly any."""
     end = time.monotonic() + 60
@@ -184,6 +191,8 @@ def main():
             os.replace(processes[-1].log, logs / "preview.err")
             processes.append(Process(logs, tools / "hs-capture", "--source", f"bop:{data / 'scene'}", "--loop", "--rate",
                                      10, "--jpeg-quality", 80))
+            if subprocess.run(["unshare", "-rn", "true"], capture_output=True, check=False).returncode == 0:
+                check_no_route(tools)
             check_spy(tools, logs, display, out)
             check_view(tools, data, logs, display, out)
         finally:

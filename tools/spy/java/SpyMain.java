@@ -2,7 +2,9 @@ package houghstream.spy;
 
 import java.awt.Frame;
 import java.awt.GraphicsEnvironment;
+import java.io.IOException;
 import javax.swing.SwingUtilities;
+import lcm.lcm.LCM;
 import lcm.spy.Spy;
 
 /** Starts lcm-spy, saying in one line what it would say in a page when it cannot start. */
@@ -20,11 +22,22 @@ public final class SpyMain {
     } catch (LinkageError error) {
       fail("this Java has no windows; sudo apt-get install default-jre");
     }
+    tryNetwork();
     Spy.main(arguments);
     // Spy's own window is too narrow for the names of our channels.
     SwingUtilities.invokeLater(() -> {
       for (Frame frame : Frame.getFrames()) frame.setSize(SPY_WIDTH, frame.getHeight());
     });
+  }
+
+  // Spy itself would open a window that stays empty.
+  private static void tryNetwork() {
+    try {
+      new LCM().close();
+    } catch (IOException error) {
+      fail("LCM cannot be opened at " + System.getenv("LCM_DEFAULT_URL") + " (" + error.getMessage()
+          + "); is there a multicast route?");
+    }
   }
 
   private static void fail(String reason) {
