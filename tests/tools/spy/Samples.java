@@ -120,6 +120,7 @@ final class Samples {
   static object_poses_t poses(long utime, byte status) {
     object_pose_t pose = new object_pose_t();
     pose.class_name = "soda_can";
+    pose.detection_score = 0.75F;
     pose.status = status;
     pose.trans = new double[] {0, 0, 0.5};
     pose.quat = new double[] {1, 0, 0, 0};

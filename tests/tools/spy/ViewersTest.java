@@ -59,21 +59,23 @@ public final class ViewersTest {
     return found;
   }
 
-  private static BufferedImage drawn(byte status) throws Exception {
+  private static BufferedImage drawn(byte status, double minScore) throws Exception {
     RgbdFrame frame = RgbdFrame.decode(frame(5));
     PicturePane pane = new PicturePane();
     pane.show(List.of(frame.colour),
-        new DetectionOverlay(Samples.detections(5), Samples.poses(5, status), frame.camera));
+        new DetectionOverlay(Samples.detections(5), Samples.poses(5, status), frame.camera, minScore));
     return painted(pane, 10 * Samples.WIDTH, 10 * Samples.HEIGHT);
   }
 
   private static void overlay() throws Exception {
-    BufferedImage valid = drawn(object_pose_t.VALID);
+    BufferedImage valid = drawn(object_pose_t.VALID, 0.75);
     // The box's lower edge, at y = 38 of the frame, and the middle of the x axis, which points to the right.
     Check.equal(valid.getRGB(10 * 32 + 5, 10 * 38 + 5), ClassColours.of(4).getRGB());
     Check.equal(valid.getRGB(10 * 35 + 5, 10 * 24 + 5), DetectionOverlay.AXIS_COLOURS[0].getRGB());
     Check.that(count(valid, DetectionOverlay.AXIS_COLOURS[1]) > 50, "y axis");
-    Check.equal(count(drawn(object_pose_t.REJECTED_BY_DEPTH), DetectionOverlay.AXIS_COLOURS[0]), 0);
+    Check.equal(count(drawn(object_pose_t.REJECTED_BY_DEPTH, 0.5), DetectionOverlay.AXIS_COLOURS[0]), 0);
+    BufferedImage weak = drawn(object_pose_t.VALID, 0.8);
+    Check.equal(count(weak, ClassColours.of(4)) + count(weak, DetectionOverlay.AXIS_COLOURS[0]), 0);
     double[] turned = DetectionOverlay.rotation(new double[] {Math.sqrt(0.5), 0, 0, Math.sqrt(0.5)});
     Check.that(Math.abs(turned[3] - 1) < 1e-12, "a quarter turn about z takes x to y");
   }
@@ -97,7 +99,7 @@ public final class ViewersTest {
     detections_t detections = Samples.detections(5);
     object_poses_t poses = Samples.poses(5, (byte) 77); // a status from the future
     poses.poses[0].detection_index = 12; // of a detection that is not there
-    panel.show(frame.colour, new DetectionOverlay(detections, poses, null), detections, poses, poses.stages);
+    panel.show(new DetectionPanel.Shown(frame.colour, detections, poses, null));
     for (int[] size : SIZES) painted(panel.component(), size[0], size[1]);
     Dimension least = panel.component().getMinimumSize();
     Check.that(least.width > 0 && least.height > 0, "a smallest size");
@@ -115,7 +117,7 @@ public final class ViewersTest {
       try {
         detections_t odd = Wire.decode(damaged(detections, random), "detections_t", detections_t::new);
         object_poses_t oddPoses = Wire.decode(damaged(poses, random), "object_poses_t", object_poses_t::new);
-        panel.show(frame.colour, new DetectionOverlay(odd, oddPoses, frame.camera), odd, oddPoses, oddPoses.stages);
+        panel.show(new DetectionPanel.Shown(frame.colour, odd, oddPoses, frame.camera));
         painted(panel.component(), 800, 300);
         ++shown;
       } catch (BadMessage refused) {

@@ -20,22 +20,31 @@ final class DetectionOverlay implements PicturePane.Overlay {
   private final detections_t detections;
   private final object_poses_t poses;
   private final camera_t camera;
+  private final double minScore;
 
-  /** `poses` and `camera` may be null. */
-  DetectionOverlay(detections_t detections, object_poses_t poses, camera_t camera) {
+  /** `poses` and `camera` may be null. Detections with scores below `minScore` and their poses are not drawn. */
+  DetectionOverlay(detections_t detections, object_poses_t poses, camera_t camera, double minScore) {
     this.detections = detections;
     this.poses = poses;
     this.camera = camera;
+    this.minScore = minScore;
   }
 
   @Override
   public void paint(Graphics2D graphics, double scale) {
-    for (detection_t detection : detections.detections) paintBox(graphics, detection, scale);
+    for (detection_t detection : detections.detections) {
+      if (detection.score >= minScore) paintBox(graphics, detection, scale);
+    }
     if (poses != null && camera != null) {
-      for (object_pose_t pose : poses.poses) paintAxes(graphics, pose, scale);
+      for (object_pose_t pose : poses.poses) {
+        if (pose.detection_score >= minScore) paintAxes(graphics, pose, scale);
+      }
     }
     // Weakest first: nothing covers the name of the surest object.
-    for (int i = detections.n_detections; i-- > 0;) paintLabel(graphics, detections.detections[i], scale);
+    for (int i = detections.n_detections; i-- > 0;) {
+      detection_t detection = detections.detections[i];
+      if (detection.score >= minScore) paintLabel(graphics, detection, scale);
+    }
   }
 
   private static void paintBox(Graphics2D graphics, detection_t detection, double scale) {

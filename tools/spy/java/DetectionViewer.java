@@ -2,7 +2,6 @@ package houghstream.spy;
 
 import houghstream.detections_t;
 import houghstream.object_poses_t;
-import houghstream.stage_time_t;
 import java.awt.Dimension;
 import java.awt.image.BufferedImage;
 import java.util.ArrayList;
@@ -92,17 +91,17 @@ final class DetectionViewer implements Viewer {
     }
     drawn = entry;
     RgbdFrame frame = frameOf(entry);
-    DetectionOverlay overlay = new DetectionOverlay(entry.detections, entry.poses, frame == null ? null : frame.camera);
     BufferedImage picture = frame == null || frame.colour == null ? blank : frame.colour;
     if (picture != blank && picture.getWidth() != blank.getWidth()) {
       blank = new BufferedImage(picture.getWidth(), picture.getHeight(), BufferedImage.TYPE_INT_RGB);
     }
-    stage_time_t[] stages = entry.poses == null ? entry.detections.stages : entry.poses.stages;
+    DetectionPanel.Shown shown = new DetectionPanel.Shown(picture, entry.detections, entry.poses,
+        frame == null ? null : frame.camera);
     String text = String.format("frame %.3f s, %.1f results a second, %d %% of their frames arrived",
         entry.utime * 1e-6, arrivals.hertz(RateMeter.nowUs()), matcher.arrivedPercent());
     String complaint = said.isEmpty() ? complaint(entry, frame) : said;
     SwingUtilities.invokeLater(() -> {
-      panel.show(picture, overlay, entry.detections, entry.poses, stages);
+      panel.show(shown);
       panel.say(text, complaint);
     });
   }

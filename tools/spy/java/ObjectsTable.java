@@ -14,10 +14,12 @@ final class ObjectsTable extends AbstractTableModel {
   private static final String[] COLUMNS = {"object", "score", "x, y, z in m", "pose", "quality"};
   private transient List<String[]> rows = List.of();
 
-  /** `poses` may be null. */
-  void show(detections_t detections, object_poses_t poses) {
+  /** `poses` may be null. Detections with scores below `minScore` are left out. */
+  void show(detections_t detections, object_poses_t poses, double minScore) {
     List<String[]> newRows = new ArrayList<>();
-    for (int i = 0; i < detections.n_detections; ++i) newRows.add(row(detections.detections[i], poseOf(i, poses)));
+    for (int i = 0; i < detections.n_detections; ++i) {
+      if (detections.detections[i].score >= minScore) newRows.add(row(detections.detections[i], poseOf(i, poses)));
+    }
     rows = newRows;
     fireTableDataChanged();
   }
