@@ -1,7 +1,7 @@
 # How time grows with objects, trees, pixels and LINEMOD's templates: $out/growth. Sourced by tools/bench.
 
-# The first N of twenty objects are taught from fewer views than usual: enough for how the time grows.
-growth_objects='1 2 4 8 12 20'
+# The first N of forty objects are taught from fewer views than usual: enough for how the time grows.
+growth_objects='1 2 4 8 12 20 30 40'
 growth_views=(--azimuths 18 --pitches 2)
 
 # objects_forest N
@@ -9,7 +9,7 @@ objects_forest() {
   local names
   names=$(python3 -c 'import json, sys
 names = json.load(open(sys.argv[1]))
-print(",".join(names[key] for key in sorted(names, key=int)[: int(sys.argv[2])]))' "$data/growth/views_20/models/names.json" "$1")
+print(",".join(names[key] for key in sorted(names, key=int)[: int(sys.argv[2])]))' "$data/growth/views_40/models/names.json" "$1")
   cached "growth/views_$1" '' "$bin/hs-render" training --objects "$names" "${growth_views[@]}" --out "$data/growth/views_$1"
   cached "growth/objects_$1" "growth/views_$1 background" "$bin/hs-train" --threads "$(nproc)" --composites 2 \
     --out "$data/growth/objects_$1" --views "bop:$data/growth/views_$1" --background "bop:$data/background"
@@ -18,7 +18,7 @@ print(",".join(names[key] for key in sorted(names, key=int)[: int(sys.argv[2])])
 bench_growth() {
   local n detectors=()
   test_scene "$speed_scene"
-  cached growth/views_20 '' "$bin/hs-render" training --objects all_20 "${growth_views[@]}" --out "$data/growth/views_20"
+  cached growth/views_40 '' "$bin/hs-render" training --objects all_40 "${growth_views[@]}" --out "$data/growth/views_40"
   for n in $growth_objects; do
     objects_forest "$n"
     detectors+=(--detector "objects_$n=$data/growth/objects_$n,threads=$(nproc)")
