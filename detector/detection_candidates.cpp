@@ -118,7 +118,7 @@ std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& fr
     return search_scale_space(forest, frame, settings, clock);
   }
   static thread_local SeenPatches seen_here;  // its memory is kept from frame to frame
-  const SeenPatches& seen = seen_here;          // the same for the threads below
+  const SeenPatches& seen = seen_here;        // the same for the threads below
   classify_patches(forest, frame, settings, clock, seen_here);
   const LabFrame in_lab = make_lab_frame(frame, seen.colour, forest.features.image_scale);
   std::vector<std::vector<Candidate>> by_class(forest.classes.size());

@@ -71,8 +71,8 @@ struct TrainingSettings {
 /// How a frame is searched.
 struct DetectionSettings {
   int threads = 2;
-  bool readable = false;           ///< patch by patch, tree by tree: the same leaves, but slowly
-  int stride = 2;                  ///< patch offset, working pixels (paper, Section 5.1.3)
+  bool readable = false;  ///< patch by patch, tree by tree: the same leaves, but slowly
+  int stride = 2;         ///< patch offset, working pixels (paper, Section 5.1.3)
   /// Metres between patches: where the stride puts them nearer to each other, some are left out, see PatchSpacing;
   /// 0 = none are. With depth normalisation only.
   float patch_spacing = 0.0F;

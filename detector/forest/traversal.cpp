@@ -163,7 +163,8 @@ void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>&
       for (int tree = 0; tree < trees; ++tree) by_tree[tree].push_back(find_leaf(forest, tree, patch));
     }
     std::vector<std::int32_t> leaves;
-    for (const std::vector<std::int32_t>& of_tree : by_tree) leaves.insert(leaves.end(), of_tree.begin(), of_tree.end());
+    for (const std::vector<std::int32_t>& of_tree : by_tree)
+      leaves.insert(leaves.end(), of_tree.begin(), of_tree.end());
     visit({r, left.size(), left.data(), leaves.data()});
   }
 }
