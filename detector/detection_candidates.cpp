@@ -51,6 +51,7 @@ std::vector<std::pair<std::uint32_t, float>> weighed_views(const Hypothesis& hyp
   constexpr float kSharpness = 4.0F;
   if (spread == 1.0F || compared.empty()) return {hypothesis.views.begin(), hypothesis.views.end()};
   std::vector<std::pair<std::uint32_t, float>> weighed;
+  weighed.reserve(compared.size());
   for (const ComparedView& seen : compared) weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
   std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return weighed;
@@ -155,7 +156,9 @@ std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& fr
   if (forest.features.handling == ScaleHandling::kScaleSpace) {
     return search_scale_space(forest, frame, settings, clock);
   }
-  const SeenPatches seen = classify_patches(forest, frame, settings, clock);
+  static thread_local SeenPatches seen_here;  // its memory is kept from frame to frame
+  const SeenPatches& seen = seen_here;        // the same for the threads below
+  classify_patches(forest, frame, settings, clock, seen_here);
   const std::vector<ClassHypothesis> found = all_hypotheses(forest, seen, settings);  // Section 2
   const LabFrame in_lab = make_lab_frame(frame, seen.colour, forest.features.image_scale);
   std::vector<Candidate> all(found.size());
