@@ -9,8 +9,8 @@ namespace houghstream {
 /// The value with half the weight below it; 0 where there are no values. `values` are pairs of value and weight, and
 /// are reordered: only the part in which the median lies is looked at again, which is faster than to sort all.
 inline float weighted_median(std::vector<std::pair<float, float>>& values) {
-  float half = 0.0F;
-  for (const auto& [value, weight] : values) half += 0.5F * weight;
+  float total = 0.0F;
+  for (const auto& [value, weight] : values) total += weight;
   float below = 0.0F;
   auto begin = values.begin();
   auto end = values.end();
@@ -19,7 +19,7 @@ inline float weighted_median(std::vector<std::pair<float, float>>& values) {
     std::nth_element(begin, middle, end);
     float sum = below;
     for (auto value = begin; value != middle; ++value) sum += value->second;
-    if (sum >= half) {
+    if (sum >= 0.5F * total) {
       end = middle;
     } else {
       begin = middle;
