@@ -24,7 +24,8 @@ struct ZipDeleter {
 constexpr std::size_t kMaxDeflateRatio = 1032;
 
 void unzip_into(ByteView zipped, std::uint8_t* raw, std::size_t raw_size) {
-  const std::unique_ptr<libdeflate_decompressor, ZipDeleter> handle(libdeflate_alloc_decompressor());
+  static thread_local const std::unique_ptr<libdeflate_decompressor, ZipDeleter> handle(
+      libdeflate_alloc_decompressor());  // kept from frame to frame
   // With no place for the unpacked size, anything but exactly raw_size bytes is an error.
   const libdeflate_result result =
       libdeflate_zlib_decompress(handle.get(), zipped.data, zipped.size, raw, raw_size, nullptr);

@@ -8,6 +8,7 @@
 #include "pipeline/checks.hpp"
 #include "pipeline/codecs.hpp"
 #include "pipeline/messages.hpp"
+#include "pipeline/parallel.hpp"
 #include "pipeline/wire_check.hpp"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "depth travels little-endian and is copied as it is");
@@ -164,26 +165,39 @@ std::vector<StageTime> stages_of(const images_t& message) {
   return stages;
 }
 
-ImagePair decode_images(const images_t& message) {
+/// The colour and the depth image of a message.
+struct FoundImages {
+  const image_t& colour;
+  const image_t& depth;
+  bool zipped_depth;
+};
+
+FoundImages find_images(const images_t& message) {
   const std::size_t colour = find_image(message, {images_t::LEFT}, "colour (LEFT)");
   const std::size_t depth = find_image(message, {images_t::DEPTH_MM, images_t::DEPTH_MM_ZIPPED}, "DEPTH_MM");
-  const image_t& colour_message = message.images[colour];
-  const image_t& depth_message = message.images[depth];
-  require(colour_message.width == depth_message.width && colour_message.height == depth_message.height,
-          "colour of {}x{} and depth of {}x{} pixels, expected depth registered to colour", colour_message.width,
-          colour_message.height, depth_message.width, depth_message.height);
-  return {decode_colour(colour_message),
-          decode_depth(depth_message, message.image_types[depth] == images_t::DEPTH_MM_ZIPPED)};
+  const FoundImages found{message.images[colour], message.images[depth],
+                          message.image_types[depth] == images_t::DEPTH_MM_ZIPPED};
+  require(found.colour.width == found.depth.width && found.colour.height == found.depth.height,
+          "colour of {}x{} and depth of {}x{} pixels, expected depth registered to colour", found.colour.width,
+          found.colour.height, found.depth.width, found.depth.height);
+  return found;
+}
+
+ImagePair decode_images(const images_t& message) {
+  const FoundImages found = find_images(message);
+  return {decode_colour(found.colour), decode_depth(found.depth, found.zipped_depth)};
 }
 
 RgbdFrame decode_frame(const images_t& message, const std::optional<Camera>& fallback_camera) {
+  const FoundImages found = find_images(message);
   RgbdFrame frame;
   frame.utime = message.utime;
   frame.camera = camera_or(message, fallback_camera);
   frame.stages = stages_of(message);
-  ImagePair images = decode_images(message);
-  frame.colour = std::move(images.colour);
-  frame.depth = depth_from_millimetres(images.depth_mm);
+  parallel_for(2, 2, [&](int image) {
+    if (image == 0) frame.colour = decode_colour(found.colour);
+    if (image == 1) frame.depth = depth_from_millimetres(decode_depth(found.depth, found.zipped_depth));
+  });
   check_frame(frame, "its camera");
   return frame;
 }
