@@ -108,8 +108,10 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
   const bool route = findings.back().level == Finding::Level::kOk;
   const std::size_t heard = route ? machine.heard_bytes(settings.url, settings.frame_channel) : 0;
   const std::size_t frame_bytes = heard > 0 ? heard : settings.frame_bytes;
-  findings.push_back(check_buffer(machine, frame_bytes, heard > 0));
-  findings.push_back(check_java_buffer(machine, frame_bytes));
+  if (group_of(settings.url)) {
+    findings.push_back(check_buffer(machine, frame_bytes, heard > 0));
+    findings.push_back(check_java_buffer(machine, frame_bytes));
+  }
   // Without a route LCM would wait for its own test for ten seconds, to say the same.
   findings.push_back(route ? check_self_test(machine, settings.url, frame_bytes)
                            : note(kSelfTest, "not tried: there is no route"));

@@ -163,6 +163,16 @@ TEST(Examination, BuffersAreComparedWithTheFramesInUse) {
   EXPECT_NE(text.find("rmem_max=27306667"), std::string::npos) << "larger frames need more than usual: " << text;
 }
 
+TEST(Examination, ABusWithoutDatagramsNeedsNoRouteAndNoBuffers) {
+  HealthyMachine machine("doctor_tcp");
+  machine.settings.lcm_url = "tcpq://robot";
+  machine.machine.granted_receive_buffer = [](std::int64_t) { return 0; };
+  plant(machine.machine.root / "proc/net/route", "");
+  EXPECT_EQ(count_wrong(examine(machine.machine, machine.settings)), 0);
+  machine.machine.self_test = [](const std::string&, std::size_t) { return SelfTest{0, 0, "no server"}; };
+  EXPECT_EQ(count_wrong(examine(machine.machine, machine.settings)), 1);
+}
+
 TEST(Examination, TheWholeBusIsTested) {
   // On a bus of its own in this process, with the probes of this machine.
   Machine machine = this_machine();
