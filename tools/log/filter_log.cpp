@@ -24,7 +24,7 @@ std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& 
   require(!std::filesystem::equivalent(log_file, out_file, no_such_file),
           "{}: is the log itself, expected another file to write", out_file.string());
   GoodEvents events(log_file, losses);
-  LogWriter out(out_file);
+  std::optional<LogWriter> out;  // not before there is something to write
   std::optional<std::int64_t> first;
   std::int64_t kept = 0;
   while (const std::optional<LogEvent> event = events.next()) {
@@ -32,13 +32,13 @@ std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& 
     const double time_s = static_cast<double>(event->timestamp - *first) * 1e-6;
     if (time_s < filter.start_s || time_s > filter.end_s) continue;
     if (std::regex_match(event->channel, channels) == filter.others) continue;
-    out.write(event->timestamp, event->channel, {event->data.data(), event->data.size()});
+    if (!out) out.emplace(out_file);
+    out->write(event->timestamp, event->channel, {event->data.data(), event->data.size()});
     ++kept;
   }
-  out.close();
-  if (kept == 0) std::filesystem::remove(out_file, no_such_file);
-  require(kept > 0, "{}: no event from {} s to {} s on {}channels '{}'", log_file.string(), filter.start_s,
+  require(out.has_value(), "{}: no event from {} s to {} s on {}channels '{}'", log_file.string(), filter.start_s,
           filter.end_s, filter.others ? "other than " : "", filter.channels);
+  out->close();
   return kept;
 }
 

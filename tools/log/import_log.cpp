@@ -11,15 +11,16 @@ std::int64_t import_log(const RecordingSettings& settings, const std::string& ch
   require(!std::filesystem::equivalent(settings.source, log_file, no_such_file),
           "{}: is the source itself, expected another file to write", log_file.string());
   const NextFrame next = open_recording(settings, losses);
-  LogWriter log(log_file);
+  std::optional<LogWriter> log;  // not before there is something to write
   std::int64_t frames = 0;
   while (const std::optional<RecordedFrame> frame = next()) {
     const std::vector<std::uint8_t> bytes = encode_message(frame->message);
-    log.write(frame->timestamp, channel, {bytes.data(), bytes.size()});
+    if (!log) log.emplace(log_file);
+    log->write(frame->timestamp, channel, {bytes.data(), bytes.size()});
     ++frames;
   }
-  log.close();
-  require(frames > 0, "{}: no frame could be imported: {}", settings.source, losses.line());
+  require(log.has_value(), "{}: no frame could be imported: {}", settings.source, losses.line());
+  log->close();
   return frames;
 }
 

@@ -29,6 +29,7 @@ std::string type_name(std::int64_t fingerprint) {
       {detections_t::getHash(), "detections_t"},
       {object_poses_t::getHash(), "object_poses_t"},
       {status_t::getHash(), "status_t"},
+      {0x6c636d2073656c66, "LCM's own test"},  // the text "lcm self test"
   };
   if (fingerprint == 0) return "no message";
   const auto known = names.find(fingerprint);

@@ -153,6 +153,7 @@ TEST(Import, RefusesWhatMakesNoSense) {
   EXPECT_THROW(import_log(settings, "FRAMES", settings.source, losses), InputError) << "the log itself";
   settings.channel = "NOTHING";
   EXPECT_THROW(import_log(settings, "FRAMES", folder / "out", losses), InputError);
+  EXPECT_FALSE(fs::exists(folder / "out")) << "nothing is written where there are no frames";
   settings.channel.clear();
   settings.camera = Camera{640, 480, 525, 525, 319.5, 239.5};
   EXPECT_THROW(import_log(settings, "FRAMES", folder / "out", losses), InputError) << "a camera of another size";
