@@ -60,7 +60,7 @@ std::vector<UsbCamera> plugged_cameras(const Machine& machine) {
     if (known == std::end(kKinds)) continue;
     const int bus = std::atoi(word(machine, entry.path() / "busnum").c_str());
     const int number = std::atoi(word(machine, entry.path() / "devnum").c_str());
-    cameras.push_back({*known, vendor + ":" + product,
+    cameras.push_back({*known, fmt::format("{}:{}", vendor, product),
                        machine.root / fmt::format("dev/bus/usb/{:03d}/{:03d}", bus, number),
                        std::atof(word(machine, entry.path() / "speed").c_str())});
   }

@@ -61,7 +61,7 @@ std::vector<std::uint8_t> unpacked(const DrakeImage& image, std::int64_t pixel_b
 
 cv::Mat decode_png(const DrakeImage& image, int type) {
   const cv::Mat bytes(1, static_cast<int>(image.data.size), CV_8UC1, const_cast<std::uint8_t*>(image.data.data));
-  const cv::Mat decoded = cv::imdecode(bytes, type == CV_8UC3 ? cv::IMREAD_COLOR : cv::IMREAD_UNCHANGED);
+  cv::Mat decoded = cv::imdecode(bytes, type == CV_8UC3 ? cv::IMREAD_COLOR : cv::IMREAD_UNCHANGED);
   require(decoded.type() == type && decoded.cols == image.width && decoded.rows == image.height,
           "PNG of {}x{} pixels and OpenCV type {}, expected {}x{} of type {}", decoded.cols, decoded.rows,
           decoded.type(), image.width, image.height, type);

@@ -29,6 +29,7 @@ Child::Child(const std::vector<std::string>& command) {
   require(access(program.c_str(), X_OK) == 0, "{}: cannot be started: {}", program, std::strerror(errno));
   // Between fork and exec only what is safe in a process with threads: memory is asked for before.
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   const pid_t parent = getpid();

@@ -51,7 +51,7 @@ ObjectPoses make_poses(std::int64_t utime) {
 
 /// Frame 10 with a bowl that has a pose and a can that has none, frame 20 with nothing.
 fs::path write_results(const std::string& name) {
-  const fs::path file = fresh_folder(name) / "results.lcmlog";
+  fs::path file = fresh_folder(name) / "results.lcmlog";
   TestLog log(file);
   log.add(channel::kDetections, to_message(make_detections(10, 2)));
   log.add(channel::kPoses, to_message(make_poses(10)));

@@ -37,7 +37,7 @@ class FilterLog : public testing::Test {
     return numbers;
   }
 
-  const fs::path folder_;
+  fs::path folder_;
 };
 
 TEST_F(FilterLog, ByTime) {

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 constexpr std::streamoff kEventBytes = 45;
 
 fs::path write_events(const std::string& name, int events) {
-  const fs::path file = fresh_folder(name) / "log";
+  fs::path file = fresh_folder(name) / "log";
   LogWriter writer(file);
   for (int i = 0; i < events; ++i) {
     const std::vector<std::uint8_t> data(10, static_cast<std::uint8_t>(i));

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path write_klg(const std::string& name, std::int32_t stated_frames) {
-  const fs::path file = fresh_folder(name) / "a.klg";
+  fs::path file = fresh_folder(name) / "a.klg";
   KlgWriter writer(stated_frames);
   writer.add(numbered_frame(0), true);
   writer.add(numbered_frame(1), false);
