@@ -6,6 +6,24 @@
 #include "detector/features/working_frame.hpp"
 
 namespace houghstream {
+namespace {
+
+/// Features as far as the grid's patches from `first` on look.
+void see_features(const Forest& forest, const WorkingFrame& frame, const PatchGrid& grid, std::size_t first,
+                  const DetectionSettings& settings, FeatureImage& features) {
+  if (settings.readable) {
+    features = compute_features_readably(frame, forest.features);
+    return;
+  }
+  static thread_local FeatureTiles tiles;  // kept from frame to frame
+  tiles.clear(frame.colour.size());
+  for (std::size_t p = first; p < grid.size(); ++p) {
+    tiles.add_patch(grid.x[p], grid.y[p], farthest_offset(forest.patch, grid.scale[p]));
+  }
+  compute_features(frame, forest.features, tiles, settings.threads, features);
+}
+
+}  // namespace
 
 SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
                              StageClock& clock) {
@@ -15,17 +33,18 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
     working.push_back(make_working_frame(frame, level, forest.features));
   }
   clock.mark("detect.resize");
-  std::vector<FeatureImage> features;
-  for (const WorkingFrame& view : working) {  // Section 3
-    features.push_back(compute_features(view, forest.features, settings.threads));
-  }
-  clock.mark("detect.features");
   SeenPatches seen;
   seen.hough_camera = working[0].camera;
   seen.colour = working[0].colour;
-  for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
-    add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
+  static thread_local std::vector<FeatureImage> features;  // kept from frame to frame
+  features.resize(levels.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const std::size_t first = seen.grid.size();
+    add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride,
+                seen.grid);                                                     // Section 5.1.3
+    see_features(forest, working[l], seen.grid, first, settings, features[l]);  // Section 3
   }
+  clock.mark("detect.features");
   seen.beliefs = classify(forest, features, seen.grid, settings);  // Section 5.1.2
   clock.mark("detect.forest");
   return seen;
