@@ -18,6 +18,10 @@ void TileFeatures::compute(const TileSources& sources, cv::Rect part) {
   image_ = {-part.x, -part.y, sources.frame.colour.cols, sources.frame.colour.rows};
   around_ = {sources.settings.min_max_px};
   rows_.reset(part.size(), sources.layout.pixel_stride());
+  const int spare = sources.layout.pixel_stride() - sources.layout.planes();
+  for (int y = 0; y < part.height; ++y) {
+    std::fill_n(rows_.row(y, sources.layout.planes()), spare * rows_.stride(), std::uint8_t{0});
+  }
   if ((sources.settings.families & (kDepthDerivatives | kDepthHog)) != 0) derive_depth_of(sources);
   const auto& blocks = sources.layout.blocks();
   for (std::size_t b = 0; b < blocks.size(); ++b) {

@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "detector/features/hole_filling.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -33,8 +35,37 @@ float nearest_surface(const cv::Mat& depth, int x0, int x1, int y0, int y1) {
   return count > 0 && std::isfinite(nearest) ? sum / static_cast<float>(count) : kNone;
 }
 
+/// The same of a block of 2x2 pixels, without branches: NaN fails every comparison.
+float nearest_of_four(float a, float b, float c, float d) {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const float depth : {a, b, c, d}) nearest = depth < nearest ? depth : nearest;
+  const float limit = nearest * 1.02F;
+  float sum = 0.0F;
+  float count = 0.0F;
+  for (const float depth : {a, b, c, d}) {
+    sum += depth <= limit ? depth : 0.0F;
+    count += depth <= limit ? 1.0F : 0.0F;
+  }
+  return nearest < std::numeric_limits<float>::infinity() ? sum / count : kNone;
+}
+
+void halve_depth(const cv::Mat& depth, cv::Mat& out) {
+  for (int y = 0; y < out.rows; ++y) {
+    const auto* upper = depth.ptr<float>(2 * y);
+    const auto* lower = depth.ptr<float>(2 * y + 1);
+    auto* row = out.ptr<float>(y);
+    for (int x = 0; x < out.cols; ++x) {
+      row[x] = nearest_of_four(upper[2 * x], upper[2 * x + 1], lower[2 * x], lower[2 * x + 1]);
+    }
+  }
+}
+
 cv::Mat shrink_depth(const cv::Mat& depth, cv::Size size) {
   cv::Mat out(size, CV_32FC1);
+  if (size * 2 == depth.size()) {
+    halve_depth(depth, out);
+    return out;
+  }
   std::vector<int> columns(static_cast<std::size_t>(size.width) + 1);
   for (int x = 0; x <= size.width; ++x) columns[static_cast<std::size_t>(x)] = x * depth.cols / size.width;
   for (int y = 0; y < size.height; ++y) {
@@ -63,39 +94,6 @@ cv::Mat enlarge_depth(const cv::Mat& depth, cv::Size size) {
     }
   }
   return smooth;
-}
-
-void fill_holes(cv::Mat& depth, float max_distance_px) {
-  cv::Mat missing(depth.size(), CV_8UC1);
-  int holes = 0;
-  for (int y = 0; y < depth.rows; ++y) {
-    const auto* row = depth.ptr<float>(y);
-    auto* out = missing.ptr<std::uint8_t>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      out[x] = std::isnan(row[x]) ? 1 : 0;
-      holes += out[x];
-    }
-  }
-  if (holes == 0 || holes == depth.rows * depth.cols) return;
-  cv::Mat distance;
-  cv::Mat labels;
-  cv::distanceTransform(missing, distance, labels, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
-  std::vector<float> depth_of_label(static_cast<std::size_t>(depth.rows * depth.cols - holes) + 1, kNone);
-  for (int y = 0; y < depth.rows; ++y) {
-    for (int x = 0; x < depth.cols; ++x) {
-      if (missing.at<std::uint8_t>(y, x) == 0) {
-        depth_of_label[static_cast<std::size_t>(labels.at<int>(y, x))] = depth.at<float>(y, x);
-      }
-    }
-  }
-  for (int y = 0; y < depth.rows; ++y) {
-    auto* row = depth.ptr<float>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      if (std::isnan(row[x]) && distance.at<float>(y, x) <= max_distance_px) {
-        row[x] = depth_of_label[static_cast<std::size_t>(labels.at<int>(y, x))];
-      }
-    }
-  }
 }
 
 }  // namespace
