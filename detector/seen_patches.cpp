@@ -28,15 +28,16 @@ void see_features(const Forest& forest, const WorkingFrame& frame, const PatchGr
 SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
                              StageClock& clock) {
   const auto levels = feature_levels(forest.features);
-  std::vector<WorkingFrame> working;
-  for (const FeatureLevel& level : levels) {  // Section 5.1.1
-    working.push_back(make_working_frame(frame, level, forest.features));
+  static thread_local std::vector<WorkingFrame> working;  // kept from frame to frame, as are the features
+  working.resize(levels.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.1
+    make_working_frame(frame, levels[l].scale, forest.features, working[l]);
   }
   clock.mark("detect.resize");
   SeenPatches seen;
   seen.hough_camera = working[0].camera;
   seen.colour = working[0].colour;
-  static thread_local std::vector<FeatureImage> features;  // kept from frame to frame
+  static thread_local std::vector<FeatureImage> features;
   features.resize(levels.size());
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const std::size_t first = seen.grid.size();

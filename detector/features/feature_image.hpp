@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <opencv2/core/types.hpp>
-#include <vector>
+
+#include "detector/features/line_allocator.hpp"
 
 namespace houghstream {
 
@@ -53,7 +54,7 @@ class FeatureImage {
   int width_ = 0;
   int height_ = 0;
   int pixel_stride_ = 0;
-  std::vector<std::uint8_t> data_;
+  LineBytes data_;
 };
 
 }  // namespace houghstream

@@ -11,47 +11,60 @@ namespace houghstream::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Calls store(largest, smallest, x) for each vector of a row's pixels.
-template <class D, typename T = hn::TFromD<D>, class Store>
-HWY_INLINE void row_extremes(D d, const TilePlane<T>& plane, Neighbourhood around, int y, const Store& store) {
+/// Extremes of `side` vectors, `step` values apart.
+template <int kSide, class D, typename T, class V = hn::Vec<D>>
+HWY_INLINE void extremes(D d, const T* largest, const T* smallest, std::ptrdiff_t step, int side, V& most, V& least) {
+  most = hn::LoadU(d, largest);
+  least = hn::LoadU(d, smallest);
+  const int count = kSide > 0 ? kSide : side;
+  for (int i = 1; i < count; ++i) {
+    most = hn::Max(most, hn::LoadU(d, largest + i * step));
+    least = hn::Min(least, hn::LoadU(d, smallest + i * step));
+  }
+}
+
+/// Calls store(largest, smallest, x, y) for each vector of pixels. `kSide` is that of the neighbourhood where it is
+/// known beforehand, else 0.
+template <int kSide, class D, typename T = hn::TFromD<D>, class Store>
+HWY_INLINE void for_extremes(D d, const TilePlane<T>& plane, Neighbourhood around, const Store& store) {
+  const auto lanes = static_cast<int>(hn::Lanes(d));
   T largest_of_columns[kWidestRow];
   T smallest_of_columns[kWidestRow];
   T* largest = largest_of_columns + kWidestMargin;
   T* smallest = smallest_of_columns + kWidestMargin;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  for (int x = -around.before(); x < plane.width() + around.after(); x += lanes) {
-    const T* first = plane.row(y - around.before()) + x;
-    auto most = hn::LoadU(d, first);
-    auto least = most;
-    for (int i = 1; i < around.side; ++i) {
-      const auto value = hn::LoadU(d, first + i * plane.stride());
-      most = hn::Max(most, value);
-      least = hn::Min(least, value);
+  const int before = around.before();
+  hn::Vec<D> most;
+  hn::Vec<D> least;
+  for (int y = 0; y < plane.height(); ++y) {
+    const T* first = plane.row(y - before);
+    for (int x = -before; x < plane.width() + around.after(); x += lanes) {
+      extremes<kSide>(d, first + x, first + x, plane.stride(), around.side, most, least);
+      hn::StoreU(most, d, largest + x);
+      hn::StoreU(least, d, smallest + x);
     }
-    hn::StoreU(most, d, largest + x);
-    hn::StoreU(least, d, smallest + x);
+    for (int x = 0; x < plane.width(); x += lanes) {
+      extremes<kSide>(d, largest + x - before, smallest + x - before, 1, around.side, most, least);
+      store(most, least, x, y);
+    }
   }
-  for (int x = 0; x < plane.width(); x += lanes) {
-    auto most = hn::LoadU(d, largest + x - around.before());
-    auto least = hn::LoadU(d, smallest + x - around.before());
-    for (int i = 1; i < around.side; ++i) {
-      most = hn::Max(most, hn::LoadU(d, largest + x - around.before() + i));
-      least = hn::Min(least, hn::LoadU(d, smallest + x - around.before() + i));
-    }
-    store(most, least, x);
+}
+
+template <class D, typename T = hn::TFromD<D>, class Store>
+HWY_INLINE void for_all_extremes(D d, const TilePlane<T>& plane, Neighbourhood around, const Store& store) {
+  constexpr int kUsual = 5;
+  if (around.side == kUsual) {
+    for_extremes<kUsual>(d, plane, around, store);
+  } else {
+    for_extremes<0>(d, plane, around, store);
   }
 }
 
 void bytes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, int largest, int smallest, TileRows& rows) {
   const hn::CappedTag<std::uint8_t, TilePlane<std::uint8_t>::kVector> d;
-  for (int y = 0; y < plane.height(); ++y) {
-    std::uint8_t* most_row = rows.row(y, largest);
-    std::uint8_t* least_row = rows.row(y, smallest);
-    row_extremes(d, plane, around, y, [&](auto most, auto least, int x) HWY_ATTR {
-      hn::StoreU(most, d, most_row + x);
-      hn::StoreU(least, d, least_row + x);
-    });
-  }
+  for_all_extremes(d, plane, around, [&](auto most, auto least, int x, int y) HWY_ATTR {
+    hn::StoreU(most, d, rows.row(y, largest) + x);
+    hn::StoreU(least, d, rows.row(y, smallest) + x);
+  });
 }
 
 void steps(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes kind, int largest, int smallest,
@@ -63,14 +76,10 @@ void steps(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepByte
     const auto limited = kind == StepBytes::kWrapped ? hn::And(value, byte) : hn::Min(value, byte);
     return hn::DemoteTo(half, hn::BitCast(hn::RebindToSigned<decltype(d)>(), limited));
   };
-  for (int y = 0; y < plane.height(); ++y) {
-    std::uint8_t* most_row = rows.row(y, largest);
-    std::uint8_t* least_row = rows.row(y, smallest);
-    row_extremes(d, plane, around, y, [&](auto most, auto least, int x) HWY_ATTR {
-      hn::StoreU(to_byte(most), half, most_row + x);
-      hn::StoreU(to_byte(least), half, least_row + x);
-    });
-  }
+  for_all_extremes(d, plane, around, [&](auto most, auto least, int x, int y) HWY_ATTR {
+    hn::StoreU(to_byte(most), half, rows.row(y, largest) + x);
+    hn::StoreU(to_byte(least), half, rows.row(y, smallest) + x);
+  });
 }
 
 }  // namespace houghstream::HWY_NAMESPACE

@@ -2,7 +2,8 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
-#include <vector>
+
+#include "detector/features/line_allocator.hpp"
 
 namespace houghstream {
 
@@ -25,7 +26,7 @@ class TileRows {
 
   int planes_ = 0;
   int stride_ = 0;
-  std::vector<std::uint8_t> data_;
+  LineBytes data_;
 };
 
 }  // namespace houghstream

@@ -9,41 +9,72 @@
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {
 
-constexpr int kSide = 16;
+constexpr int kSide = 16;  // bytes of a block of a vector
 
-/// kSide planes of so many pixels as are turned at once; returns how many those were.
-HWY_INLINE int turn_blocks(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels,
-                           int pixel_stride) {
-#if HWY_TARGET == HWY_SCALAR
-  (void)planes, (void)plane_stride, (void)count, (void)pixels, (void)pixel_stride;
-  return 0;
-#else
-  namespace hn = hwy::HWY_NAMESPACE;
-  const hn::FixedTag<std::uint8_t, kSide> d;
-  using Bytes = hn::Vec<decltype(d)>;
-  const int whole = count / kSide * kSide;
-  for (int x = 0; x < whole; x += kSide) {
-    Bytes rows[kSide];
-    for (int i = 0; i < kSide; ++i) rows[i] = hn::LoadU(d, planes + i * plane_stride + x);
-    for (int round = 0; round < 4; ++round) {  // each one merges row i with row i + 8
-      Bytes merged[kSide];
-      for (int i = 0; i < kSide / 2; ++i) {
-        merged[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + kSide / 2]);
-        merged[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + kSide / 2]);
-      }
-      for (int i = 0; i < kSide; ++i) rows[i] = merged[i];
-    }
-    for (int i = 0; i < kSide; ++i) hn::StoreU(rows[i], d, pixels + (x + i) * pixel_stride);
+#if HWY_TARGET != HWY_SCALAR
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Bytes of kSide planes side by side, then of the kSide planes that follow, ...
+template <std::size_t kSize>
+HWY_INLINE hn::Vec<hn::FixedTag<std::uint8_t, kSize>> load_blocks(const std::uint8_t* planes, int plane_stride) {
+  const hn::FixedTag<std::uint8_t, kSize> d;
+  if constexpr (kSize == kSide) {
+    return hn::LoadU(d, planes);
+  } else {
+    return hn::Combine(d, load_blocks<kSize / 2>(planes + kSize / 2 * plane_stride, plane_stride),
+                       load_blocks<kSize / 2>(planes, plane_stride));
   }
-  return whole;
-#endif
 }
 
-void turn_row(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels, int pixel_stride) {
-  for (int p = 0; p < pixel_stride; p += kSide, planes += kSide * plane_stride, pixels += kSide) {
-    for (int x = turn_blocks(planes, plane_stride, count, pixels, pixel_stride); x < count; ++x) {
-      for (int i = 0; i < kSide; ++i) pixels[x * pixel_stride + i] = planes[i * plane_stride + x];
+/// kSize planes of kSide pixels: kSide planes to a block, all blocks at once.
+template <std::size_t kSize>
+HWY_INLINE void turn_block(const std::uint8_t* planes, int plane_stride, std::uint8_t* pixels, int pixel_stride) {
+  const hn::FixedTag<std::uint8_t, kSize> d;
+  using Bytes = hn::Vec<decltype(d)>;
+  Bytes rows[kSide];
+  for (int i = 0; i < kSide; ++i) rows[i] = load_blocks<kSize>(planes + i * plane_stride, plane_stride);
+  for (int round = 0; round < 4; ++round) {  // each one merges row i with row i + 8
+    Bytes merged[kSide];
+    for (int i = 0; i < kSide / 2; ++i) {
+      merged[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + kSide / 2]);
+      merged[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + kSide / 2]);
     }
+    for (int i = 0; i < kSide; ++i) rows[i] = merged[i];
+  }
+  for (int i = 0; i < kSide; ++i) hn::StoreU(rows[i], d, pixels + i * pixel_stride);
+}
+
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3  // better targets have lower numbers
+constexpr int kTurned = 64;
+#elif HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+constexpr int kTurned = 32;
+#else
+constexpr int kTurned = kSide;
+#endif
+
+/// Returns how many pixels were turned, from the first one on.
+int turn_whole_blocks(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels, int pixel_stride) {
+  const int whole = count / kSide * kSide;
+  for (int x = 0; x < whole; x += kSide) {
+    int p = 0;
+    for (; p + kTurned <= pixel_stride; p += kTurned) {
+      turn_block<kTurned>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
+    }
+    for (; p < pixel_stride; p += kSide) {
+      turn_block<kSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
+    }
+  }
+  return whole;
+}
+#else
+int turn_whole_blocks(const std::uint8_t*, int, int, std::uint8_t*, int) {
+  return 0;
+}
+#endif
+
+void turn_row(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels, int pixel_stride) {
+  for (int x = turn_whole_blocks(planes, plane_stride, count, pixels, pixel_stride); x < count; ++x) {
+    for (int p = 0; p < pixel_stride; ++p) pixels[x * pixel_stride + p] = planes[p * plane_stride + x];
   }
 }
 

@@ -60,11 +60,11 @@ void halve_depth(const cv::Mat& depth, cv::Mat& out) {
   }
 }
 
-cv::Mat shrink_depth(const cv::Mat& depth, cv::Size size) {
-  cv::Mat out(size, CV_32FC1);
+void shrink_depth(const cv::Mat& depth, cv::Size size, cv::Mat& out) {
+  out.create(size, CV_32FC1);
   if (size * 2 == depth.size()) {
     halve_depth(depth, out);
-    return out;
+    return;
   }
   std::vector<int> columns(static_cast<std::size_t>(size.width) + 1);
   for (int x = 0; x <= size.width; ++x) columns[static_cast<std::size_t>(x)] = x * depth.cols / size.width;
@@ -77,7 +77,6 @@ cv::Mat shrink_depth(const cv::Mat& depth, cv::Size size) {
       row[x] = nearest_surface(depth, x0, std::max(x0 + 1, columns[static_cast<std::size_t>(x) + 1]), y0, y1);
     }
   }
-  return out;
 }
 
 /// Between the pixels of one surface the depth is interpolated, between two surfaces it is that of the nearest pixel.
@@ -94,6 +93,11 @@ cv::Mat enlarge_depth(const cv::Mat& depth, cv::Size size) {
     }
   }
   return smooth;
+}
+
+/// Before an image is written anew: what somebody else looks at as well gets a place of its own.
+void forget_shared(cv::Mat& image) {
+  if (image.u == nullptr || image.u->refcount > 1) image.release();
 }
 
 }  // namespace
@@ -114,18 +118,29 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
   return levels;
 }
 
-WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
-  WorkingFrame out;
+void make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings, WorkingFrame& out) {
+  forget_shared(out.colour);
+  forget_shared(out.filled_depth);
   out.camera = frame.camera.scaled(scale);
+  out.size_ratio = 1.0F;
   const cv::Size size(out.camera.width, out.camera.height);
   if (size == frame.colour.size()) {
     out.colour = frame.colour;
-    out.filled_depth = frame.depth.clone();
+    frame.depth.copyTo(out.filled_depth);
   } else {
     cv::resize(frame.colour, out.colour, size, 0, 0, scale < 1.0F ? cv::INTER_AREA : cv::INTER_LINEAR);
-    out.filled_depth = scale < 1.0F ? shrink_depth(frame.depth, size) : enlarge_depth(frame.depth, size);
+    if (scale < 1.0F) {
+      shrink_depth(frame.depth, size, out.filled_depth);
+    } else {
+      out.filled_depth = enlarge_depth(frame.depth, size);
+    }
   }
   fill_holes(out.filled_depth, settings.fill_distance_px);
+}
+
+WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
+  WorkingFrame out;
+  make_working_frame(frame, scale, settings, out);
   return out;
 }
 

@@ -12,7 +12,7 @@ std::uint8_t value(int x, int y, int plane) {
 
 TEST(TileTurn, ValuesOfAPixelLieSideBySideAndOtherPixelsStay) {
   const cv::Rect part(3, 2, 37, 4);
-  constexpr int kPlanes = 64;
+  constexpr int kPlanes = 96;
   TileRows rows;
   rows.reset(part.size(), kPlanes);
   for (int y = 0; y < part.height; ++y) {
