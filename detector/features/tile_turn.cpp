@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "detector/features/tile_turn.cpp"
 #include "detector/features/tile_turn.hpp"
 
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
@@ -26,9 +27,11 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::uint8_t, kSize>> load_blocks(const std::uin
   }
 }
 
-/// kSize planes of kSide pixels: kSide planes to a block, all blocks at once.
+/// kSize planes of kSide pixels: kSide planes to a block, all blocks at once. Whole cache lines go past the cache, into
+/// which they would first have to be read.
 template <std::size_t kSize>
 HWY_INLINE void turn_block(const std::uint8_t* planes, int plane_stride, std::uint8_t* pixels, int pixel_stride) {
+  constexpr std::size_t kLine = 64;
   const hn::FixedTag<std::uint8_t, kSize> d;
   using Bytes = hn::Vec<decltype(d)>;
   Bytes rows[kSide];
@@ -41,7 +44,15 @@ HWY_INLINE void turn_block(const std::uint8_t* planes, int plane_stride, std::ui
     }
     for (int i = 0; i < kSide; ++i) rows[i] = merged[i];
   }
-  for (int i = 0; i < kSide; ++i) hn::StoreU(rows[i], d, pixels + i * pixel_stride);
+  const bool whole_lines =
+      kSize == kLine && pixel_stride % kLine == 0 && reinterpret_cast<std::uintptr_t>(pixels) % kLine == 0;
+  for (int i = 0; i < kSide; ++i) {
+    if (whole_lines) {
+      hn::Stream(rows[i], d, pixels + i * pixel_stride);
+    } else {
+      hn::StoreU(rows[i], d, pixels + i * pixel_stride);
+    }
+  }
 }
 
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3  // better targets have lower numbers
@@ -91,6 +102,7 @@ void turn_planes(const TileRows& rows, cv::Rect part, FeatureImage& image) {
     HWY_DYNAMIC_DISPATCH(turn_row)
     (rows.row(y, 0), rows.stride(), part.width, image.at(part.x, part.y + y), image.pixel_stride());
   }
+  hwy::FlushStream();  // before other threads read
 }
 
 }  // namespace houghstream
