@@ -13,6 +13,8 @@ void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
       ->check(CLI::PositiveNumber);
   app.add_option("--video", outputs.video, "write a video to this file (.mp4)");
   app.add_option("--pictures", outputs.pictures, "write every picture drawn to this folder");
+  app.add_flag("--preview", settings.preview,
+               "send pictures as JPEG below 100 kB on HOUGHSTREAM_PREVIEW, for lcm-spy and others with small buffers");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 100.0));
@@ -30,7 +32,7 @@ void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Shows the stream: boxes, names, scores, pose axes and model outlines over each frame, depth, stage times and "
-      "latency. With --snapshot, --video or --pictures it needs no display.",
+      "latency. With --snapshot, --video, --pictures or --preview it needs no display.",
       "hs-view");
   houghstream::ViewerSettings settings;
   add_options(app, settings);

@@ -17,10 +17,13 @@ struct ViewerSettings {
   double model_unit_m = 1e-3;                   ///< unit of the models' coordinates
   double duration = 0.0;                        ///< seconds; 0 = until asked to end
   FrameViewSettings picture;
+  bool preview = false;  ///< send each picture on the preview channel
   OutputSettings outputs;
 
-  /// Files are asked for: then there is no window.
-  bool headless() const { return !outputs.snapshot.empty() || !outputs.video.empty() || !outputs.pictures.empty(); }
+  /// Files or the preview are asked for: then there is no window.
+  bool headless() const {
+    return preview || !outputs.snapshot.empty() || !outputs.video.empty() || !outputs.pictures.empty();
+  }
 };
 
 /// Shows the stream until a stop signal, the end of the duration, the closing of the window, or until the snapshot is
