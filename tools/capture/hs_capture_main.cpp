@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   bool raw_colour = false;
   bool raw_depth = false;
   CaptureSettings settings;
-  app.add_option("--source", source, "bop:DIR, uw:DIR or render:NAME")->required();
+  app.add_option("--source", source, "bop:DIR, uw:DIR, tum:DIR or render:NAME")->required();
   app.add_option("--log", log, "write this LCM log instead of publishing");
   app.add_option("--rate", settings.rate_hz, "frames per second; default: the source's");
   app.add_option("--frames", settings.frames, "end after this many frames")->check(CLI::PositiveNumber);

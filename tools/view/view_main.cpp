@@ -3,9 +3,10 @@
 
 namespace {
 
-void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
+void add_options(CLI::App& app, houghstream::ViewerSettings& settings, std::string& camera) {
   houghstream::OutputSettings& outputs = settings.outputs;
   app.add_option("-c,--channel", settings.frame_channel, "channel of the frames")->capture_default_str();
+  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   houghstream::add_model_options(app, settings.models, settings.model_unit_m);
   app.add_option("--snapshot", outputs.snapshot, "write one picture to this file (.png or .jpg)");
   app.add_option("--after", outputs.snapshot_after, "the snapshot is the so-manieth picture drawn")
@@ -35,6 +36,10 @@ int main(int argc, char** argv) {
       "latency. With --snapshot, --video, --pictures or --preview it needs no display.",
       "hs-view");
   houghstream::ViewerSettings settings;
-  add_options(app, settings);
-  return houghstream::run_tool(app, argc, argv, [&] { houghstream::run_viewer(settings); });
+  std::string camera;
+  add_options(app, settings, camera);
+  return houghstream::run_tool(app, argc, argv, [&] {
+    if (!camera.empty()) settings.camera = houghstream::parse_camera(camera);
+    houghstream::run_viewer(settings);
+  });
 }

@@ -20,10 +20,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-ViewedFrame decode(const MatchedFrame& matched) {
+ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& camera) {
   const ByteView bytes{matched.frame_bytes.data(), matched.frame_bytes.size()};
   ViewedFrame viewed;
-  viewed.frame = frame_from_message(decode_message<houghstream::images_t>(bytes), std::nullopt);
+  viewed.frame = frame_from_message(decode_message<houghstream::images_t>(bytes), camera);
   viewed.detections.utime = matched.utime;
   if (matched.detections) {
     viewed.detections = *matched.detections;
@@ -56,6 +56,7 @@ class FrameShow {
       : models_(settings.models.empty() ? ClassModels() : load_class_models(settings.models, settings.model_unit_m)),
         window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
         outputs_(settings.outputs),
+        camera_(settings.camera),
         picture_settings_(settings.picture),
         preview_(settings.preview) {
     picture_settings_.show_keys = window_ != nullptr;
@@ -89,7 +90,7 @@ class FrameShow {
   // A frame that cannot be understood is reported and passed over.
   std::optional<cv::Mat> drawn(const MatchedFrame& matched, BusWatcher& watcher) {
     try {
-      ViewedFrame viewed = decode(matched);
+      ViewedFrame viewed = decode(matched, camera_);
       remember(viewed);
       stream_.state = watcher.stream_state();
       stream_.frames_lost = watcher.frames_lost();
@@ -118,6 +119,7 @@ class FrameShow {
   ClassModels models_;
   std::unique_ptr<ViewWindow> window_;
   ViewOutputs outputs_;
+  std::optional<Camera> camera_;
   FrameViewSettings picture_settings_;
   bool preview_;
   std::optional<ViewedFrame> viewed_;

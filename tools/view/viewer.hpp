@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "pipeline/channels.hpp"
@@ -13,6 +14,7 @@ namespace houghstream {
 struct ViewerSettings {
   std::string lcm_url;                          ///< "" = LCM's default
   std::string frame_channel = channel::kFrame;  ///< images_t
+  std::optional<Camera> camera;                 ///< of frames that carry none of their own
   std::string models;                           ///< folder of models for outlines; "" = none
   double model_unit_m = 1e-3;                   ///< unit of the models' coordinates
   double duration = 0.0;                        ///< seconds; 0 = until asked to end
