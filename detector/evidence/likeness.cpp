@@ -10,20 +10,6 @@ constexpr int kFewest = 12;  // pairs from which a comparison means something
 
 }  // namespace
 
-void Likeness::add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3b& seen) {
-  ++count_;
-  for (std::size_t c = 0; c < channels_.size(); ++c) {
-    const int a = remembered[c];
-    const int b = seen[static_cast<int>(c)];
-    Sums& sums = channels_[c];
-    sums[0] += a;
-    sums[1] += b;
-    sums[2] += a * a;
-    sums[3] += b * b;
-    sums[4] += a * b;
-  }
-}
-
 double Likeness::seen_variance(std::size_t channel) const {
   const double count = count_;
   const double mean = channels_[channel][1] / count;

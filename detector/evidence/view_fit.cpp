@@ -124,9 +124,61 @@ float continued_share(const Comparison& comparison, float shift, float tolerance
   return static_cast<float>(continued) / static_cast<float>(std::max(beside, 1));
 }
 
-cv::Vec3b colour_at(const LabFrame& frame, const cv::Point2f& frame_px) {
-  return frame.lab.at<cv::Vec3b>(std::min(static_cast<int>(frame_px.y * frame.scale), frame.lab.rows - 1),
-                                 std::min(static_cast<int>(frame_px.x * frame.scale), frame.lab.cols - 1));
+/// How the object's cells compare.
+struct Tally {
+  int cells = 0;
+  int visible = 0;
+  int hidden = 0;
+  int seen_through = 0;
+  int unknown = 0;
+  Lines rows;
+  Lines columns;
+  std::array<std::uint16_t, kSide * kSide> visible_cells;  // the first `visible` of them
+
+  float share(int count) const { return static_cast<float>(count) / static_cast<float>(std::max(cells, 1)); }
+};
+
+/// Without branches, which nobody could predict.
+Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
+  Tally tally;
+  for (std::size_t row = 0; row < kSide; ++row) {
+    for (std::size_t column = 0; column < kSide; ++column) {
+      const std::size_t cell = row * kSide + column;
+      const int object = comparison.on_object[cell] ? 1 : 0;
+      const float e = comparison.excess[cell] - shift;
+      const int unknown = object & (std::isnan(e) ? 1 : 0);
+      const int visible = object & (std::abs(e) <= tolerance ? 1 : 0);
+      tally.visible_cells[static_cast<std::size_t>(tally.visible)] = static_cast<std::uint16_t>(cell);
+      tally.cells += object;
+      tally.visible += visible;
+      tally.unknown += unknown;
+      tally.hidden += object & (e < -tolerance ? 1 : 0);
+      tally.seen_through += object & (e > tolerance ? 1 : 0);
+      tally.rows.whole[row] += object;
+      tally.columns.whole[column] += object;
+      tally.rows.seen[row] += unknown | visible;
+      tally.columns.seen[column] += unknown | visible;
+    }
+  }
+  return tally;
+}
+
+/// Of the visible cells.
+Likeness compare_colours(const Comparison& comparison, const Tally& tally, const Appearance& appearance,
+                         const LabFrame& frame) {
+  std::array<int, kSide> x_px{};
+  std::array<int, kSide> y_px{};
+  for (std::size_t i = 0; i < kSide; ++i) {
+    const cv::Point2f px = comparison.cell_centre(i * kSide + i);
+    x_px[i] = std::min(static_cast<int>(px.x * frame.scale), frame.lab.cols - 1);
+    y_px[i] = std::min(static_cast<int>(px.y * frame.scale), frame.lab.rows - 1);
+  }
+  Likeness likeness;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(tally.visible); ++i) {
+    const std::size_t cell = tally.visible_cells[i];
+    likeness.add(appearance.lab[cell], frame.lab.ptr<cv::Vec3b>(y_px[cell / kSide])[x_px[cell % kSide]]);
+  }
+  return likeness;
 }
 
 }  // namespace
@@ -143,36 +195,21 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   const float shift = common_shift(comparison);
   const float z = centre_camera.z();
   const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
+  const Tally tally = tally_cells(comparison, shift, tolerance);
+  const Likeness likeness = compare_colours(comparison, tally, view.appearance, frame);
   ViewFit fit;
-  Lines rows;
-  Lines columns;
-  Likeness likeness;
-  int cells = 0;
-  for (std::size_t cell = 0; cell < comparison.excess.size(); ++cell) {
-    if (!comparison.on_object[cell]) continue;
-    const float e = comparison.excess[cell] - shift;
-    const bool unknown = std::isnan(e);
-    const bool visible = std::abs(e) <= tolerance;
-    if (visible) likeness.add(view.appearance.lab[cell], colour_at(frame, comparison.cell_centre(cell)));
-    if (visible) fit.unevenness += std::abs(e) / tolerance;
-    ++cells;
-    fit.unknown += unknown ? 1.0F : 0.0F;
-    fit.visible += visible ? 1.0F : 0.0F;
-    fit.hidden += e < -tolerance ? 1.0F : 0.0F;
-    fit.seen_through += e > tolerance ? 1.0F : 0.0F;
-    ++rows.whole[cell / kSide];
-    ++columns.whole[cell % kSide];
-    rows.seen[cell / kSide] += unknown || visible ? 1 : 0;
-    columns.seen[cell % kSide] += unknown || visible ? 1 : 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(tally.visible); ++i) {
+    fit.unevenness += std::abs(comparison.excess[tally.visible_cells[i]] - shift) / tolerance;
   }
-  fit.unevenness /= std::max(fit.visible, 1.0F);
-  for (float* share : {&fit.visible, &fit.hidden, &fit.seen_through, &fit.unknown}) {
-    *share /= static_cast<float>(std::max(cells, 1));
-  }
+  fit.unevenness /= static_cast<float>(std::max(tally.visible, 1));
+  fit.visible = tally.share(tally.visible);
+  fit.hidden = tally.share(tally.hidden);
+  fit.seen_through = tally.share(tally.seen_through);
+  fit.unknown = tally.share(tally.unknown);
   fit.continued = continued_share(comparison, shift, tolerance);
   fit.likeness = likeness.correlation();
   fit.foreign_colour = likeness.foreign_colour();
-  fit.visible_box_px = visible_box(comparison, columns, rows);
+  fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
 }
 
