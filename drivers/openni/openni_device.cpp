@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <thread>
 
 #include "drivers/openni/openni_parts.hpp"
 #include "pipeline/checks.hpp"
@@ -118,12 +119,14 @@ struct OpenniDevice::State {
 
   ~State() {
     recorder.destroy();
-    for (openni::VideoStream* stream : {&depth, &colour}) {
-      if (!stream->isValid()) continue;
-      stream->removeNewFrameListener(stream == &depth ? &depth_listener : &colour_listener);
-      stream->stop();
-      stream->destroy();
-    }
+    depth.removeNewFrameListener(&depth_listener);
+    colour.removeNewFrameListener(&colour_listener);
+    depth.stop();
+    colour.stop();
+    // The thread that plays a file looks through its streams without a lock; once they stand still, every 10 ms.
+    if (is_file) std::this_thread::sleep_for(milliseconds(5));
+    depth.destroy();
+    colour.destroy();
     device.close();
   }
 

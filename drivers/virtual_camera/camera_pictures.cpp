@@ -11,7 +11,7 @@ namespace houghstream {
 cv::Point2d pattern_disc(const Camera& camera, int k) {
   const double turn = 2.0 * M_PI * k / kPatternPictures;
   return {0.5 * camera.width + 0.3 * camera.width * std::cos(turn),
-          0.5 * camera.height + 0.2 * camera.height * std::sin(2.0 * turn)};
+          0.5 * camera.height + 0.3 * camera.height * std::sin(turn)};
 }
 
 CameraPictures make_test_pattern(const Camera& camera) {

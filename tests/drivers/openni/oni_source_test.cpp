@@ -42,32 +42,45 @@ double depth_difference(const RgbdFrame& a, const RgbdFrame& b) {
   return cv::norm(depth_to_millimetres(a.depth), depth_to_millimetres(b.depth), cv::NORM_INF);
 }
 
-/// The frame of the recording that shows the disc where the first seen one does; recording starts a moment later.
-std::size_t first_common(const std::vector<RgbdFrame>& seen, const RgbdFrame& first_replayed) {
-  std::size_t i = 0;
-  while (i < seen.size() && depth_difference(seen[i], first_replayed) > 0.0) ++i;
-  return i;
+/// Mean of the channels' differences.
+double colour_difference(const RgbdFrame& a, const RgbdFrame& b) {
+  return cv::norm(a.colour, b.colour, cv::NORM_L1) / static_cast<double>(3 * a.colour.total());
+}
+
+/// The device's number of a frame, which runs through the pattern's pictures.
+std::int64_t number_of(const RgbdFrame& frame) {
+  const std::vector<CameraPicture> pictures = make_test_pattern(frame.camera).pictures;
+  const cv::Mat depth_mm = depth_to_millimetres(frame.depth);
+  std::size_t k = 0;
+  while (k < pictures.size() && cv::norm(pictures[k].depth_mm, depth_mm, cv::NORM_INF) > 0.0) ++k;
+  return static_cast<std::int64_t>(k);
+}
+
+/// Every image that the camera took is in the file, also one that a busy machine kept from the live run.
+void expect_same(const Recording& recording, const std::vector<RgbdFrame>& replayed, bool jpeg) {
+  ASSERT_FALSE(replayed.empty());
+  const std::int64_t first = number_of(replayed[0]);
+  ASSERT_LT(first, 30) << "recording starts a moment after the camera";
+  for (std::size_t i = 0; i < recording.seen.size(); ++i) {
+    if (recording.numbers[i] < first) continue;
+    const auto number = static_cast<std::size_t>(recording.numbers[i] - first);
+    ASSERT_LT(number, replayed.size());
+    const RgbdFrame& frame = replayed[number];
+    EXPECT_EQ(depth_difference(frame, recording.seen[i]), 0.0) << i;
+    EXPECT_LE(colour_difference(frame, recording.seen[i]), jpeg ? 20.0 : 0.0) << i;
+    EXPECT_EQ(jpeg, colour_difference(frame, recording.seen[i]) > 0.0) << i;
+    EXPECT_TRUE(frame.camera == recording.seen[i].camera);
+  }
+  for (std::size_t i = 1; i < replayed.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(replayed[i].utime - replayed[i - 1].utime), 33'333.0, 100.0) << "none is missing";
+  }
 }
 
 TEST(OniSource, GivesEveryFrameAsItWasSeen) {
   for (const bool jpeg : {false, true}) {
     const VirtualCamera camera("oni", "size 320x240\n");
     const Recording recording = record(camera, 50, jpeg);
-    const std::vector<RgbdFrame> replayed = replay(recording.file);
-    ASSERT_FALSE(replayed.empty());
-    const std::size_t start = first_common(recording.seen, replayed[0]);
-    ASSERT_LE(start, 3U);
-    ASSERT_GE(replayed.size(), recording.seen.size() - start) << "all frames that were seen since it began";
-    EXPECT_EQ(recording.numbers.back() - recording.numbers.front(), 49) << "the live run lost none";
-    for (std::size_t i = start; i < recording.seen.size(); ++i) {
-      const RgbdFrame& frame = replayed[i - start];
-      EXPECT_EQ(depth_difference(frame, recording.seen[i]), 0.0) << i;
-      EXPECT_LE(cv::norm(frame.colour, recording.seen[i].colour, cv::NORM_INF), jpeg ? 120.0 : 0.0) << i;
-      EXPECT_TRUE(frame.camera == recording.seen[i].camera);
-    }
-    for (std::size_t i = 1; i < replayed.size(); ++i) {
-      EXPECT_NEAR(static_cast<double>(replayed[i].utime - replayed[i - 1].utime), 33'333.0, 2'000.0);
-    }
+    expect_same(recording, replay(recording.file), jpeg);
   }
 }
 
