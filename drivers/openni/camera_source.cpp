@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <thread>
+#include <utility>
 
 #include "drivers/openni/device_clock.hpp"
 #include "drivers/openni/frame_of_pair.hpp"
@@ -31,8 +32,7 @@ class CameraSource : public FrameSource {
         openni_(keep_openni_running()),
         pairing_(pairing_tolerance_us(options_.mode)) {
     open();
-    spdlog::info("{}: {}, {}", uri_, mode_text(options_.mode),
-                 device_->synchronised() ? "depth and colour synchronised" : "depth and colour paired by their times");
+    spdlog::info("{}: {}", uri_, mode_text(options_.mode));
   }
 
   std::optional<RgbdFrame> next() override {
@@ -99,6 +99,10 @@ class CameraSource : public FrameSource {
 
   RgbdFrame complete(const ImagePair& pair) {
     if (listener_.depth_number) listener_.depth_number(pair.depth.number);
+    if (!std::exchange(told_distance_, true)) {
+      const double apart_us = static_cast<double>(pair.colour.device_us) - static_cast<double>(pair.depth.device_us);
+      spdlog::info("{}: colour is taken {:.1f} ms after depth", uri_, 1e-3 * apart_us);
+    }
     last_frame_ = Clock::now();
     if (gone_since_) {
       tell(fmt::format("{}: back, was away for {:.2f} s", uri_, seconds_since(*gone_since_)));
@@ -128,6 +132,7 @@ class CameraSource : public FrameSource {
   std::unique_ptr<OpenniDevice> device_;
   Camera camera_;
   int recordings_ = 0;
+  bool told_distance_ = false;
   Clock::time_point last_frame_;
   std::optional<Clock::time_point> gone_since_;
 };

@@ -110,7 +110,6 @@ struct OpenniDevice::State {
   openni::VideoStream colour;
   CameraMode mode;
   bool is_file = false;
-  bool synchronised = false;
   int images_left = 0;  // of a file
   Inbox inbox;
   Listener depth_listener{inbox, Sensor::kDepth};
@@ -155,7 +154,8 @@ struct OpenniDevice::State {
     for (openni::VideoStream* stream : {&depth, &colour}) {
       if (stream->getMirroringEnabled()) check_openni(stream->setMirroringEnabled(false), uri + ": mirroring off");
     }
-    synchronised = device.setDepthColorSyncEnabled(true) == openni::STATUS_OK;
+    device.setDepthColorSyncEnabled(
+        true);  // its status is ok whether the driver can or not: the images' times will tell
     openni::CameraSettings* settings = colour.getCameraSettings();
     const bool set = settings != nullptr &&
                      settings->setAutoExposureEnabled(options.auto_exposure) == openni::STATUS_OK &&
@@ -249,10 +249,6 @@ bool OpenniDevice::ended() const {
 
 const CameraMode& OpenniDevice::mode() const {
   return state_->mode;
-}
-
-bool OpenniDevice::synchronised() const {
-  return state_->synchronised;
 }
 
 Camera OpenniDevice::nominal_camera() const {

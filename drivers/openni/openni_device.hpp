@@ -43,7 +43,6 @@ class OpenniDevice {
   bool ended() const;
 
   const CameraMode& mode() const;
-  bool synchronised() const;
 
   /// Intrinsics from the colour sensor's field of view: the principal point in the middle. Throws InputError where
   /// the device does not tell.
