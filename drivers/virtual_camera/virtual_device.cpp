@@ -12,8 +12,11 @@ using std::chrono::duration;
 using std::chrono::duration_cast;
 using std::chrono::microseconds;
 
-constexpr double kClockAtOpeningUs = 5e6;  // a device's clock does not start when it is opened
-constexpr int kColourAhead = 7;            // unsynchronised, a sensor counts its own images
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+constexpr std::chrono::milliseconds kTransfer(8);  // a picture is on the cable for so long: late ones come no closer
+constexpr double kClockAtOpeningUs = 5e6;          // a device's clock does not start when it is opened
+constexpr int kColourAhead = 7;                    // unsynchronised, a sensor counts its own images
 
 bool is_dropped(int number, int every) {
   return every > 0 && number % every == every - 1;
@@ -23,10 +26,11 @@ std::chrono::steady_clock::duration milliseconds_of(double ms) {
   return duration_cast<std::chrono::steady_clock::duration>(duration<double, std::milli>(ms));
 }
 
-/// The shutter's time for whoever measures what comes out at the other end.
-void note_shutter(const CameraScript& script, int number, std::uint64_t device_us) {
+/// The shutter's time for whoever measures what comes out at the other end: when it was due, also where a busy machine
+/// lets this thread run later.
+void note_shutter(const CameraScript& script, int number, std::uint64_t device_us, SteadyTime shutter) {
   if (script.shutter_file.empty()) return;
-  const auto host = std::chrono::system_clock::now().time_since_epoch();
+  const auto host = std::chrono::system_clock::now().time_since_epoch() - (SteadyTime::clock::now() - shutter);
   std::ofstream(script.shutter_file, std::ios::app)
       << number << ' ' << device_us << ' ' << duration_cast<microseconds>(host).count() << '\n';
 }
@@ -121,15 +125,17 @@ bool VirtualDevice::synchronise() {
 void VirtualDevice::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   Clock::time_point shutter = start_;
+  Clock::time_point cable_free = start_;
   for (int number = 0; running_;) {
-    Clock::time_point due = shutter;
+    Clock::time_point due = std::max(shutter, cable_free);
     if (!late_.empty()) due = std::min(due, late_.front().due);
     if (end_.wait_until(lock, due, [&] { return !running_; })) return;
     lock.unlock();
     const Clock::time_point now = Clock::now();
     send_late_colour(now);
-    if (now >= shutter) {
+    if (now >= shutter && now >= cable_free) {
       open_shutters(number++, shutter);
+      cable_free = now + kTransfer;
       shutter += milliseconds_of(1e3 / script_.current()->rate_hz);
     }
     lock.lock();
@@ -145,7 +151,7 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
   const double phase_ms = synchronised_ ? 0.0 : script->colour_phase_ms;
   const Clock::time_point colour_time = now + milliseconds_of(phase_ms);
   const std::uint64_t device_us = device_time_us(now, *script);
-  note_shutter(*script, number, device_us);
+  note_shutter(*script, number, device_us, now);
   for (const auto& stream : streams()) {
     const std::vector<CameraPicture>& pictures = pictures_.at(stream->mode().resolutionX).pictures;
     const CameraPicture& picture = pictures[static_cast<std::size_t>(number) % pictures.size()];
