@@ -20,7 +20,7 @@ struct CameraOptions {
   bool assume_registered = false;
   std::optional<Camera> camera;  ///< intrinsics; default: from the colour sensor's field of view
   std::string record;            ///< record to this .oni file; after an absence, to FILE_2.oni and so on
-  bool record_jpeg = false;      ///< colour as JPEG in it: 1/20 of the size, but no longer bit by bit what was seen
+  bool record_jpeg = false;      ///< colour as JPEG in it: a fifth of the size, but no longer bit by bit what was seen
 };
 
 /// What a camera says to the process that runs it, and asks it. Each may be left empty.

@@ -61,7 +61,7 @@ class Departure : public openni::OpenNI::DeviceDisconnectedListener, public open
     openni::OpenNI::addDeviceDisconnectedListener(this);
     openni::OpenNI::addDeviceStateChangedListener(this);
   }
-  ~Departure() {
+  ~Departure() override {
     openni::OpenNI::removeDeviceDisconnectedListener(this);
     openni::OpenNI::removeDeviceStateChangedListener(this);
   }
@@ -208,10 +208,10 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, 
   const bool at_once = options.assume_registered || state->registered();
   state->depth.addNewFrameListener(&state->depth_listener);
   state->colour.addNewFrameListener(&state->colour_listener);
+  if (!options.record.empty()) state->record(options.record, options.record_jpeg);
   state->start();
   require(at_once || state->registered(),
           "{}: cannot register depth to colour; give --assume-registered if its depth comes registered anyhow", uri);
-  if (!options.record.empty()) state->record(options.record, options.record_jpeg);
   return std::unique_ptr<OpenniDevice>(new OpenniDevice(std::move(state)));
 }
 

@@ -67,7 +67,7 @@ class VirtualDevice : public oni::driver::DeviceBase {
   std::mutex streams_mutex_;
   std::vector<std::shared_ptr<VirtualStream>> streams_;
   std::deque<LateColour> late_;
-  const Clock::time_point start_ = Clock::now();
+  Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
   std::condition_variable end_;
   bool running_ = true;

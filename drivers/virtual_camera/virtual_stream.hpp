@@ -38,7 +38,7 @@ class VirtualStream : public oni::driver::StreamBase {
   OniStatus set_mode(const OniVideoMode& mode);
 
   VirtualDevice& device_;
-  const VirtualSensor sensor_;
+  VirtualSensor sensor_;
   mutable std::mutex mutex_;
   OniVideoMode mode_;
   OniBool mirrored_ = TRUE;  // as cameras come: whoever wants it otherwise has to say so

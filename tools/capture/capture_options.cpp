@@ -41,7 +41,7 @@ void add_source_options(CLI::App& app, SourceOptions& options) {
   app.add_flag("--no-auto-white-balance", options.fixed_white_balance, "openni2: leave the white balance as it is");
   app.add_flag("--assume-registered", options.live.assume_registered,
                "openni2: the camera's depth is registered to colour without being asked");
-  app.add_option("--record", options.live.record, "openni2: also record to this .oni file, 30 MB a second");
+  app.add_option("--record", options.live.record, "openni2: also record to this .oni file, 60 MB a second");
   app.add_flag("--record-jpeg", options.live.record_jpeg, "with --record: colour as JPEG, much smaller, with losses");
 }
 
