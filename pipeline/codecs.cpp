@@ -83,7 +83,8 @@ cv::Mat unzip_depth(ByteView zipped, int width, int height) {
   require(zipped.size >= raw_size / kMaxDeflateRatio, "zlib data of {} bytes, too few for depth of {}x{} pixels",
           zipped.size, width, height);
   cv::Mat depth_mm(height, width, CV_16UC1);
-  const std::unique_ptr<libdeflate_decompressor, ZipDeleter> unzip(libdeflate_alloc_decompressor());
+  static thread_local const std::unique_ptr<libdeflate_decompressor, ZipDeleter> unzip(
+      libdeflate_alloc_decompressor());  // kept from frame to frame
   // With no place for the unpacked size, anything but exactly raw_size bytes is an error.
   const libdeflate_result result =
       libdeflate_zlib_decompress(unzip.get(), zipped.data, zipped.size, depth_mm.data, raw_size, nullptr);

@@ -8,6 +8,7 @@
 #include "pipeline/checks.hpp"
 #include "pipeline/codecs.hpp"
 #include "pipeline/messages.hpp"
+#include "pipeline/parallel.hpp"
 #include "pipeline/wire_check.hpp"
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "depth travels little-endian and is copied as it is");
@@ -179,9 +180,11 @@ RgbdFrame decode_frame(const images_t& message, const std::optional<Camera>& fal
   frame.utime = message.utime;
   frame.camera = camera_of(message, fallback_camera);
   frame.stages = stages_of(message);
-  frame.colour = decode_colour(colour_message);
-  frame.depth =
-      depth_from_millimetres(decode_depth(depth_message, message.image_types[depth] == images_t::DEPTH_MM_ZIPPED));
+  const bool zipped = message.image_types[depth] == images_t::DEPTH_MM_ZIPPED;
+  parallel_for(2, 2, [&](int image) {
+    if (image == 0) frame.colour = decode_colour(colour_message);
+    if (image == 1) frame.depth = depth_from_millimetres(decode_depth(depth_message, zipped));
+  });
   check_frame(frame, "its camera");
   return frame;
 }

@@ -59,3 +59,18 @@ set_recorded_views() {
   recorded_views=(--views "uw:$real/objects" --camera $recorded_camera --rename can_1=can,can_2=can
     --instances ornament_3,ornament_1,koaramarch_1,pack_2,bottle_2,can_1,can_2)
 }
+
+# in_network COMMAND...: on a private network that carries multicast, or, with $shared_bus yes, on this machine's own.
+in_network() {
+  local setup='ip link set lo up && ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo && exec "$@"'
+  if [ $shared_bus = yes ]; then
+    "$@"
+  elif unshare -rn true 2>/dev/null; then
+    unshare -rn bash -c "$setup" private "$@"
+  elif unshare -n true 2>/dev/null; then
+    unshare -n bash -c "$setup" private "$@"
+  else
+    step "a private network is refused (user namespaces are off): using this machine's own, as --shared-bus does"
+    "$@"
+  fi
+}

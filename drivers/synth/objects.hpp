@@ -12,7 +12,8 @@ namespace houghstream {
 
 /// An object that can be taught. Ids 1-4 (bowl, cereal_box, coffee_mug, soda_can) are the demo's classes; 5-8 are
 /// their second instances (bowl_2 ...), of other proportions and prints; 101-116 are sixteen further classes
-/// (further_objects.hpp), which with the demo's make twenty.
+/// (further_objects.hpp), which with the demo's make twenty; 201-220 are instances of the demo's classes that are
+/// taught only to see how time grows (other_bowl_1, other_carton_2 ...).
 struct TaughtObject {
   int id = 0;
   std::string name;
@@ -25,10 +26,16 @@ inline constexpr int kTaughtObjectCount = 8;  ///< ids 1 to 8, look-alikes inclu
 inline constexpr int kFirstFurtherId = 101;
 inline constexpr int kFurtherClassCount = 16;  ///< ids 101 to 116
 
+inline constexpr int kFirstInstanceId = 201;
+inline constexpr int kTaughtInstanceCount = 20;  ///< ids 201 to 220
+
 /// The twenty classes' ids: 1-4 and 101-116.
 std::vector<int> twenty_class_ids();
 
-/// Object `id`, 1 to 8 or 101 to 116; the same on every call. Throws InputError for another id.
+/// And twenty more: 201-220 behind them.
+std::vector<int> forty_object_ids();
+
+/// Object `id`, 1 to 8, 101 to 116 or 201 to 220; the same on every call. Throws InputError for another id.
 TaughtObject make_taught_object(int id);
 
 /// "bowl" -> 1. Throws InputError listing the known names.

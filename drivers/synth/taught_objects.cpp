@@ -82,6 +82,18 @@ TaughtObject make_further_object(int id) {
   return {id, further.name, further.symmetric_about_z, further.make(random)};
 }
 
+/// Its name says what it is and its number.
+TaughtObject make_instance(int id) {
+  const int number = id - kFirstInstanceId;
+  const int kind = number % kClassCount;
+  const ThingPtr thing = make_other_instance(1 + kind, kObjectSeed + static_cast<std::uint64_t>(id));
+  return {id, fmt::format("{}_{}", thing->name, number + 1), kind == 0 || kind == 3, thing};
+}
+
+bool is_instance(int id) {
+  return id >= kFirstInstanceId && id < kFirstInstanceId + kTaughtInstanceCount;
+}
+
 bool is_further(int id) {
   return id >= kFirstFurtherId && id < kFirstFurtherId + kFurtherClassCount;
 }
@@ -95,10 +107,18 @@ std::vector<int> twenty_class_ids() {
   return ids;
 }
 
+std::vector<int> forty_object_ids() {
+  std::vector<int> ids = twenty_class_ids();
+  for (int i = 0; i < kTaughtInstanceCount; ++i) ids.push_back(kFirstInstanceId + i);
+  return ids;
+}
+
 TaughtObject make_taught_object(int id) {
   if (is_further(id)) return make_further_object(id);
-  require(id >= 1 && id <= kTaughtObjectCount, "taught object: id {}, expected 1 to {} or {} to {}", id,
-          kTaughtObjectCount, kFirstFurtherId, kFirstFurtherId + kFurtherClassCount - 1);
+  if (is_instance(id)) return make_instance(id);
+  require(id >= 1 && id <= kTaughtObjectCount, "taught object: id {}, expected 1 to {}, {} to {} or {} to {}", id,
+          kTaughtObjectCount, kFirstFurtherId, kFirstFurtherId + kFurtherClassCount - 1, kFirstInstanceId,
+          kFirstInstanceId + kTaughtInstanceCount - 1);
   const bool second = id > kClassCount;
   const int kind = (id - 1) % kClassCount;
   Random random(kObjectSeed + static_cast<std::uint64_t>(id));
@@ -120,6 +140,9 @@ int taught_object_id(const std::string& name) {
   for (const FurtherClass& entry : kFurther) {
     if (name == entry.name) return kFirstFurtherId + static_cast<int>(further.size());
     further.emplace_back(entry.name);
+  }
+  for (int id = kFirstInstanceId; id < kFirstInstanceId + kTaughtInstanceCount; ++id) {
+    if (name.rfind("other_", 0) == 0 && name == make_instance(id).name) return id;
   }
   fail("object \"{}\": expected one of {}, {}", name, fmt::join(kNames, ", "), fmt::join(further, ", "));
 }

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <mutex>
+#include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace houghstream {
@@ -30,6 +34,27 @@ TEST(ParallelFor, TheFirstErrorComesOut) {
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "item 3");
   }
+}
+
+TEST(ParallelFor, MayBeCalledFromWithinAndFromSeveralThreads) {
+  std::atomic<int> done{0};
+  const auto outer = [&] { parallel_for(3, 20, [&](int) { parallel_for(3, 20, [&](int) { ++done; }); }); };
+  std::thread other(outer);
+  outer();
+  other.join();
+  EXPECT_EQ(done, 2 * 20 * 20);
+}
+
+TEST(ParallelFor, KeepsItsThreads) {
+  std::mutex mutex;
+  std::set<std::thread::id> ids;
+  for (int call = 0; call < 200; ++call) {
+    parallel_for(2, 2, [&](int) {
+      const std::lock_guard lock(mutex);
+      ids.insert(std::this_thread::get_id());
+    });
+  }
+  EXPECT_LE(ids.size(), 2U);
 }
 
 }  // namespace

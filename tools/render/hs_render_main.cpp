@@ -32,7 +32,7 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   CLI::App* training = app.add_subcommand("training", "turntable views of the objects, with masks and models");
   add_common(*training, arguments);
   training->add_option("--seed", arguments.common.seed, "of the training rooms")->capture_default_str();
-  training->add_option("--objects", arguments.objects, "names, all (the four classes) or all_20 (sixteen more)")
+  training->add_option("--objects", arguments.objects, "names, all (the four classes), all_20 (sixteen more) or all_40")
       ->delimiter(',')
       ->capture_default_str();
   training->add_option("--azimuths", arguments.turntable.azimuths, "views a turn")->capture_default_str();

@@ -14,6 +14,7 @@ constexpr int kMostFrames = 100000;
 constexpr int kFramesPerRoom = 5;
 
 std::vector<int> object_ids(const std::vector<std::string>& names) {
+  if (names == std::vector<std::string>{"all_40"}) return forty_object_ids();
   std::vector<int> ids = twenty_class_ids();
   if (names == std::vector<std::string>{"all_20"}) return ids;
   ids.resize(kClassCount);

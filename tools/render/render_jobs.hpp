@@ -17,7 +17,7 @@ struct RenderOptions {
 };
 
 /// OUT/00000I/ for each object id I, and OUT/models/. `objects` holds names, or only "all" (the demo's four classes) or
-/// only "all_20" (twenty_class_ids()).
+/// only "all_20" (twenty_class_ids()) or "all_40" (forty_object_ids()).
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
                      const TurntableSettings& turntable);
 

@@ -52,6 +52,19 @@ TEST(Objects, TaughtOnesAreClosedCentredAndOfHouseholdSize) {
   EXPECT_EQ(names.size(), static_cast<std::size_t>(kTaughtObjectCount + kFurtherClassCount));
 }
 
+TEST(Objects, FortyAreTwentyClassesAndTwentyNamedInstances) {
+  const std::vector<int> ids = forty_object_ids();
+  EXPECT_EQ(std::set<int>(ids.begin(), ids.end()).size(), 40U);
+  std::set<std::string> names;
+  for (const int id : ids) {
+    const TaughtObject object = make_taught_object(id);
+    names.insert(object.name);
+    EXPECT_EQ(taught_object_id(object.name), id);
+    EXPECT_FALSE(object.thing->mesh.vertices.empty());
+  }
+  EXPECT_EQ(names.size(), 40U);
+}
+
 TEST(Objects, TwentyClassesAreTheFourAndSixteenMore) {
   const std::vector<int> ids = twenty_class_ids();
   ASSERT_EQ(ids.size(), 20U);

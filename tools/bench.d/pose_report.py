@@ -1,4 +1,4 @@
-"""Adds up one run of tools/bench pose: writes pose.json and report.html into its folder and prints the figures."""
+"""Adds up one run of tools/bench pose: writes pose.json and pose.html into its folder and prints the figures."""
 
 import argparse
 import json
@@ -7,7 +7,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report_kit"))
 
-import page
+import pose_page
 from measured import cpu_name, read_json
 
 
@@ -66,9 +66,9 @@ def main():
     summary["cpu"] = cpu_name()
     summary["commit"] = arguments.commit
     (out / "pose.json").write_text(json.dumps(summary, indent=2) + "\n")
-    (out / "report.html").write_text(page.render(out, summary, results))
+    (out / "pose.html").write_text(pose_page.render(out, summary, results))
     print(json.dumps(summary, indent=2))
-    print(f"{out}/report.html, {out}/pose.json")
+    print(f"{out}/pose.html, {out}/pose.json")
 
 
 if __name__ == "__main__":

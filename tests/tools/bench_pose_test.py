@@ -1,4 +1,4 @@
-"""Tests of the report of tools/bench pose: its keys, what was not measured, its page. Usage: bench_test.py REPOSITORY"""
+"""Tests of the report of tools/bench pose: its keys, what was not measured, its page. Usage: bench_pose_test.py REPOSITORY"""
 
 import copy
 import pathlib
@@ -9,8 +9,8 @@ import unittest
 tools = pathlib.Path(sys.argv.pop(1), "tools")
 sys.path[:0] = [str(tools / "bench.d"), str(tools / "report_kit")]
 
-import page
-import report
+import pose_page
+import pose_report
 
 
 def variant(ms, share, ar):
@@ -46,7 +46,7 @@ def without_rivals():
 
 class Summary(unittest.TestCase):
     def test_each_figure_is_that_of_its_variant(self):
-        summary = report.summarise(RESULTS, REAL)
+        summary = pose_report.summarise(RESULTS, REAL)
         self.assertLessEqual(PROMISED, set(summary))
         self.assertEqual((summary["ms_per_pose_median"], summary["ms_per_pose_p99"], summary["pcl_ms_median"]), (3.0, 6.0, 40.0))
         self.assertEqual((summary["add_s_recall"], summary["add_recall"]), (0.9, 0.45))
@@ -55,7 +55,7 @@ class Summary(unittest.TestCase):
         self.assertEqual(summary["real"]["within_5mm_5deg"], 9)
 
     def test_what_was_not_measured_is_null(self):
-        summary = report.summarise(without_rivals(), None)
+        summary = pose_report.summarise(without_rivals(), None)
         self.assertLessEqual(PROMISED, set(summary))
         self.assertIsNone(summary["bop_ar_ppf"])
         self.assertIsNone(summary["rotation_deg_median"])
@@ -65,22 +65,22 @@ class Summary(unittest.TestCase):
         results = copy.deepcopy(RESULTS)
         del results["variants"]["ours"]["bop_ar"]
         with self.assertRaises(KeyError):
-            report.summarise(results, None)
+            pose_report.summarise(results, None)
 
 
 class Page(unittest.TestCase):
     def render(self, results, real):
-        summary = {**report.summarise(results, real), "cpu": "a processor", "commit": "abc"}
+        summary = {**pose_report.summarise(results, real), "cpu": "a processor", "commit": "abc"}
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
             (out / "pose").mkdir()
             for number in (1, 2, 10):
                 (out / "pose" / f"worst_{number}.png").write_bytes(b"picture")
-            return page.render(out, summary, results)
+            return pose_page.render(out, summary, results)
 
     def test_it_holds_the_tables_and_the_worst_in_order(self):
         text = self.render(RESULTS, REAL)
-        for words in (page.NAMES["ppf"], "rejected by &lt;depth&gt;", "<td>600.00</td>", "Camera-recorded frames", "<td>9</td>"):
+        for words in (pose_page.NAMES["ppf"], "rejected by &lt;depth&gt;", "<td>600.00</td>", "Camera-recorded frames", "<td>9</td>"):
             self.assertIn(words, text)
         self.assertLess(text.index("worst_2.png"), text.index("worst_10.png"))
 
