@@ -1,4 +1,4 @@
-# Processes in the background and a log played to them, for scripts that run the whole stream. Sourced after common.sh,
+# Processes in the background and frames sent to them, for scripts that run the whole stream. Sourced after common.sh,
 # not run; needs $process_words, a folder for what each says. Whatever still runs when the script ends is ended.
 
 declare -A pids
@@ -44,8 +44,8 @@ await_ready() {
   done
 }
 
-# play COMMAND...: runs what sends the frames to its end, and until the observer, who ends by himself when all frames have come and the bus is quiet,
-# has done so.
+# play COMMAND...: runs what sends the frames to its end, and waits for the observer, who ends by himself when all frames
+# have come and the bus is quiet.
 play() {
   "$@" >"$process_words/player.txt" 2>&1 || { show_words; die "the frames could not be sent: $1 failed"; }
   for _ in $(seq 80); do

@@ -46,7 +46,8 @@ def latencies_ms(rows, key, shutters, start_us):
 def summarise(rows, observed, shutters):
     capture, detector = observed["processes"]["hs-capture"], observed["processes"]["hs-detect"]
     start_us = observed["start_utime"]
-    errors = [1e-3 * (int(row["utime"]) - nearest(shutters, int(row["utime"]))) for row in rows if row["t_frame"]]
+    taken = [(int(row["utime"]), nearest(shutters, int(row["utime"]))) for row in rows if row["t_frame"]]
+    errors = [1e-3 * (utime - shutter) for utime, shutter in taken if shutter is not None]
     return {
         "frames_sent": capture["processed"],
         "frames_lost_from_camera": capture["lost"],
