@@ -5,33 +5,23 @@
 namespace houghstream {
 namespace {
 
-/// Per leaf, the largest p(class | leaf) of all classes.
-std::vector<float> most_certain(const Forest& forest) {
-  std::vector<float> most(forest.leaves.size() - 1, 0.0F);
-  for (std::size_t leaf = 0; leaf < most.size(); ++leaf) {
-    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      most[leaf] = std::max(most[leaf], forest.leaf_classes[e].probability);
-    }
-  }
-  return most;
-}
-
 /// Sums over the trees of what the leaves of a run's patches are most certain of: for no class is a patch's sum larger,
 /// not even by rounding, as long as it is summed in the same order.
-void sum_largest(const std::vector<float>& most, std::size_t trees, std::size_t patches, const std::int32_t* leaves,
-                 std::vector<float>& sums) {
-  sums.assign(patches, 0.0F);
-  for (std::size_t tree = 0; tree < trees; ++tree, leaves += patches) {
-    for (std::size_t p = 0; p < patches; ++p) sums[p] += most[static_cast<std::size_t>(leaves[p])];
+void sum_certainties(const Forest& forest, const RunLeaves& seen, std::vector<float>& sums) {
+  sums.assign(seen.count, 0.0F);
+  const std::int32_t* leaves = seen.leaves;
+  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {
+    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += forest.leaf_certainty[leaves[i]];
   }
 }
 
 /// Sums over the trees of p(class | leaf) for some of the patches of a run: element [i * classes + class].
-void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, std::size_t patches,
-                  const std::int32_t* leaves, std::vector<float>& sums) {
+void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, const RunLeaves& seen,
+                  std::vector<float>& sums) {
   const std::size_t classes = forest.classes.size();
   sums.assign(some.size() * classes, 0.0F);
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += patches) {  // stays in the cache
+  const std::int32_t* leaves = seen.leaves;
+  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
     for (std::size_t i = 0; i < some.size(); ++i) {
       const auto leaf = static_cast<std::size_t>(leaves[some[i]]);
       for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
@@ -42,11 +32,11 @@ void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, 
   }
 }
 
-/// What the leaves of patch `p` of a run know of a class.
-void append_entries(const Forest& forest, std::size_t class_index, std::size_t p, std::size_t patches,
-                    const std::int32_t* leaves, std::vector<std::uint32_t>& entries) {
+/// What the leaves of a run's patch number `i` know of a class.
+void append_entries(const Forest& forest, std::size_t class_index, std::size_t i, const RunLeaves& seen,
+                    std::vector<std::uint32_t>& entries) {
   for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
-    const auto leaf = static_cast<std::size_t>(leaves[tree * patches + p]);
+    const auto leaf = static_cast<std::size_t>(seen.leaves[tree * seen.count + i]);
     for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
       if (forest.leaf_classes[e].class_index == class_index) entries.push_back(e);
     }
@@ -55,45 +45,54 @@ void append_entries(const Forest& forest, std::size_t class_index, std::size_t p
 
 }  // namespace
 
-PatchBeliefs::PatchBeliefs(const Forest& forest, std::size_t runs, float least_share)
-    : forest_(&forest),
-      least_share_(least_share),
-      most_certain_(most_certain(forest)),
-      believers_(runs * forest.classes.size()) {}
+PatchBeliefs::PatchBeliefs(const Forest& forest, std::size_t runs, float least_share) {
+  reset(forest, runs, least_share);
+}
 
-void PatchBeliefs::note(std::size_t run, const PatchRun& patches, const std::int32_t* leaves) {
+void PatchBeliefs::reset(const Forest& forest, std::size_t runs, float least_share) {
+  forest_ = &forest;
+  least_share_ = least_share;
+  believers_.resize(runs * forest.classes.size());
+  for (Believers& believers : believers_) {
+    believers.patches.clear();
+    believers.ends.clear();
+    believers.entries.clear();
+  }
+}
+
+void PatchBeliefs::note(const RunLeaves& seen) {
   static thread_local std::vector<float> sums;  // both kept from run to run
   static thread_local std::vector<std::uint32_t> some;
   const std::size_t classes = forest_->classes.size();
   const auto trees = static_cast<float>(forest_->roots.size());
-  sum_largest(most_certain_, forest_->roots.size(), patches.count, leaves, sums);
+  sum_certainties(*forest_, seen, sums);
   some.clear();
-  for (std::uint32_t p = 0; p < patches.count; ++p) {
-    if (sums[p] / trees >= least_share_) some.push_back(p);
+  for (std::uint32_t i = 0; i < seen.count; ++i) {
+    if (sums[i] / trees >= least_share_) some.push_back(i);
   }
-  sum_by_class(*forest_, some, patches.count, leaves, sums);
+  sum_by_class(*forest_, some, seen, sums);
   for (std::size_t i = 0; i < some.size(); ++i) {
     for (std::size_t c = 0; c < classes; ++c) {
       if (sums[i * classes + c] / trees < least_share_) continue;
-      Believers& believers = believers_[run * classes + c];
-      believers.patches.push_back(static_cast<std::uint32_t>(patches.first) + some[i]);
-      append_entries(*forest_, c, some[i], patches.count, leaves, believers.entries);
+      Believers& believers = believers_[seen.run * classes + c];
+      believers.patches.push_back(seen.patches[some[i]]);
+      append_entries(*forest_, c, some[i], seen, believers.entries);
       believers.ends.push_back(static_cast<std::uint32_t>(believers.entries.size()));
     }
   }
 }
 
-PatchBeliefs classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                      const DetectionSettings& settings) {
+void classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+              const DetectionSettings& settings, PatchBeliefs& beliefs) {
   const std::vector<PatchRun> runs = patch_runs(patches);
-  PatchBeliefs beliefs(forest, runs.size(), settings.min_class_share);
-  const auto note = [&](std::size_t run, const std::int32_t* leaves) { beliefs.note(run, runs[run], leaves); };
+  const EarlyEnd early_end{settings.first_trees, settings.min_first_share};
+  beliefs.reset(forest, runs.size(), settings.min_class_share);
+  const auto note = [&](const RunLeaves& seen) { beliefs.note(seen); };
   if (settings.readable) {
-    find_leaves_readably(forest, features, patches, runs, note);
+    find_leaves_readably(forest, features, patches, runs, early_end, note);
   } else {
-    find_leaves(forest, features, patches, runs, settings.threads, note);
+    find_leaves(forest, features, patches, runs, early_end, settings.threads, note);
   }
-  return beliefs;
 }
 
 }  // namespace houghstream

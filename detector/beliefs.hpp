@@ -26,10 +26,11 @@ class PatchBeliefs {
   /// A patch believes in a class from a share of `least_share` on: p(class | patch), the mean over the trees. The
   /// forest must outlive the beliefs.
   PatchBeliefs(const Forest& forest, std::size_t runs, float least_share);
+  /// As if made anew, but the memory is used again.
+  void reset(const Forest& forest, std::size_t runs, float least_share);
 
-  /// Notes who believes among the patches of a run. `leaves`: see LeafVisitor. Different runs may be noted at the same
-  /// time.
-  void note(std::size_t run, const PatchRun& patches, const std::int32_t* leaves);
+  /// Notes who believes among the patches of a run. Different runs may be noted at the same time.
+  void note(const RunLeaves& seen);
 
   /// Calls visit(patch, entries, count) for every patch that believes in the class, in the grid's order.
   template <typename Visit>
@@ -51,12 +52,12 @@ class PatchBeliefs {
  private:
   const Forest* forest_ = nullptr;
   float least_share_ = 0.0F;
-  std::vector<float> most_certain_;
   std::vector<Believers> believers_;  // [run * classes + class]
 };
 
-/// What the patches believe, by the engine that the settings name. `features`: one image per level.
-PatchBeliefs classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                      const DetectionSettings& settings);
+/// What the patches believe, by the engine that the settings name. `features`: one image per level. What `beliefs` held
+/// is overwritten and its memory used again.
+void classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
+              const DetectionSettings& settings, PatchBeliefs& beliefs);
 
 }  // namespace houghstream

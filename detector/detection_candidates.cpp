@@ -117,7 +117,9 @@ std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& fr
   if (forest.features.handling == ScaleHandling::kScaleSpace) {
     return search_scale_space(forest, frame, settings, clock);
   }
-  const SeenPatches seen = classify_patches(forest, frame, settings, clock);
+  static thread_local SeenPatches seen_here;  // its memory is kept from frame to frame
+  const SeenPatches& seen = seen_here;        // the same for the threads below
+  classify_patches(forest, frame, settings, clock, seen_here);
   const LabFrame in_lab = make_lab_frame(frame, seen.colour, forest.features.image_scale);
   std::vector<std::vector<Candidate>> by_class(forest.classes.size());
   parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {  // Section 2

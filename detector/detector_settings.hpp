@@ -71,8 +71,15 @@ struct TrainingSettings {
 /// How a frame is searched.
 struct DetectionSettings {
   int threads = 2;
-  bool readable = false;           ///< patch by patch, tree by tree: the same leaves, but slowly
-  int stride = 2;                  ///< patch offset, working pixels (paper, Section 5.1.3)
+  bool readable = false;  ///< patch by patch, tree by tree: the same leaves, but slowly
+  int stride = 2;         ///< patch offset, working pixels (paper, Section 5.1.3)
+  /// Metres between patches: where the stride puts them nearer to each other, some are left out, see PatchSpacing;
+  /// 0 = none are. With depth normalisation only.
+  float patch_spacing = 0.018F;
+  /// A patch walks down so many trees first, and down the rest only if the mean of what their leaves are most certain
+  /// of reaches min_first_share; 0 = every patch walks down all trees.
+  int first_trees = 3;
+  float min_first_share = 0.03F;
   float threshold = 0.5F;          ///< smallest score that is reported
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)

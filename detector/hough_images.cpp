@@ -58,7 +58,8 @@ cv::Mat hough_image(const Forest& forest, int class_index, const RgbdFrame& fram
     return largest_over_sizes(forest, class_index, frame, settings);
   }
   StageClock clock;
-  const SeenPatches seen = classify_patches(forest, frame, settings, clock);
+  SeenPatches seen;
+  classify_patches(forest, frame, settings, clock, seen);
   const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings);
   const cv::Mat masses = masses_by_cell(space, seen, settings);
   const float expected = forest.classes[static_cast<std::size_t>(class_index)].expected_mass;

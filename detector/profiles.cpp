@@ -29,6 +29,8 @@ Profile paper() {
   profile.patch.radius = 5;
   profile.patch.unit = 1.0F / (0.7F * kUsualFocal);  // one working pixel at 1 m
   profile.detection.stride = 1;
+  profile.detection.patch_spacing = 0.0F;
+  profile.detection.first_trees = 0;
   return profile;
 }
 
@@ -43,6 +45,8 @@ Profile gall() {
   profile.training.scoring = Scoring::kVotes;
   profile.training.max_leaf_votes = 32;
   profile.detection.stride = 1;
+  profile.detection.patch_spacing = 0.0F;
+  profile.detection.first_trees = 0;
   profile.detection.threshold = 0.1F;
   profile.detection.min_mass_share = 0.05F;
   profile.detection.min_class_share = 0.2F;

@@ -35,7 +35,7 @@ SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureL
   seen.size_ratio = level.size_ratio;
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
   add_patches_everywhere(working, level, forest.patch, settings.stride, seen.grid);
-  seen.beliefs = classify(forest, features, seen.grid, settings);
+  classify(forest, features, seen.grid, settings, seen.beliefs);
   clock.mark("detect.forest");
   return seen;
 }

@@ -7,8 +7,8 @@
 
 namespace houghstream {
 
-SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
-                             StageClock& clock) {
+void classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
+                      StageClock& clock, SeenPatches& seen) {
   const auto levels = feature_levels(forest.features);
   std::vector<WorkingFrame> working;
   for (const FeatureLevel& level : levels) {  // Section 5.1.1
@@ -20,15 +20,15 @@ SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const
     features.push_back(compute_features(view, forest.features, settings.threads));
   }
   clock.mark("detect.features");
-  SeenPatches seen;
+  seen.grid.clear();
   seen.hough_camera = working[0].camera;
   seen.colour = working[0].colour;
   for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.3
-    add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch, settings.stride, seen.grid);
+    add_patches(working[l], levels[l], static_cast<std::uint8_t>(l), forest.patch,
+                {settings.stride, settings.patch_spacing}, seen.grid);
   }
-  seen.beliefs = classify(forest, features, seen.grid, settings);  // Section 5.1.2
+  classify(forest, features, seen.grid, settings, seen.beliefs);  // Section 5.1.2
   clock.mark("detect.forest");
-  return seen;
 }
 
 }  // namespace houghstream

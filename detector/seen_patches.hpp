@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "detector/beliefs.hpp"
-#include "detector/forest/traversal.hpp"
+#include "detector/forest/patch_grid.hpp"
 #include "pipeline/frame.hpp"
 
 namespace houghstream {
@@ -16,8 +16,9 @@ struct SeenPatches {
   cv::Mat colour;       ///< of the working frame for near surfaces, BGR
 };
 
-/// Closes the stages "detect.resize", "detect.features" and "detect.forest" on the clock.
-SeenPatches classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
-                             StageClock& clock);
+/// Closes the stages "detect.resize", "detect.features" and "detect.forest" on the clock. What `seen` held is
+/// overwritten and its memory used again.
+void classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
+                      StageClock& clock, SeenPatches& seen);
 
 }  // namespace houghstream

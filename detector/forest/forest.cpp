@@ -1,6 +1,17 @@
 #include "detector/forest/forest.hpp"
 
+#include <algorithm>
+
 namespace houghstream {
+
+void note_certainty(Forest& forest) {
+  forest.leaf_certainty.assign(forest.leaves.size() - 1, 0.0F);
+  for (std::size_t leaf = 0; leaf < forest.leaf_certainty.size(); ++leaf) {
+    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
+      forest.leaf_certainty[leaf] = std::max(forest.leaf_certainty[leaf], forest.leaf_classes[e].probability);
+    }
+  }
+}
 
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray) {
   const Eigen::Vector3f d = ray / ray.norm();

@@ -85,7 +85,11 @@ struct Forest {
   std::vector<LeafClass> leaf_classes;
   std::vector<LeafVote> votes;
   std::vector<LeafView> leaf_views;
+  std::vector<float> leaf_certainty;  ///< per leaf: its largest p(class | leaf); not in files, see note_certainty
 };
+
+/// Fills leaf_certainty from the leaves; to be called whenever they have changed, before a frame is searched.
+void note_certainty(Forest& forest);
 
 /// Smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);

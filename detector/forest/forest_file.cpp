@@ -245,6 +245,7 @@ Forest load_forest(const std::filesystem::path& file) {
   require(reader.at == payload.size(), "{}: {} bytes left over after the forest", source, payload.size() - reader.at);
   check_settings(forest, source);
   check_indices(forest, source);
+  note_certainty(forest);
   return forest;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 
 #include "detector/forest/square_forest.hpp"
@@ -41,148 +42,130 @@ void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches
   }
 }
 
-/// Visits a place every `stride` pixels, square by square: the patches of a square share their pixels, so that a
-/// square's worth of planes stays in the cache from tree to tree.
-template <typename Visit>
-void for_places(cv::Size size, int stride, const Visit& visit) {
-  const int side = kSquareSide * stride;
-  for (int top = stride / 2; top < size.height; top += side) {
-    for (int left = stride / 2; left < size.width; left += side) {
-      for (int y = top; y < std::min(size.height, top + side); y += stride) {
-        for (int x = left; x < std::min(size.width, left + side); x += stride) visit(x, y);
-      }
-    }
-  }
-}
+/// What a thread needs for a run, kept from run to run.
+struct Scratch {
+  std::vector<std::int32_t> leaves;    // tree by tree, of the patches that are left
+  std::vector<std::uint32_t> patches;  // those left, into the grid
+  std::vector<float> sums;             // of the leaves' certainties
+  std::vector<std::int16_t> x;         // of those left
+  std::vector<std::int16_t> y;
+  std::vector<std::int32_t> scale;
+  std::vector<std::uint8_t> planes;  // of a square
+};
 
-void reserve_places(cv::Size size, int stride, PatchGrid& grid) {
-  const auto along = [&](int pixels) { return static_cast<std::size_t>((pixels + stride - 1) / stride); };
-  const std::size_t count = grid.size() + along(size.width) * along(size.height);
-  grid.level.reserve(count);
-  grid.x.reserve(count);
-  grid.y.reserve(count);
-  grid.scale.reserve(count);
-  grid.cell_px.reserve(count);
-}
-
-void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index, int stride, PatchGrid& grid) {
-  const float to_frame = 1.0F / level.scale;
-  const float side_px = static_cast<float>(stride) * to_frame;
-  grid.level.push_back(level_index);
-  grid.x.push_back(static_cast<std::int16_t>(x));
-  grid.y.push_back(static_cast<std::int16_t>(y));
-  const float left = (static_cast<float>(x) + 0.5F) * to_frame - 0.5F * side_px;
-  const float top = (static_cast<float>(y) + 0.5F) * to_frame - 0.5F * side_px;
-  grid.cell_px.emplace_back(left, top, side_px, side_px);
-}
-
-/// Where for_places goes from square to square, at every pixel.
-void list_squares(cv::Size size, PatchGrid& grid) {
-  std::size_t first = 0;
-  for (int top = 0; top < size.height; top += kSquareSide) {
-    for (int left = 0; left < size.width; left += kSquareSide) {
-      const int width = std::min(kSquareSide, size.width - left);
-      const int height = std::min(kSquareSide, size.height - top);
-      const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-      grid.squares.push_back({first, count, width});
-      first += count;
-    }
-  }
-}
-
-/// Leaves of one run in all trees.
-void walk_run(const Forest& forest, const FeatureImage& image, const PatchGrid& patches, const PatchRun& run,
-              std::int32_t* leaves) {
-  const WalkingPatches walking{&image, patches.x.data() + run.first, patches.y.data() + run.first,
-                               patches.scale.data() + run.first, static_cast<int>(run.count)};
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += run.count) {
+/// Leaves of patches of one level in the trees [first, last).
+void walk_trees(const Forest& forest, const WalkingPatches& walking, std::size_t first, std::size_t last,
+                std::int32_t* leaves) {
+  for (std::size_t tree = first; tree < last; ++tree, leaves += walking.count) {
     if (!walk_wide(forest, static_cast<int>(tree), walking, leaves)) {
       walk_in_lanes(forest, forest.roots[tree], walking, leaves);
     }
   }
 }
 
-/// The same for a square.
+/// Leaves of a square in all trees.
 void walk_square_run(const SquareForest& forest, const FeatureImage& image, const PatchGrid& patches,
-                     const PatchRun& run, std::int32_t* leaves) {
-  static thread_local std::vector<std::uint8_t> planes;  // kept from square to square
+                     const PatchRun& run, Scratch& scratch) {
   const PatchSquare square{patches.x[run.first], patches.y[run.first], run.width,
                            static_cast<int>(run.count) / run.width};
-  copy_planes(image, square, forest.layout, planes);
+  copy_planes(image, square, forest.layout, scratch.planes);
+  std::int32_t* leaves = scratch.leaves.data();
   for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += run.count) {
-    walk_square(forest, static_cast<int>(tree), square, planes, leaves);
+    walk_square(forest, static_cast<int>(tree), square, scratch.planes, leaves);
   }
+}
+
+/// Gives patches up and closes the gaps that they leave in the leaves of the first `walked` trees.
+void give_up(const Forest& forest, const EarlyEnd& early_end, const PatchRun& run, std::size_t walked,
+             Scratch& scratch) {
+  scratch.sums.assign(run.count, 0.0F);
+  const std::int32_t* leaves = scratch.leaves.data();
+  for (int tree = 0; tree < early_end.trees; ++tree, leaves += run.count) {
+    for (std::size_t i = 0; i < run.count; ++i) scratch.sums[i] += forest.leaf_certainty[leaves[i]];
+  }
+  scratch.patches.clear();
+  for (std::size_t i = 0; i < run.count; ++i) {
+    if (early_end.goes_on(scratch.sums[i])) scratch.patches.push_back(static_cast<std::uint32_t>(run.first + i));
+  }
+  std::int32_t* to = scratch.leaves.data();
+  for (std::size_t tree = 0; tree < walked; ++tree) {
+    const std::int32_t* from = scratch.leaves.data() + tree * run.count;
+    for (const std::uint32_t p : scratch.patches) *to++ = from[p - run.first];
+  }
+}
+
+/// The patches that are left, side by side.
+WalkingPatches gather_left(const FeatureImage& image, const PatchGrid& patches, Scratch& scratch) {
+  scratch.x.clear();
+  scratch.y.clear();
+  scratch.scale.clear();
+  for (const std::uint32_t p : scratch.patches) {
+    scratch.x.push_back(patches.x[p]);
+    scratch.y.push_back(patches.y[p]);
+    scratch.scale.push_back(patches.scale[p]);
+  }
+  return {&image, scratch.x.data(), scratch.y.data(), scratch.scale.data(), static_cast<int>(scratch.x.size())};
+}
+
+/// Leaves of one run; `for_squares` where it is a square.
+void walk_run(const Forest& forest, const SquareForest* for_squares, const FeatureImage& image,
+              const PatchGrid& patches, const PatchRun& run, const EarlyEnd& early_end, Scratch& scratch) {
+  const std::size_t trees = forest.roots.size();
+  const bool may_end = early_end.is_used(forest);
+  const std::size_t first = may_end && for_squares == nullptr ? static_cast<std::size_t>(early_end.trees) : trees;
+  scratch.leaves.resize(run.count * trees);
+  if (for_squares != nullptr) {
+    walk_square_run(*for_squares, image, patches, run, scratch);
+  } else {
+    const WalkingPatches all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
+                             patches.scale.data() + run.first, static_cast<int>(run.count)};
+    walk_trees(forest, all, 0, first, scratch.leaves.data());
+  }
+  if (!may_end) {
+    scratch.patches.resize(run.count);
+    std::iota(scratch.patches.begin(), scratch.patches.end(), static_cast<std::uint32_t>(run.first));
+    return;
+  }
+  give_up(forest, early_end, run, first, scratch);
+  const WalkingPatches left = gather_left(image, patches, scratch);
+  walk_trees(forest, left, first, trees, scratch.leaves.data() + first * scratch.patches.size());
 }
 
 }  // namespace
 
-void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
-                 const PatchSettings& patch, int stride, PatchGrid& grid) {
-  const auto side_per_metre = static_cast<float>(stride * frame.camera.metres_per_px(1.0));
-  for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
-    const float z = frame.filled_depth.at<float>(y, x);
-    if (!level.holds(z)) return;
-    add_place(x, y, level, level_index, stride, grid);
-    grid.scale.push_back(patch_scale(patch, frame.camera.fx, z));
-    grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
-    grid.area.push_back(side_per_metre * z * side_per_metre * z);
-  });
-}
-
-void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
-                            int stride, PatchGrid& grid) {
-  const std::int32_t scale = limited_scale(patch, patch.unit);
-  reserve_places(frame.filled_depth.size(), stride, grid);
-  for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
-    add_place(x, y, level, 0, stride, grid);
-    grid.scale.push_back(scale);
-  });
-  if (stride == 1) list_squares(frame.filled_depth.size(), grid);
-}
-
-std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
-  if (!patches.squares.empty()) return patches.squares;
-  constexpr std::size_t kPatches = kSquareSide * kSquareSide;
-  std::vector<PatchRun> runs;
-  for (std::size_t begin = 0; begin < patches.size();) {
-    std::size_t end = begin;
-    while (end < patches.size() && end - begin < kPatches && patches.level[end] == patches.level[begin]) ++end;
-    runs.push_back({begin, end - begin, 0});
-    begin = end;
-  }
-  return runs;
-}
-
 void find_leaves(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                 const std::vector<PatchRun>& runs, int threads, const LeafVisitor& visit) {
+                 const std::vector<PatchRun>& runs, const EarlyEnd& early_end, int threads, const LeafVisitor& visit) {
   std::optional<SquareForest> for_squares;
   if (!patches.squares.empty()) for_squares.emplace(forest, patches.scale[0], features[0].pixel_stride());
   parallel_for(threads, static_cast<int>(runs.size()), [&](int r) {
-    static thread_local std::vector<std::int32_t> leaves;  // kept from run to run
+    static thread_local Scratch scratch;
     const PatchRun& run = runs[static_cast<std::size_t>(r)];
-    const FeatureImage& image = features[patches.level[run.first]];
-    leaves.resize(run.count * forest.roots.size());
-    if (for_squares) {
-      walk_square_run(*for_squares, image, patches, run, leaves.data());
-    } else {
-      walk_run(forest, image, patches, run, leaves.data());
-    }
-    visit(static_cast<std::size_t>(r), leaves.data());
+    walk_run(forest, for_squares ? &*for_squares : nullptr, features[patches.level[run.first]], patches, run, early_end,
+             scratch);
+    visit({static_cast<std::size_t>(r), scratch.patches.size(), scratch.patches.data(), scratch.leaves.data()});
   });
 }
 
 void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                          const std::vector<PatchRun>& runs, const LeafVisitor& visit) {
+                          const std::vector<PatchRun>& runs, const EarlyEnd& early_end, const LeafVisitor& visit) {
+  const int trees = static_cast<int>(forest.roots.size());
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    std::vector<std::int32_t> leaves(runs[r].count * forest.roots.size());
-    for (std::size_t i = 0; i < runs[r].count; ++i) {
-      const std::size_t p = runs[r].first + i;
+    std::vector<std::uint32_t> left;
+    std::vector<std::vector<std::int32_t>> by_tree(forest.roots.size());
+    for (std::size_t p = runs[r].first; p < runs[r].first + runs[r].count; ++p) {
       const PatchView patch = features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
-      for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
-        leaves[tree * runs[r].count + i] = find_leaf(forest, static_cast<int>(tree), patch);
+      float certainty = 0.0F;
+      for (int tree = 0; early_end.is_used(forest) && tree < early_end.trees; ++tree) {
+        certainty += forest.leaf_certainty[find_leaf(forest, tree, patch)];
       }
+      if (early_end.is_used(forest) && !early_end.goes_on(certainty)) continue;
+      left.push_back(static_cast<std::uint32_t>(p));
+      for (int tree = 0; tree < trees; ++tree) by_tree[tree].push_back(find_leaf(forest, tree, patch));
     }
-    visit(r, leaves.data());
+    std::vector<std::int32_t> leaves;
+    for (const std::vector<std::int32_t>& of_tree : by_tree)
+      leaves.insert(leaves.end(), of_tree.begin(), of_tree.end());
+    visit({r, left.size(), left.data(), leaves.data()});
   }
 }
 

@@ -57,21 +57,30 @@ TEST(Detector, NothingIsFoundWhereThereIsNoDepth) {
   EXPECT_TRUE(detect(frame, 1).detections.empty());
 }
 
-TEST(Detector, AnyNumberOfThreadsGivesTheSameDetections) {
+void expect_same(const Detections& one, const Detections& other) {
+  ASSERT_EQ(one.detections.size(), other.detections.size());
+  for (std::size_t i = 0; i < one.detections.size(); ++i) {
+    EXPECT_EQ(one.detections[i].score, other.detections[i].score);
+    EXPECT_EQ(one.detections[i].box_px, other.detections[i].box_px);
+    EXPECT_EQ(one.detections[i].centre_camera, other.detections[i].centre_camera);
+  }
+}
+
+TEST(Detector, AnyNumberOfThreadsAndTheReadableEngineGiveTheSameDetections) {
   RgbdFrame frame = toy::room(80);
   toy::put_tile(0, 90, 100, 0.7, frame);
   toy::put_tile(1, 230, 120, 0.8, frame);
-  const Detections serial = detect(frame, 1);
+  DetectionSettings settings;
+  settings.first_trees = 1;  // the toy forest has few
+  settings.threads = 1;
+  const Detections serial = Detector(toy_forest(), settings).detect(frame);
   ASSERT_GE(serial.detections.size(), 2U);
   for (const int threads : {2, 3, 7}) {
-    const Detections parallel = detect(frame, threads);
-    ASSERT_EQ(parallel.detections.size(), serial.detections.size());
-    for (std::size_t i = 0; i < serial.detections.size(); ++i) {
-      EXPECT_EQ(parallel.detections[i].score, serial.detections[i].score);
-      EXPECT_EQ(parallel.detections[i].box_px, serial.detections[i].box_px);
-      EXPECT_EQ(parallel.detections[i].centre_camera, serial.detections[i].centre_camera);
-    }
+    settings.threads = threads;
+    expect_same(Detector(toy_forest(), settings).detect(frame), serial);
   }
+  settings.readable = true;
+  expect_same(Detector(toy_forest(), settings).detect(frame), serial);
 }
 
 TEST(Detector, FramesOfWrongSizesAreRefused) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace houghstream {
 namespace {
 
@@ -21,6 +23,7 @@ Forest centre_forest() {
   forest.leaf_classes.push_back(entry);
   forest.votes.push_back({Eigen::Vector3f::Zero(), 1.0F});
   forest.leaf_views = {{0, 0.25F}, {1, 0.75F}};
+  note_certainty(forest);
   return forest;
 }
 
@@ -39,7 +42,9 @@ std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
   const Forest forest = centre_forest();
   const std::vector<std::int32_t> leaves(patches.size(), 0);
   PatchBeliefs beliefs(forest, 1, 0.0F);
-  beliefs.note(0, {0, patches.size(), 0}, leaves.data());
+  std::vector<std::uint32_t> all(patches.size());
+  std::iota(all.begin(), all.end(), 0U);
+  beliefs.note({0, all.size(), all.data(), leaves.data()});
   const HoughSpace space = cast_votes(forest, 0, patches, beliefs, kCamera, {});
   return find_maxima(forest, space, patches, kCamera, least_mass, {});
 }

@@ -43,6 +43,7 @@ TEST(Profiles, GallIsTheOriginalHoughForest) {
   EXPECT_EQ(gall.training.scoring, Scoring::kVotes);
   EXPECT_EQ(gall.training.alone_share, 0.0);
   EXPECT_EQ(gall.detection.stride, 1);
+  EXPECT_EQ(gall.detection.first_trees, 0);
   std::vector<float> sizes;
   for (const FeatureLevel& level : feature_levels(gall.features)) sizes.push_back(level.scale);
   EXPECT_EQ(sizes, (std::vector<float>{0.33F, 0.66F, 1.0F, 1.66F, 2.33F}));
@@ -56,12 +57,16 @@ TEST(Profiles, PaperHasPatchesOfTenPixelsAtOneMetre) {
   EXPECT_EQ(paper.features.handling, ScaleHandling::kDepthNormalised);
   EXPECT_EQ(feature_levels(paper.features).size(), 1U);
   EXPECT_EQ(paper.detection.stride, 1);
+  EXPECT_EQ(paper.detection.patch_spacing, 0.0F);
+  EXPECT_EQ(paper.detection.first_trees, 0);
 }
 
 TEST(Profiles, RealtimeLooksAtFewerPixelsThanPaper) {
   const Profile realtime = make_profile("realtime");
   EXPECT_LT(realtime.features.image_scale, make_profile("paper").features.image_scale);
   EXPECT_EQ(realtime.detection.stride, 2);
+  EXPECT_GT(realtime.detection.patch_spacing, 0.0F);
+  EXPECT_GT(realtime.detection.first_trees, 0);
   EXPECT_EQ(realtime.features.families, make_profile("paper").features.families);
   EXPECT_EQ(feature_levels(realtime.features).size(), 2U);
 }
@@ -108,6 +113,8 @@ TEST(ForestsSettings, AreThoseItWasTrainedBy) {
       const DetectionSettings settings = detection_settings(forest_of(profile));
       EXPECT_EQ(settings.vote_sigma, profile.detection.vote_sigma) << name << " " << handling;
       EXPECT_EQ(settings.stride, profile.detection.stride);
+      EXPECT_EQ(settings.patch_spacing, profile.detection.patch_spacing);
+      EXPECT_EQ(settings.first_trees, profile.detection.first_trees);
       EXPECT_EQ(settings.threshold, profile.detection.threshold);
       EXPECT_EQ(settings.min_mass_share, profile.detection.min_mass_share);
       EXPECT_EQ(settings.min_class_share, profile.detection.min_class_share);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace houghstream {
 namespace {
@@ -20,6 +21,7 @@ Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
   entry.vote_count = 1;
   forest.leaf_classes.push_back(entry);
   forest.votes.push_back({offset, 1.0F});
+  note_certainty(forest);
   return forest;
 }
 
@@ -29,7 +31,9 @@ HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points
   patches.x.resize(points.size());
   const std::vector<std::int32_t> leaves(points.size() * forest.roots.size(), 0);
   PatchBeliefs beliefs(forest, 1, settings.min_class_share);
-  beliefs.note(0, {0, points.size(), 0}, leaves.data());
+  std::vector<std::uint32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0U);
+  beliefs.note({0, all.size(), all.data(), leaves.data()});
   return cast_votes(forest, 0, patches, beliefs, kCamera, settings);
 }
 

@@ -27,6 +27,7 @@ TEST(SearchOptions, WithoutOptionsAForestIsSearchedAsItsProfileSays) {
     const DetectionSettings expected = make_profile(name).detection;
     const DetectionSettings settings = parsed("").settings_for(forest_of(name));
     EXPECT_EQ(settings.stride, expected.stride) << name;
+    EXPECT_EQ(settings.patch_spacing, expected.patch_spacing) << name;
     EXPECT_EQ(settings.threshold, expected.threshold) << name;
     EXPECT_EQ(settings.min_mass_share, expected.min_mass_share) << name;
     EXPECT_EQ(settings.min_class_share, expected.min_class_share) << name;
@@ -42,6 +43,7 @@ TEST(SearchOptions, WhatIsAskedForReplacesTheProfilesOwn) {
   const DetectionSettings settings = options.settings_for(forest_of("gall"));
   EXPECT_EQ(settings.threads, 3);
   EXPECT_EQ(settings.stride, 4);
+  EXPECT_EQ(settings.patch_spacing, 0.0F);
   EXPECT_EQ(settings.threshold, 0.25F);
   EXPECT_EQ(settings.min_mass_share, 0.07F);
   EXPECT_TRUE(settings.readable);

@@ -17,6 +17,7 @@ struct SearchOptions {
 
   DetectionSettings settings_for(const Forest& forest) const {
     DetectionSettings settings = detection_settings(forest);
+    if (stride) settings.patch_spacing = 0.0F;  // what was asked for is a patch at every so many-th pixel
     settings.stride = stride.value_or(settings.stride);
     settings.threshold = threshold.value_or(settings.threshold);
     settings.min_mass_share = min_mass_share.value_or(settings.min_mass_share);
@@ -29,7 +30,8 @@ struct SearchOptions {
 inline void add_search_options(CLI::App& app, SearchOptions& options) {
   app.add_option("--threads", options.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--threshold", options.threshold, "smallest score that is reported; default: the profile's");
-  app.add_option("--stride", options.stride, "patch offset, working pixels; default: the profile's")
+  app.add_option("--stride", options.stride,
+                 "patch offset, working pixels, whatever the distance; default: the profile's")
       ->check(CLI::Range(1, 64));
 }
 

@@ -47,6 +47,17 @@ TEST(PixelTest, AloneItComparesOnePixelOnly) {
   EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 200);
 }
 
+TEST(LeafCertainty, IsWhatALeafKnowsBest) {
+  Forest forest;
+  forest.leaves = {0, 2, 2, 3};
+  forest.leaf_classes.resize(3);
+  forest.leaf_classes[0].probability = 0.2F;
+  forest.leaf_classes[1].probability = 0.7F;
+  forest.leaf_classes[2].probability = 0.1F;
+  note_certainty(forest);
+  EXPECT_EQ(forest.leaf_certainty, (std::vector<float>{0.7F, 0.0F, 0.1F}));
+}
+
 TEST(FindLeaf, WalksRightFromTheThresholdOn) {
   Forest forest;
   forest.roots = {0};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "detector/features/features.hpp"
@@ -12,21 +13,25 @@ namespace houghstream {
 namespace {
 
 /// All leaves of a grid, patch by patch, as find_leaves and as find_leaves_readably tell them; 0 threads = readably.
+/// -1 for patches that were given up.
 std::vector<std::int32_t> leaves_of(const Forest& forest, const std::vector<FeatureImage>& features,
-                                    const PatchGrid& patches, int threads) {
+                                    const PatchGrid& patches, int threads, const EarlyEnd& early_end = {}) {
   const std::size_t trees = forest.roots.size();
   const std::vector<PatchRun> runs = patch_runs(patches);
   std::vector<std::int32_t> leaves(patches.size() * trees, -1);
-  const auto visit = [&](std::size_t run, const std::int32_t* of_run) {
-    for (std::size_t i = 0; i < runs[run].count * trees; ++i) {
-      const std::size_t patch = runs[run].first + i % runs[run].count;
-      leaves[patch * trees + i / runs[run].count] = of_run[i];
+  const auto visit = [&](const RunLeaves& seen) {
+    for (std::size_t i = 0; i < seen.count; ++i) {
+      EXPECT_GE(seen.patches[i], runs[seen.run].first);
+      EXPECT_LT(seen.patches[i], runs[seen.run].first + runs[seen.run].count);
+      for (std::size_t tree = 0; tree < trees; ++tree) {
+        leaves[seen.patches[i] * trees + tree] = seen.leaves[tree * seen.count + i];
+      }
     }
   };
   if (threads > 0) {
-    find_leaves(forest, features, patches, runs, threads, visit);
+    find_leaves(forest, features, patches, runs, early_end, threads, visit);
   } else {
-    find_leaves_readably(forest, features, patches, runs, visit);
+    find_leaves_readably(forest, features, patches, runs, early_end, visit);
   }
   return leaves;
 }
@@ -50,6 +55,27 @@ class Traversal : public ::testing::Test {
  protected:
   Traversal() { toy::put_tile(1, 150, 100, 0.8, room); }
 
+  /// Compares who goes on after `trees` trees, and where to, with the forest's leaves; some but not all do where the
+  /// share is neither 0 nor large.
+  void expect_given_up_after(int trees, float share, const std::vector<FeatureImage>& features,
+                             const PatchGrid& patches) const {
+    const std::size_t all = forest.roots.size();
+    std::vector<std::int32_t> expected = leaves_of(forest, features, patches, 1);
+    std::size_t given_up = 0;
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      float sum = 0.0F;
+      for (int tree = 0; tree < trees; ++tree) sum += forest.leaf_certainty[expected[p * all + tree]];
+      if (sum >= share * static_cast<float>(trees)) continue;
+      ++given_up;
+      std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(p * all), all, -1);
+    }
+    EXPECT_EQ(given_up > 0, share > 0.0F);
+    EXPECT_LT(given_up, patches.size());
+    for (const int threads : {0, 1, 2, 3}) {
+      EXPECT_EQ(leaves_of(forest, features, patches, threads, {trees, share}), expected) << threads << " threads";
+    }
+  }
+
   const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   RgbdFrame room = toy::room(5);
 };
@@ -59,12 +85,13 @@ TEST_F(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
   PatchGrid patches;
   for (const FeatureLevel& level : feature_levels(forest.features)) {
     const WorkingFrame frame = make_working_frame(room, level, forest.features);
-    add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, 2, patches);
+    add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, {2, 0.0F}, patches);
     features.push_back(compute_features(frame, forest.features, 2));
   }
   ASSERT_GT(patches.size(), 4000U);
   ASSERT_TRUE(patches.squares.empty());
   expect_leaves_of_find_leaf(forest, features, patches);
+  for (const float share : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, share, features, patches);
 }
 
 TEST_F(Traversal, SoDoPatchesAtEveryPixelAndThoseWithGaps) {
@@ -79,45 +106,15 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelAndThoseWithGaps) {
     add_patches_everywhere(frame, level, pixels, stride, patches);
     EXPECT_EQ(patches.squares.empty(), stride > 1);
     expect_leaves_of_find_leaf(forest, features, patches);
+    expect_given_up_after(1, 0.02F, features, patches);
   }
 }
 
-TEST(PatchGrid, ItsSquaresHoldAllPatchesRowByRow) {
-  WorkingFrame frame;
-  frame.filled_depth = cv::Mat(40, 70, CV_32FC1, cv::Scalar(1.0));
-  PatchGrid grid;
-  add_patches_everywhere(frame, {}, PatchSettings{}, 1, grid);
-  ASSERT_EQ(grid.size(), 40U * 70U);
-  ASSERT_EQ(grid.squares.size(), 6U);
-  std::size_t next = 0;
-  for (const PatchRun& square : patch_runs(grid)) {
-    EXPECT_EQ(square.first, next);
-    for (std::size_t i = 0; i < square.count; ++i, ++next) {
-      EXPECT_EQ(grid.x[next], grid.x[square.first] + static_cast<int>(i) % square.width);
-      EXPECT_EQ(grid.y[next], grid.y[square.first] + static_cast<int>(i) / square.width);
-    }
-  }
-  EXPECT_EQ(next, grid.size());
-}
-
-TEST(PatchGrid, StandsOnDepthThatItsLevelHolds) {
-  WorkingFrame frame;
-  frame.camera = {64, 48, 60, 60, 31.5, 23.5};
-  frame.filled_depth = cv::Mat(48, 64, CV_32FC1, cv::Scalar(2.0));
-  frame.filled_depth(cv::Rect(0, 0, 32, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
-  PatchGrid grid;
-  add_patches(frame, {0.5F, 1.0F, 0.0F, 1.9F}, 0, PatchSettings{}, 2, grid);
-  EXPECT_EQ(grid.size(), 0U);
-  add_patches(frame, {0.5F, 1.0F, 1.9F, 3.0F}, 1, PatchSettings{}, 2, grid);
-  ASSERT_EQ(grid.size(), 16U * 24U);
-  EXPECT_GE(*std::min_element(grid.x.begin(), grid.x.end()), 32);
-  EXPECT_EQ(grid.level[0], 1);
-  const Eigen::Vector3d expected = frame.camera.backproject(grid.x[0], grid.y[0], 2.0);
-  EXPECT_LT((grid.point_camera[0].cast<double>() - expected).norm(), 1e-6);
-  // Two working pixels are four frame pixels; neighbours touch.
-  EXPECT_EQ(grid.cell_px[0].width, 4.0F);
-  EXPECT_EQ(grid.cell_px[1].x, grid.cell_px[0].br().x);
-  EXPECT_NEAR(grid.area[0], 2.0 * 2.0 * 2.0 * 2.0 / 60.0 / 60.0, 1e-6);
+TEST_F(Traversal, NobodyIsGivenUpAfterTheLastTree) {
+  const int trees = static_cast<int>(forest.roots.size());
+  EXPECT_TRUE((EarlyEnd{trees - 1, 0.1F}.is_used(forest)));
+  EXPECT_FALSE((EarlyEnd{trees, 0.1F}.is_used(forest)));
+  EXPECT_FALSE((EarlyEnd{0, 0.1F}.is_used(forest)));
 }
 
 TEST(FeatureLevels, MeetWithoutAGap) {

@@ -1,0 +1,152 @@
+#include "detector/forest/patch_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "detector/forest/pixel_test.hpp"
+#include "detector/forest/square_forest.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Visits a place every `stride` pixels, square by square: the patches of a square share their pixels, so that a
+/// square's worth of planes stays in the cache from tree to tree.
+template <typename Visit>
+void for_places(cv::Size size, int stride, const Visit& visit) {
+  const int side = kSquareSide * stride;
+  for (int top = stride / 2; top < size.height; top += side) {
+    for (int left = stride / 2; left < size.width; left += side) {
+      for (int y = top; y < std::min(size.height, top + side); y += stride) {
+        for (int x = left; x < std::min(size.width, left + side); x += stride) visit(x, y);
+      }
+    }
+  }
+}
+
+constexpr int kThinnings = 8;  // at most: then patches stand 16 times as far apart
+
+/// How often the places of a grid may be thinned out before this one goes. What is left stands by turns in the order of
+/// a chess board's black fields and in rows and columns.
+int thinnings_survived(int column, int row) {
+  int halvings = 0;
+  while (2 * halvings < kThinnings && ((column | row) >> halvings & 1) == 0) ++halvings;
+  const bool black = ((column ^ row) >> halvings & 1) == 0;
+  return std::min(kThinnings, 2 * halvings + (black ? 1 : 0));
+}
+
+/// How often places are thinned out at a depth.
+class Thinning {
+ public:
+  Thinning(const PatchSpacing& spacing, const Camera& camera) {
+    const double step_per_metre = spacing.stride * camera.metres_per_px(1.0);
+    for (int t = 0; t < kThinnings; ++t) {
+      farthest_[t] = static_cast<float>(spacing.metres / (step_per_metre * std::pow(2.0, 0.5 * (t + 1))));
+    }
+  }
+
+  /// Of a place that survives so many: whether it is still there at this depth.
+  bool leaves(int survived, float z) const { return survived == kThinnings || z > farthest_[survived]; }
+
+  int count(float z) const {
+    int t = 0;
+    while (t < kThinnings && z <= farthest_[t]) ++t;
+    return t;
+  }
+
+ private:
+  std::array<float, kThinnings> farthest_{};  ///< depth up to which places are thinned out once more, metres
+};
+
+void reserve_places(cv::Size size, int stride, PatchGrid& grid) {
+  const auto along = [&](int pixels) { return static_cast<std::size_t>((pixels + stride - 1) / stride); };
+  const std::size_t count = grid.size() + along(size.width) * along(size.height);
+  grid.level.reserve(count);
+  grid.x.reserve(count);
+  grid.y.reserve(count);
+  grid.scale.reserve(count);
+  grid.cell_px.reserve(count);
+}
+
+/// `side`: of the part of the picture that the patch stands for, working pixels.
+void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index, float side, PatchGrid& grid) {
+  const float to_frame = 1.0F / level.scale;
+  const float side_px = side * to_frame;
+  grid.level.push_back(level_index);
+  grid.x.push_back(static_cast<std::int16_t>(x));
+  grid.y.push_back(static_cast<std::int16_t>(y));
+  const float left = (static_cast<float>(x) + 0.5F) * to_frame - 0.5F * side_px;
+  const float top = (static_cast<float>(y) + 0.5F) * to_frame - 0.5F * side_px;
+  grid.cell_px.emplace_back(left, top, side_px, side_px);
+}
+
+/// Where for_places goes from square to square, at every pixel.
+void list_squares(cv::Size size, PatchGrid& grid) {
+  std::size_t first = 0;
+  for (int top = 0; top < size.height; top += kSquareSide) {
+    for (int left = 0; left < size.width; left += kSquareSide) {
+      const int width = std::min(kSquareSide, size.width - left);
+      const int height = std::min(kSquareSide, size.height - top);
+      const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+      grid.squares.push_back({first, count, width});
+      first += count;
+    }
+  }
+}
+
+}  // namespace
+
+void PatchGrid::clear() {
+  level.clear();
+  x.clear();
+  y.clear();
+  scale.clear();
+  point_camera.clear();
+  cell_px.clear();
+  area.clear();
+  squares.clear();
+}
+
+void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
+                 const PatchSettings& patch, const PatchSpacing& spacing, PatchGrid& grid) {
+  const Thinning thinning(spacing, frame.camera);
+  std::array<float, kThinnings + 1> sides{};  // working pixels between patches
+  for (int t = 0; t <= kThinnings; ++t) sides[t] = static_cast<float>(spacing.stride * std::pow(2.0, 0.5 * t));
+  const auto metres_per_px = static_cast<float>(frame.camera.metres_per_px(1.0));
+  for_places(frame.filled_depth.size(), spacing.stride, [&](int x, int y) {
+    const float z = frame.filled_depth.at<float>(y, x);
+    if (!level.holds(z) || !thinning.leaves(thinnings_survived(x / spacing.stride, y / spacing.stride), z)) return;
+    const float side = sides[thinning.count(z)];
+    const float side_metres = side * metres_per_px * z;
+    add_place(x, y, level, level_index, side, grid);
+    grid.scale.push_back(patch_scale(patch, frame.camera.fx, z));
+    grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
+    grid.area.push_back(side_metres * side_metres);
+  });
+}
+
+void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
+                            int stride, PatchGrid& grid) {
+  const std::int32_t scale = limited_scale(patch, patch.unit);
+  reserve_places(frame.filled_depth.size(), stride, grid);
+  for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
+    add_place(x, y, level, 0, static_cast<float>(stride), grid);
+    grid.scale.push_back(scale);
+  });
+  if (stride == 1) list_squares(frame.filled_depth.size(), grid);
+}
+
+std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
+  if (!patches.squares.empty()) return patches.squares;
+  constexpr std::size_t kPatches = 256;
+  std::vector<PatchRun> runs;
+  for (std::size_t begin = 0; begin < patches.size();) {
+    std::size_t end = begin;
+    while (end < patches.size() && end - begin < kPatches && patches.level[end] == patches.level[begin]) ++end;
+    runs.push_back({begin, end - begin, 0});
+    begin = end;
+  }
+  return runs;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+#include "detector/features/working_frame.hpp"
+
+namespace houghstream {
+
+/// Patches that are looked at together: all of one level, one after another in the grid.
+struct PatchRun {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  int width = 0;  ///< of a square: rows of so many neighbours of one scale, one at every pixel; else 0
+};
+
+/// The patches of a frame, level by level.
+struct PatchGrid {
+  std::vector<std::uint8_t> level;  ///< FeatureLevel whose FeatureImage the patch is looked at in
+  std::vector<std::int16_t> x;      ///< working pixels of its level
+  std::vector<std::int16_t> y;
+  std::vector<std::int32_t> scale;            ///< patch_scale
+  std::vector<Eigen::Vector3f> point_camera;  ///< the surface point seen at the centre, metres
+  std::vector<cv::Rect2f> cell_px;            ///< the part of the frame that the patch stands for, frame pixels
+  std::vector<float> area;                    ///< the same on the surface, facing the camera, square metres
+  std::vector<PatchRun> squares;              ///< all patches, or none where they have gaps or several scales
+
+  std::size_t size() const { return x.size(); }
+  void clear();  ///< keeps the memory
+};
+
+/// How far apart patches stand, see DetectionSettings.
+struct PatchSpacing {
+  int stride = 1;       ///< working pixels
+  float metres = 0.0F;  ///< on a surface that faces the camera; 0 = by the stride alone
+};
+
+/// Appends the patches whose depth the level holds, square by square. They stand `stride` working pixels apart (paper,
+/// Section 5.1.3); where that is nearer than `metres` on the surface, every other one is left out, again and again, as
+/// long as the rest stand no farther apart: each time by a factor of sqrt(2). Which ones are left out depends on the
+/// place and the depth there only.
+void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
+                 const PatchSettings& patch, const PatchSpacing& spacing, PatchGrid& grid);
+
+/// For a level of a scale space: a patch every `stride` pixels, whatever its depth; without points and areas.
+void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
+                            int stride, PatchGrid& grid);
+
+/// The grid in runs small enough for their pixels to stay in the cache from tree to tree: its squares where it has
+/// some.
+std::vector<PatchRun> patch_runs(const PatchGrid& patches);
+
+}  // namespace houghstream
