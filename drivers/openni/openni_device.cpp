@@ -6,6 +6,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <deque>
+#include <fstream>
 #include <mutex>
 #include <thread>
 
@@ -129,7 +130,9 @@ struct OpenniDevice::State {
     device.close();
   }
 
-  void open() { check_openni(device.open(uri.c_str()), uri + " cannot be opened"); }
+  void open() {
+    check_openni(device.open(uri.c_str()), uri + (is_file ? ": no whole .oni recording" : ": cannot be opened"));
+  }
 
   void create_streams() {
     for (const Sensor sensor : {Sensor::kDepth, Sensor::kColour}) {
@@ -179,6 +182,8 @@ struct OpenniDevice::State {
   }
 
   void record(const std::string& file, bool jpeg) {
+    // OpenNI2 would crash later.
+    require(std::ofstream(file).good(), "{}: cannot be written, expected a place for a recording", file);
     check_openni(recorder.create(file.c_str()), file + ": cannot be recorded to");
     check_openni(recorder.attach(depth, false), file + ": depth");
     check_openni(recorder.attach(colour, jpeg), file + ": colour");

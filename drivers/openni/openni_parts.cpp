@@ -13,8 +13,11 @@ using Sensor = SensorImage::Sensor;
 
 std::string openni_error() {
   std::string text = openni::OpenNI::getExtendedError();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.substr(0, text.find_last_not_of(' ') + 1);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "OpenNI2 says no reason"
+                                    : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
 std::int64_t host_now_us() {

@@ -91,9 +91,19 @@ TEST(OniSource, BadFilesAreRefused) {
   write_text(camera.folder() / "text.oni", "no recording");
   EXPECT_THROW(open_oni_source((camera.folder() / "text.oni").string(), CameraOptions{}), InputError);
   EXPECT_THROW(open_oni_source("houghstream-virtual://1", CameraOptions{}), InputError) << "a camera, no file";
+  std::filesystem::copy(recording.file, camera.folder() / "cut.oni");
+  std::filesystem::resize_file(camera.folder() / "cut.oni", std::filesystem::file_size(recording.file) / 5);
+  EXPECT_THROW(open_oni_source((camera.folder() / "cut.oni").string(), CameraOptions{}), InputError);
   CameraOptions options;
   options.camera = Camera{640, 480, 525.0, 525.0, 320.0, 240.0};
   EXPECT_THROW(open_oni_source(recording.file.string(), options), InputError) << "another size";
+}
+
+TEST(OniSource, APlaceThatCannotBeWrittenIsAnError) {
+  const VirtualCamera camera("oni_nowhere", "");
+  CameraOptions options;
+  options.record = (camera.folder() / "none" / "a.oni").string();
+  EXPECT_THROW(open_camera_source("", options, {}), InputError);
 }
 
 }  // namespace
