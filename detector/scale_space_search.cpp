@@ -28,7 +28,8 @@ SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureL
   const WorkingFrame working = make_working_frame(frame, level, forest.features);
   clock.mark("detect.resize");
   std::vector<FeatureImage> features;
-  features.push_back(compute_features(working, forest.features, settings.threads));
+  features.push_back(settings.readable ? compute_features_readably(working, forest.features)
+                                       : compute_features(working, forest.features, settings.threads));
   clock.mark("detect.features");
   SeenLevel seen;
   seen.camera = working.camera;

@@ -23,6 +23,17 @@ struct ZipDeleter {
 // deflate cannot shrink more than this (zlib's technical page), so that a small stream cannot claim a large image.
 constexpr std::size_t kMaxDeflateRatio = 1032;
 
+void unzip_into(ByteView zipped, std::uint8_t* raw, std::size_t raw_size) {
+  static thread_local const std::unique_ptr<libdeflate_decompressor, ZipDeleter> handle(
+      libdeflate_alloc_decompressor());  // kept from frame to frame
+  // With no place for the unpacked size, anything but exactly raw_size bytes is an error.
+  const libdeflate_result result =
+      libdeflate_zlib_decompress(handle.get(), zipped.data, zipped.size, raw, raw_size, nullptr);
+  require(result != LIBDEFLATE_BAD_DATA, "zlib data of {} bytes is damaged or cut", zipped.size);
+  require(result == LIBDEFLATE_SUCCESS, "zlib data of {} bytes unpacks to {} than the {} bytes expected", zipped.size,
+          result == LIBDEFLATE_SHORT_OUTPUT ? "fewer" : "more", raw_size);
+}
+
 }  // namespace
 
 void check_image_size(std::int64_t width, std::int64_t height) {
@@ -77,20 +88,21 @@ std::vector<std::uint8_t> zip_depth(const cv::Mat& depth_mm, int level) {
   return zipped;
 }
 
+std::vector<std::uint8_t> unzip(ByteView zipped, std::size_t raw_size) {
+  require(zipped.size >= raw_size / kMaxDeflateRatio, "zlib data of {} bytes, too few for {} bytes", zipped.size,
+          raw_size);
+  std::vector<std::uint8_t> raw(raw_size);
+  unzip_into(zipped, raw.data(), raw_size);
+  return raw;
+}
+
 cv::Mat unzip_depth(ByteView zipped, int width, int height) {
   check_image_size(width, height);
   const std::size_t raw_size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 2;
   require(zipped.size >= raw_size / kMaxDeflateRatio, "zlib data of {} bytes, too few for depth of {}x{} pixels",
           zipped.size, width, height);
   cv::Mat depth_mm(height, width, CV_16UC1);
-  static thread_local const std::unique_ptr<libdeflate_decompressor, ZipDeleter> unzip(
-      libdeflate_alloc_decompressor());  // kept from frame to frame
-  // With no place for the unpacked size, anything but exactly raw_size bytes is an error.
-  const libdeflate_result result =
-      libdeflate_zlib_decompress(unzip.get(), zipped.data, zipped.size, depth_mm.data, raw_size, nullptr);
-  require(result != LIBDEFLATE_BAD_DATA, "zlib data of {} bytes is damaged or cut", zipped.size);
-  require(result == LIBDEFLATE_SUCCESS, "zlib data of {} bytes unpacks to {} than the {} bytes of {}x{} depth pixels",
-          zipped.size, result == LIBDEFLATE_SHORT_OUTPUT ? "fewer" : "more", raw_size, width, height);
+  unzip_into(zipped, depth_mm.data, raw_size);
   return depth_mm;
 }
 

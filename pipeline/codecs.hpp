@@ -23,8 +23,11 @@ cv::Mat decode_jpeg(ByteView jpeg, int width, int height);
 /// CV_16UC1 to a zlib stream, `level` 1 to 9.
 std::vector<std::uint8_t> zip_depth(const cv::Mat& depth_mm, int level);
 
-/// A zlib stream to CV_16UC1 of exactly this size. Throws InputError when it is damaged, cut or of another size;
-/// never unpacks more than that size.
+/// A zlib stream to exactly `raw_size` bytes. Throws InputError when it is damaged, cut or of another size; never
+/// unpacks more than that.
+std::vector<std::uint8_t> unzip(ByteView zipped, std::size_t raw_size);
+
+/// A zlib stream to CV_16UC1 of exactly this size. Throws InputError as unzip() does.
 cv::Mat unzip_depth(ByteView zipped, int width, int height);
 
 }  // namespace houghstream

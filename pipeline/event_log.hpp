@@ -48,14 +48,36 @@ class LogReader {
   /// The next event, or nothing at the end. Throws InputError where the log is cut or damaged.
   std::optional<LogEvent> next();
 
+  /// What skip_damage() passed over.
+  struct Damage {
+    std::uint64_t bytes = 0;
+    bool last_event_too = false;  ///< the event that next() returned last was damaged itself: it held later ones
+  };
+
+  /// After next() has thrown: goes to the next place that is an event, or to the end. Throws InputError where the file
+  /// cannot be read.
+  Damage skip_damage();
+
  private:
+  /// Lengths that an event's header states.
+  struct Header {
+    std::int64_t timestamp = 0;
+    std::uint32_t channel_bytes = 0;
+    std::uint32_t data_bytes = 0;
+  };
+  Header read_header();
+  bool is_event_at(std::uint64_t position);
+  std::optional<std::uint64_t> find_event(std::uint64_t from);
+  void seek(std::uint64_t position);
+
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::string file_;
   std::unique_ptr<std::FILE, Closer> in_;
   std::uint64_t size_ = 0;
-  std::uint64_t position_ = 0;
+  std::uint64_t position_ = 0;       // of the next event
+  std::uint64_t last_position_ = 0;  // of the event returned last
   std::int64_t events_ = 0;
 };
 

@@ -16,7 +16,9 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "depth travels little-e
 namespace houghstream {
 namespace {
 
-void add_metadata(image_t& image, const std::string& key, std::vector<std::uint8_t> value) {
+void add_metadata(images_t& message, const std::string& key, std::vector<std::uint8_t> value) {
+  require(!message.images.empty(), "frame {}: no images", message.utime);
+  image_t& image = message.images[0];
   image_metadata_t entry;
   entry.key = key;
   entry.n = static_cast<std::int32_t>(value.size());
@@ -114,10 +116,12 @@ cv::Mat decode_colour(const image_t& image) {
       return decode_jpeg({image.data.data(), image.data.size()}, image.width, image.height);
     case image_t::PIXEL_FORMAT_BGR: return unpack_raw(image, CV_8UC3);
     case image_t::PIXEL_FORMAT_RGB: cv::cvtColor(unpack_raw(image, CV_8UC3), bgr, cv::COLOR_RGB2BGR); return bgr;
+    case image_t::PIXEL_FORMAT_RGBA: cv::cvtColor(unpack_raw(image, CV_8UC4), bgr, cv::COLOR_RGBA2BGR); return bgr;
+    case image_t::PIXEL_FORMAT_BGRA: cv::cvtColor(unpack_raw(image, CV_8UC4), bgr, cv::COLOR_BGRA2BGR); return bgr;
     case image_t::PIXEL_FORMAT_GRAY: cv::cvtColor(unpack_raw(image, CV_8UC1), bgr, cv::COLOR_GRAY2BGR); return bgr;
     default: break;
   }
-  fail("colour of pixel format {}, expected RGB, BGR, GRAY or MJPEG", image.pixelformat);
+  fail("colour of pixel format {}, expected RGB, BGR, RGBA, BGRA, GRAY or MJPEG", image.pixelformat);
 }
 
 cv::Mat decode_depth(const image_t& image, bool zipped) {
@@ -141,17 +145,10 @@ const image_metadata_t* find_metadata(const images_t& message, const std::string
   return nullptr;
 }
 
-Camera camera_of(const images_t& message, const std::optional<Camera>& fallback_camera) {
-  const image_metadata_t* entry = find_metadata(message, metadata::kCamera);
-  if (entry == nullptr) {
-    require(fallback_camera.has_value(), "no camera in its metadata; give --camera WIDTHxHEIGHT,fx,fy,cx,cy");
-    return *fallback_camera;
-  }
-  camera_t stored{};
-  const int size = static_cast<int>(entry->value.size());
-  require(stored.decode(entry->value.data(), 0, size) == size, "metadata '{}' of {} bytes is not a camera_t",
-          metadata::kCamera, size);
-  return {stored.width, stored.height, stored.fx, stored.fy, stored.cx, stored.cy};
+Camera camera_or(const images_t& message, const std::optional<Camera>& fallback_camera) {
+  const std::optional<Camera> own = camera_of(message);
+  require(own || fallback_camera, "no camera in its metadata; give --camera WIDTHxHEIGHT,fx,fy,cx,cy");
+  return own ? *own : *fallback_camera;
 }
 
 std::vector<StageTime> stages_of(const images_t& message) {
@@ -168,25 +165,51 @@ std::vector<StageTime> stages_of(const images_t& message) {
   return stages;
 }
 
-RgbdFrame decode_frame(const images_t& message, const std::optional<Camera>& fallback_camera) {
+/// The colour and the depth image of a message.
+struct FoundImages {
+  const image_t& colour;
+  const image_t& depth;
+  bool zipped_depth;
+};
+
+FoundImages find_images(const images_t& message) {
   const std::size_t colour = find_image(message, {images_t::LEFT}, "colour (LEFT)");
   const std::size_t depth = find_image(message, {images_t::DEPTH_MM, images_t::DEPTH_MM_ZIPPED}, "DEPTH_MM");
-  const image_t& colour_message = message.images[colour];
-  const image_t& depth_message = message.images[depth];
-  require(colour_message.width == depth_message.width && colour_message.height == depth_message.height,
-          "colour of {}x{} and depth of {}x{} pixels, expected depth registered to colour", colour_message.width,
-          colour_message.height, depth_message.width, depth_message.height);
+  const FoundImages found{message.images[colour], message.images[depth],
+                          message.image_types[depth] == images_t::DEPTH_MM_ZIPPED};
+  require(found.colour.width == found.depth.width && found.colour.height == found.depth.height,
+          "colour of {}x{} and depth of {}x{} pixels, expected depth registered to colour", found.colour.width,
+          found.colour.height, found.depth.width, found.depth.height);
+  return found;
+}
+
+ImagePair decode_images(const images_t& message) {
+  const FoundImages found = find_images(message);
+  return {decode_colour(found.colour), decode_depth(found.depth, found.zipped_depth)};
+}
+
+RgbdFrame decode_frame(const images_t& message, const std::optional<Camera>& fallback_camera) {
+  const FoundImages found = find_images(message);
   RgbdFrame frame;
   frame.utime = message.utime;
-  frame.camera = camera_of(message, fallback_camera);
+  frame.camera = camera_or(message, fallback_camera);
   frame.stages = stages_of(message);
-  const bool zipped = message.image_types[depth] == images_t::DEPTH_MM_ZIPPED;
   parallel_for(2, 2, [&](int image) {
-    if (image == 0) frame.colour = decode_colour(colour_message);
-    if (image == 1) frame.depth = depth_from_millimetres(decode_depth(depth_message, zipped));
+    if (image == 0) frame.colour = decode_colour(found.colour);
+    if (image == 1) frame.depth = depth_from_millimetres(decode_depth(found.depth, found.zipped_depth));
   });
   check_frame(frame, "its camera");
   return frame;
+}
+
+/// What `decode` gives of a message; its errors name the frame.
+template <typename Decode>
+auto decode_named(const images_t& message, const Decode& decode) {
+  try {
+    return decode();
+  } catch (const InputError& error) {
+    fail("frame {}: {}", message.utime, error.what());
+  }
 }
 
 }  // namespace
@@ -199,19 +222,38 @@ images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64
   const std::int16_t depth_type = format.zip_depth ? images_t::DEPTH_MM_ZIPPED : images_t::DEPTH_MM;
   message.image_types = {images_t::LEFT, depth_type};
   message.images = {colour_image(frame, format), depth_image(frame, format)};
-  const std::string counter = std::to_string(sequence);
-  add_metadata(message.images[0], metadata::kCamera, encode_camera(frame.camera));
-  add_metadata(message.images[0], metadata::kStages, encode_stages(frame.stages));
-  add_metadata(message.images[0], metadata::kSequence, {counter.begin(), counter.end()});
+  add_camera(message, frame.camera);
+  add_metadata(message, metadata::kStages, encode_stages(frame.stages));
+  add_sequence(message, sequence);
   return message;
 }
 
+void add_camera(images_t& message, const Camera& camera) {
+  check_camera(camera, "camera to send");
+  add_metadata(message, metadata::kCamera, encode_camera(camera));
+}
+
+void add_sequence(images_t& message, std::int64_t sequence) {
+  const std::string counter = std::to_string(sequence);
+  add_metadata(message, metadata::kSequence, {counter.begin(), counter.end()});
+}
+
 RgbdFrame frame_from_message(const images_t& message, const std::optional<Camera>& fallback_camera) {
-  try {
-    return decode_frame(message, fallback_camera);
-  } catch (const InputError& error) {
-    fail("frame {}: {}", message.utime, error.what());
-  }
+  return decode_named(message, [&] { return decode_frame(message, fallback_camera); });
+}
+
+ImagePair images_from_message(const images_t& message) {
+  return decode_named(message, [&] { return decode_images(message); });
+}
+
+std::optional<Camera> camera_of(const images_t& message) {
+  const image_metadata_t* entry = find_metadata(message, metadata::kCamera);
+  if (entry == nullptr) return std::nullopt;
+  camera_t stored{};
+  const int size = static_cast<int>(entry->value.size());
+  require(stored.decode(entry->value.data(), 0, size) == size, "metadata '{}' of {} bytes is not a camera_t",
+          metadata::kCamera, size);
+  return Camera{stored.width, stored.height, stored.fx, stored.fy, stored.cx, stored.cy};
 }
 
 std::optional<std::int64_t> sequence_of(const images_t& message) {

@@ -27,9 +27,26 @@ struct WireFormat {
 /// `sequence` counts the source's frames from 0, so that receivers can tell lost ones.
 houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence);
 
-/// Finds colour (LEFT: RGB, BGR, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them and
-/// checks sizes. The camera comes from the metadata, else from `fallback_camera`, else the frame is refused.
+/// For frames that came without: the camera, and the source's frame counter from 0. Throws InputError where the message
+/// has no image to carry them or the camera is absurd.
+void add_camera(houghstream::images_t& message, const Camera& camera);
+void add_sequence(houghstream::images_t& message, std::int64_t sequence);
+
+/// Finds colour (LEFT: RGB, BGR, RGBA, BGRA, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them
+/// and checks sizes. The camera comes from the metadata, else from `fallback_camera`, else the frame is refused.
 RgbdFrame frame_from_message(const houghstream::images_t& message, const std::optional<Camera>& fallback_camera);
+
+/// Colour and depth of a frame as they travel; equal sizes.
+struct ImagePair {
+  cv::Mat colour;    ///< CV_8UC3, BGR
+  cv::Mat depth_mm;  ///< CV_16UC1, 0 = none
+};
+
+/// What frame_from_message() finds, of frames without a camera too.
+ImagePair images_from_message(const houghstream::images_t& message);
+
+/// The camera that the message carries, unchecked, if any. Throws InputError where its bytes are none.
+std::optional<Camera> camera_of(const houghstream::images_t& message);
 
 /// The source's frame counter, if the message carries one.
 std::optional<std::int64_t> sequence_of(const houghstream::images_t& message);

@@ -26,12 +26,20 @@ std::int64_t granted_receive_buffer(std::int64_t asked) {
   return known ? granted / 2 : 0;  // Linux doubles what was asked for, to pay for its bookkeeping: socket(7)
 }
 
+std::int64_t needed_receive_buffer(std::int64_t frame_bytes) {
+  constexpr std::int64_t kRawVgaFrame = 640 * 480 * 5;
+  return (frame_bytes * kNeededReceiveBuffer + kRawVgaFrame - 1) / kRawVgaFrame;
+}
+
+std::string receive_buffer_remedy() {
+  return fmt::format("sudo sysctl -w net.core.rmem_max={} net.core.rmem_default={}", kAskedReceiveBuffer,
+                     kNeededReceiveBuffer);
+}
+
 std::string receive_buffer_advice(std::int64_t granted) {
   if (granted >= kNeededReceiveBuffer) return "";
-  return fmt::format(
-      "receive buffer of {} kB granted, {} kB needed, or frames are lost silently; mend it with: "
-      "sudo sysctl -w net.core.rmem_max={} net.core.rmem_default={}",
-      granted / 1024, kNeededReceiveBuffer / 1024, kAskedReceiveBuffer, kNeededReceiveBuffer);
+  return fmt::format("receive buffer of {} kB granted, {} kB needed, or frames are lost silently; mend it with: {}",
+                     granted / 1024, kNeededReceiveBuffer / 1024, receive_buffer_remedy());
 }
 
 }  // namespace houghstream

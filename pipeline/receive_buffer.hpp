@@ -18,6 +18,12 @@ std::string with_receive_buffer(const std::string& url, std::int64_t bytes);
 /// What the kernel grants when `asked` bytes are asked for, in the same measure; nothing is left open.
 std::int64_t granted_receive_buffer(std::int64_t asked);
 
+/// What a stream of frames of this size needs, bytes: with raw VGA frames kNeededReceiveBuffer.
+std::int64_t needed_receive_buffer(std::int64_t frame_bytes);
+
+/// The command that makes the kernel grant what is asked for, until the next start of the machine.
+std::string receive_buffer_remedy();
+
 /// One line that says what is missing and mends it, or "" where `granted` is enough.
 std::string receive_buffer_advice(std::int64_t granted);
 

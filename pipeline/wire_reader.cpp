@@ -19,6 +19,14 @@ std::uint64_t WireReader::read_big_endian(std::size_t size) {
   return value;
 }
 
+std::int8_t WireReader::read_int8() {
+  return static_cast<std::int8_t>(static_cast<std::uint8_t>(read_big_endian(1)));
+}
+
+std::int16_t WireReader::read_int16() {
+  return static_cast<std::int16_t>(static_cast<std::uint16_t>(read_big_endian(2)));
+}
+
 std::int32_t WireReader::read_int32() {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(read_big_endian(4)));
 }

@@ -19,6 +19,8 @@ class WireReader {
   /// `source` names the message in errors.
   WireReader(ByteView bytes, std::string source) : bytes_(bytes), source_(std::move(source)) {}
 
+  std::int8_t read_int8();
+  std::int16_t read_int16();
   std::int32_t read_int32();
   std::int64_t read_int64();
   /// A count of entries that take at least `least_bytes` each.

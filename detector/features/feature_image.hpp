@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <opencv2/core/types.hpp>
+
+#include "detector/features/line_allocator.hpp"
 
 namespace houghstream {
 
@@ -24,7 +26,9 @@ class FeatureImage {
 
   FeatureImage() = default;
   /// `pixel_stride`: room per pixel, bytes; FeatureLayout says which are used.
-  FeatureImage(int width, int height, int pixel_stride);
+  FeatureImage(int width, int height, int pixel_stride) { reset(width, height, pixel_stride); }
+  /// The same, but keeps its memory: what it held stays there, as other pixels' values where the size is another.
+  void reset(int width, int height, int pixel_stride);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -38,7 +42,9 @@ class FeatureImage {
   PatchView patch(int x, int y, std::int32_t scale) const { return {at(x, y), scale, row_stride(), pixel_stride_}; }
 
   /// Fills the border from the nearest inner pixels.
-  void replicate_border();
+  void replicate_border() { replicate_border({0, 0, width_, height_}); }
+  /// The border beside a part of the picture; nothing where the part lies inside.
+  void replicate_border(cv::Rect part);
 
  private:
   std::size_t offset(int x, int y) const {
@@ -48,7 +54,7 @@ class FeatureImage {
   int width_ = 0;
   int height_ = 0;
   int pixel_stride_ = 0;
-  std::vector<std::uint8_t> data_;
+  LineBytes data_;
 };
 
 }  // namespace houghstream

@@ -1,116 +1,92 @@
 #include "detector/features/features.hpp"
 
 #include <algorithm>
+#include <array>
+#include <climits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/features/surface_curvature.hpp"
-#include "detector/features/surface_histograms.hpp"
-#include "detector/features/surface_honv.hpp"
+#include "detector/features/surface_planes.hpp"
+#include "detector/features/tile_features.hpp"
+#include "detector/features/tile_turn.hpp"
 #include "pipeline/parallel.hpp"
 
 namespace houghstream {
 namespace {
 
-/// Metres to bytes: modulo 256 or limited to 255; 0 where unknown.
-cv::Mat quantised_depth(const cv::Mat& depth, float step, bool wraps) {
-  cv::Mat out(depth.size(), CV_8UC1);
-  for (int y = 0; y < depth.rows; ++y) {
-    const auto* in = depth.ptr<float>(y);
-    auto* row = out.ptr<std::uint8_t>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      const float steps = in[x] / step + 0.5F;
-      const bool known = steps >= 0.0F && steps < 1e6F;  // false for NaN and for what the filters left infinite
-      const std::uint32_t whole = known ? static_cast<std::uint32_t>(steps) : 0U;
-      row[x] = static_cast<std::uint8_t>(wraps ? whole & 255U : std::min(whole, 255U));
-    }
+/// What is kept from frame to frame for its memory.
+struct Scratch {
+  std::vector<cv::Rect> parts;
+  std::vector<cv::Range> columns;  // by row of tiles: from the first wanted one to the last
+  std::array<cv::Mat, 3> lab;
+};
+
+void list_parts(const FeatureTiles& tiles, Scratch& scratch) {
+  scratch.parts.clear();
+  scratch.columns.assign(static_cast<std::size_t>(tiles.rows()), cv::Range(INT_MAX, INT_MIN));
+  for (int row = 0; row < tiles.rows(); ++row) {
+    const std::size_t first = scratch.parts.size();
+    tiles.list_parts(row, kLongestPart, scratch.parts);
+    if (scratch.parts.size() == first) continue;
+    const cv::Rect& last = scratch.parts.back();
+    scratch.columns[static_cast<std::size_t>(row)] = {scratch.parts[first].x, last.x + last.width};
   }
-  return out;
 }
 
-/// Largest and smallest depth around each pixel, as bytes.
-void depth_value_planes(const WorkingFrame& frame, const FeatureSettings& settings, cv::Mat* planes) {
-  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(settings.min_max_px, settings.min_max_px));
-  cv::Mat depth = frame.filled_depth.clone();
-  cv::patchNaNs(depth, 0.0);  // filters order NaN unpredictably
-  cv::Mat largest;
-  cv::Mat smallest;
-  cv::dilate(depth, largest, kernel);
-  cv::erode(depth, smallest, kernel);
-  const bool wraps = settings.handling == ScaleHandling::kDepthNormalised;
-  const float step = wraps ? FeatureLayout::kWrapStep : FeatureLayout::kScaledStep * frame.size_ratio;
-  planes[0] = quantised_depth(largest, step, wraps);
-  planes[1] = quantised_depth(smallest, step, wraps);
-}
-
-/// The planes of a block before minimum and maximum, one per thing it measures.
-std::vector<cv::Mat> base_planes(const FeatureBlock& block, const WorkingFrame& frame, const DepthPlanes& depth,
-                                 const std::vector<cv::Mat>& intensity, int threads) {
-  PointHistogramSettings histograms;
-  histograms.step_px = 4;  // of every pixel they would take minutes a frame
-  switch (block.family) {
-    case kIntensity: return intensity;
-    case kDepthDerivatives: return depth.derivatives;
-    case kDepthHog: return depth.hog;
-    case kHonv: return honv_planes(frame, threads);
-    case kCurvature: return curvature_planes(frame, threads);
-    case kPointHistogram: return pfh_planes(frame, histograms, threads);
-    case kFastHistogram: return fpfh_planes(frame, histograms, threads);
-    case kDepthValue: break;  // its minimum and maximum are taken of metres, not of bytes
+/// Lightness and colour of one row of tiles, as far as it or the rows beside it will look at them.
+void convert_row(const cv::Mat& colour, int row, int margin, Scratch& scratch) {
+  cv::Range columns(INT_MAX, INT_MIN);
+  const auto last = static_cast<int>(scratch.columns.size()) - 1;
+  for (int r = std::max(0, row - 1); r <= std::min(last, row + 1); ++r) {
+    columns.start = std::min(columns.start, scratch.columns[static_cast<std::size_t>(r)].start);
+    columns.end = std::max(columns.end, scratch.columns[static_cast<std::size_t>(r)].end);
   }
-  return {};
-}
-
-/// All planes into one image, pixel by pixel, so that every cache line is written once.
-void interleave(const std::vector<cv::Mat>& planes, int threads, FeatureImage& image) {
-  constexpr int kRows = 16;
-  parallel_for(threads, (image.height() + kRows - 1) / kRows, [&](int band) {
-    std::vector<const std::uint8_t*> rows(planes.size());
-    for (int y = band * kRows; y < std::min(image.height(), (band + 1) * kRows); ++y) {
-      for (std::size_t p = 0; p < planes.size(); ++p) rows[p] = planes[p].ptr<std::uint8_t>(y);
-      std::uint8_t* out = image.at(0, y);
-      for (int x = 0; x < image.width(); ++x, out += image.pixel_stride()) {
-        for (std::size_t p = 0; p < planes.size(); ++p) out[p] = rows[p][x];
-      }
-    }
-  });
-}
-
-/// Fills the block's places in `planes`.
-void place_block(const FeatureBlock& block, const std::vector<cv::Mat>& base, int kernel_px, int threads,
-                 cv::Mat* planes) {
-  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(kernel_px, kernel_px));
-  parallel_for(threads, static_cast<int>(base.size()), [&](int i) {
-    if (block.min_max) {
-      cv::dilate(base[static_cast<std::size_t>(i)], planes[i], kernel);
-      cv::erode(base[static_cast<std::size_t>(i)], planes[i + block.count], kernel);
-    } else {
-      planes[i] = base[static_cast<std::size_t>(i)];
-    }
-  });
+  if (columns.end < columns.start) return;
+  columns = {std::max(0, columns.start - margin), std::min(colour.cols, columns.end + margin)};
+  const cv::Range rows(row * FeatureTiles::kSide, std::min(colour.rows, (row + 1) * FeatureTiles::kSide));
+  static thread_local cv::Mat lab;  // kept from row to row
+  cv::cvtColor(colour(rows, columns), lab, cv::COLOR_BGR2Lab);
+  std::array<cv::Mat, 3> places;
+  for (std::size_t c = 0; c < places.size(); ++c) places[c] = scratch.lab[c](rows, columns);
+  cv::split(lab, places.data());
 }
 
 }  // namespace
 
-FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads) {
-  std::vector<cv::Mat> intensity;
-  DepthPlanes depth;
-  parallel_for(threads, 2, [&](int part) {
-    if (part == 0 && (settings.families & kIntensity) != 0) intensity = intensity_planes(frame.colour);
-    if (part == 1) depth = depth_planes(frame, settings);
-  });
-  const FeatureLayout layout(settings);
-  std::vector<cv::Mat> planes(static_cast<std::size_t>(layout.planes()));
-  for (const FeatureBlock& block : layout.blocks()) {
-    cv::Mat* out = planes.data() + block.first;
-    if (block.family == kDepthValue) {
-      depth_value_planes(frame, settings, out);
-    } else {
-      place_block(block, base_planes(block, frame, depth, intensity, threads), settings.min_max_px, threads, out);
-    }
+DepthSteps depth_steps(const WorkingFrame& frame, const FeatureSettings& settings) {
+  if (settings.handling == ScaleHandling::kDepthNormalised) return {FeatureLayout::kWrapStep, StepBytes::kWrapped};
+  return {FeatureLayout::kScaledStep * frame.size_ratio, StepBytes::kLimited};
+}
+
+void compute_features(const WorkingFrame& frame, const FeatureSettings& settings, const FeatureTiles& tiles,
+                      int threads, FeatureImage& image) {
+  static thread_local Scratch kept;
+  Scratch& scratch = kept;  // this thread's in all threads
+  list_parts(tiles, scratch);
+  if ((settings.families & kIntensity) != 0) {
+    for (cv::Mat& plane : scratch.lab) plane.create(frame.colour.size(), CV_8UC1);
+    parallel_for(threads, tiles.rows(),
+                 [&](int row) { convert_row(frame.colour, row, lab_margin(settings), scratch); });
   }
-  FeatureImage image(frame.colour.cols, frame.colour.rows, layout.pixel_stride());
-  interleave(planes, threads, image);
-  image.replicate_border();
+  const FeatureLayout layout(settings);
+  std::vector<std::vector<cv::Mat>> base;
+  for (const FeatureBlock& block : layout.blocks()) base.push_back(surface_planes(block.family, frame, threads));
+  const SobelKernels kernels = sobel_kernels(settings.depth_sobel_px);
+  const TileSources sources{frame, settings, layout, scratch.lab, kernels, base};
+  image.reset(frame.colour.cols, frame.colour.rows, layout.pixel_stride());
+  parallel_for(threads, static_cast<int>(scratch.parts.size()), [&](int i) {
+    static thread_local TileFeatures features;  // kept from part to part
+    const cv::Rect& part = scratch.parts[static_cast<std::size_t>(i)];
+    features.compute(sources, part);
+    turn_planes(features.rows(), part, image);
+    image.replicate_border(part);
+  });
+}
+
+FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads) {
+  FeatureTiles tiles;
+  tiles.want_all(frame.colour.size());
+  FeatureImage image;
+  compute_features(frame, settings, tiles, threads, image);
   return image;
 }
 

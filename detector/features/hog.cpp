@@ -1,14 +1,14 @@
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "detector/features/features.hpp"
+#include "detector/features/tile_histograms.hpp"
 
 namespace houghstream {
 
 namespace {
 
-constexpr int kBins = 9;
+constexpr int kBins = HistogramSteps::kBins;
 
 /// Orientation of a gradient in [0, 9) bins, unsigned; a polynomial arctangent (error below 0.3 degrees) so that the
 /// result does not depend on the machine's mathematics library.
@@ -25,30 +25,60 @@ float orientation_bin(float dx, float dy) {
   return bin >= static_cast<float>(kBins) ? 0.0F : bin;
 }
 
+/// Steps of each bin, see HistogramSteps.
+std::vector<cv::Mat> shared_gradients(const cv::Mat& dx, const cv::Mat& dy, float gain) {
+  std::vector<cv::Mat> planes(kBins);
+  for (cv::Mat& plane : planes) plane = cv::Mat::zeros(dx.size(), CV_16UC1);
+  const float steps = gain * HistogramSteps::kPerByte;
+  for (int y = 0; y < dx.rows; ++y) {
+    for (int x = 0; x < dx.cols; ++x) {
+      const float gx = dx.at<float>(y, x);
+      const float gy = dy.at<float>(y, x);
+      const float magnitude = std::sqrt(gx * gx + gy * gy) * steps;
+      const float bin = orientation_bin(gx, gy);
+      const int low = static_cast<int>(bin);
+      const float share = bin - static_cast<float>(low);
+      const auto set = [&](int b, float part) {
+        planes[static_cast<std::size_t>(b)].at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(part);
+      };
+      set(low, magnitude * (1.0F - share) + 0.5F);
+      set(low + 1 == kBins ? 0 : low + 1, magnitude * share + 0.5F);
+    }
+  }
+  return planes;
+}
+
+/// The window's sum along one axis; what lies outside is like the nearest pixel inside.
+cv::Mat summed(const cv::Mat& plane, cv::Point axis) {
+  cv::Mat out(plane.size(), CV_16UC1);
+  for (int y = 0; y < plane.rows; ++y) {
+    for (int x = 0; x < plane.cols; ++x) {
+      const auto value = [&](int step) {
+        return plane.at<std::uint16_t>(std::clamp(y + step * axis.y, 0, plane.rows - 1),
+                                       std::clamp(x + step * axis.x, 0, plane.cols - 1));
+      };
+      std::uint32_t sum = (value(0) * std::uint32_t{HistogramSteps::kWeights[0]}) >> 16;
+      for (const int step : {1, 2}) {
+        const auto pair = static_cast<std::uint32_t>(value(-step) + value(step));
+        sum += (pair * HistogramSteps::kWeights[static_cast<std::size_t>(step)]) >> 16;
+      }
+      out.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(sum);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<cv::Mat> gradient_histograms(const cv::Mat& dx, const cv::Mat& dy, float gain) {
-  std::vector<cv::Mat> planes(kBins);
-  for (cv::Mat& plane : planes) plane = cv::Mat::zeros(dx.size(), CV_32FC1);
-  for (int y = 0; y < dx.rows; ++y) {
-    const auto* gx = dx.ptr<float>(y);
-    const auto* gy = dy.ptr<float>(y);
-    std::array<float*, kBins> rows{};
-    for (int b = 0; b < kBins; ++b)
-      rows[static_cast<std::size_t>(b)] = planes[static_cast<std::size_t>(b)].ptr<float>(y);
-    for (int x = 0; x < dx.cols; ++x) {
-      const float magnitude = std::sqrt(gx[x] * gx[x] + gy[x] * gy[x]);
-      const float bin = orientation_bin(gx[x], gy[x]);
-      const int low = static_cast<int>(bin);
-      const float share = bin - static_cast<float>(low);
-      rows[static_cast<std::size_t>(low)][x] = magnitude * (1.0F - share);
-      rows[static_cast<std::size_t>(low + 1 == kBins ? 0 : low + 1)][x] += magnitude * share;
-    }
-  }
+  std::vector<cv::Mat> planes = shared_gradients(dx, dy, gain);
   for (cv::Mat& plane : planes) {
-    cv::Mat summed;
-    cv::GaussianBlur(plane, summed, cv::Size(5, 5), 1.2, 1.2, cv::BORDER_REPLICATE);
-    summed.convertTo(plane, CV_8U, gain);
+    const cv::Mat sums = summed(summed(plane, {0, 1}), {1, 0});
+    plane = cv::Mat(sums.size(), CV_8UC1);
+    constexpr int kPerByte = static_cast<int>(HistogramSteps::kPerByte);
+    std::transform(sums.begin<std::uint16_t>(), sums.end<std::uint16_t>(), plane.begin<std::uint8_t>(), [](int steps) {
+      return static_cast<std::uint8_t>(std::min((steps + kPerByte / 2 + HistogramSteps::kCut) / kPerByte, 255));
+    });
   }
   return planes;
 }

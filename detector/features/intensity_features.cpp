@@ -30,7 +30,7 @@ std::vector<cv::Mat> intensity_planes(const cv::Mat& colour_bgr) {
   cv::Mat dy;
   cv::Sobel(lightness, dx, CV_32F, 1, 0, 3, 0.125, 0.0, cv::BORDER_REPLICATE);
   cv::Sobel(lightness, dy, CV_32F, 0, 1, 3, 0.125, 0.0, cv::BORDER_REPLICATE);
-  for (cv::Mat& plane : gradient_histograms(dx, dy, 8.0F)) planes.push_back(std::move(plane));
+  for (cv::Mat& plane : gradient_histograms(dx, dy, kIntensityGain)) planes.push_back(std::move(plane));
   return planes;
 }
 

@@ -6,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "detector/features/hole_filling.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -33,8 +35,37 @@ float nearest_surface(const cv::Mat& depth, int x0, int x1, int y0, int y1) {
   return count > 0 && std::isfinite(nearest) ? sum / static_cast<float>(count) : kNone;
 }
 
-cv::Mat shrink_depth(const cv::Mat& depth, cv::Size size) {
-  cv::Mat out(size, CV_32FC1);
+/// The same of a block of 2x2 pixels, without branches: NaN fails every comparison.
+float nearest_of_four(float a, float b, float c, float d) {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const float depth : {a, b, c, d}) nearest = depth < nearest ? depth : nearest;
+  const float limit = nearest * 1.02F;
+  float sum = 0.0F;
+  float count = 0.0F;
+  for (const float depth : {a, b, c, d}) {
+    sum += depth <= limit ? depth : 0.0F;
+    count += depth <= limit ? 1.0F : 0.0F;
+  }
+  return nearest < std::numeric_limits<float>::infinity() ? sum / count : kNone;
+}
+
+void halve_depth(const cv::Mat& depth, cv::Mat& out) {
+  for (int y = 0; y < out.rows; ++y) {
+    const auto* upper = depth.ptr<float>(2 * y);
+    const auto* lower = depth.ptr<float>(2 * y + 1);
+    auto* row = out.ptr<float>(y);
+    for (int x = 0; x < out.cols; ++x) {
+      row[x] = nearest_of_four(upper[2 * x], upper[2 * x + 1], lower[2 * x], lower[2 * x + 1]);
+    }
+  }
+}
+
+void shrink_depth(const cv::Mat& depth, cv::Size size, cv::Mat& out) {
+  out.create(size, CV_32FC1);
+  if (size * 2 == depth.size()) {
+    halve_depth(depth, out);
+    return;
+  }
   std::vector<int> columns(static_cast<std::size_t>(size.width) + 1);
   for (int x = 0; x <= size.width; ++x) columns[static_cast<std::size_t>(x)] = x * depth.cols / size.width;
   for (int y = 0; y < size.height; ++y) {
@@ -46,7 +77,6 @@ cv::Mat shrink_depth(const cv::Mat& depth, cv::Size size) {
       row[x] = nearest_surface(depth, x0, std::max(x0 + 1, columns[static_cast<std::size_t>(x) + 1]), y0, y1);
     }
   }
-  return out;
 }
 
 /// Between the pixels of one surface the depth is interpolated, between two surfaces it is that of the nearest pixel.
@@ -65,37 +95,9 @@ cv::Mat enlarge_depth(const cv::Mat& depth, cv::Size size) {
   return smooth;
 }
 
-void fill_holes(cv::Mat& depth, float max_distance_px) {
-  cv::Mat missing(depth.size(), CV_8UC1);
-  int holes = 0;
-  for (int y = 0; y < depth.rows; ++y) {
-    const auto* row = depth.ptr<float>(y);
-    auto* out = missing.ptr<std::uint8_t>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      out[x] = std::isnan(row[x]) ? 1 : 0;
-      holes += out[x];
-    }
-  }
-  if (holes == 0 || holes == depth.rows * depth.cols) return;
-  cv::Mat distance;
-  cv::Mat labels;
-  cv::distanceTransform(missing, distance, labels, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
-  std::vector<float> depth_of_label(static_cast<std::size_t>(depth.rows * depth.cols - holes) + 1, kNone);
-  for (int y = 0; y < depth.rows; ++y) {
-    for (int x = 0; x < depth.cols; ++x) {
-      if (missing.at<std::uint8_t>(y, x) == 0) {
-        depth_of_label[static_cast<std::size_t>(labels.at<int>(y, x))] = depth.at<float>(y, x);
-      }
-    }
-  }
-  for (int y = 0; y < depth.rows; ++y) {
-    auto* row = depth.ptr<float>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      if (std::isnan(row[x]) && distance.at<float>(y, x) <= max_distance_px) {
-        row[x] = depth_of_label[static_cast<std::size_t>(labels.at<int>(y, x))];
-      }
-    }
-  }
+/// Before an image is written anew: what somebody else looks at as well gets a place of its own.
+void forget_shared(cv::Mat& image) {
+  if (image.u == nullptr || image.u->refcount > 1) image.release();
 }
 
 }  // namespace
@@ -116,18 +118,29 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
   return levels;
 }
 
-WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
-  WorkingFrame out;
+void make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings, WorkingFrame& out) {
+  forget_shared(out.colour);
+  forget_shared(out.filled_depth);
   out.camera = frame.camera.scaled(scale);
+  out.size_ratio = 1.0F;
   const cv::Size size(out.camera.width, out.camera.height);
   if (size == frame.colour.size()) {
     out.colour = frame.colour;
-    out.filled_depth = frame.depth.clone();
+    frame.depth.copyTo(out.filled_depth);
   } else {
     cv::resize(frame.colour, out.colour, size, 0, 0, scale < 1.0F ? cv::INTER_AREA : cv::INTER_LINEAR);
-    out.filled_depth = scale < 1.0F ? shrink_depth(frame.depth, size) : enlarge_depth(frame.depth, size);
+    if (scale < 1.0F) {
+      shrink_depth(frame.depth, size, out.filled_depth);
+    } else {
+      out.filled_depth = enlarge_depth(frame.depth, size);
+    }
   }
   fill_holes(out.filled_depth, settings.fill_distance_px);
+}
+
+WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
+  WorkingFrame out;
+  make_working_frame(frame, scale, settings, out);
   return out;
 }
 

@@ -33,6 +33,9 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
 /// foreground and background are never averaged into a surface that is not there.
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings);
 
+/// The same into `out`, whose memory is used again where nobody shares it.
+void make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings, WorkingFrame& out);
+
 /// The same for a level of a scale space.
 WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
 

@@ -38,6 +38,11 @@ inline std::int32_t patch_scale(const PatchSettings& patch, double focal_px, flo
   return limited_scale(patch, patch.unit * focal_px / z);
 }
 
+/// How far the tests of a patch look, pixels.
+inline int farthest_offset(const PatchSettings& patch, std::int32_t scale) {
+  return (patch.radius * scale + 128) >> 8;
+}
+
 /// Bytes from a patch's centre to the pixel `dx`, `dy` steps away.
 inline std::ptrdiff_t patch_offset(const PatchView& patch, int dx, int dy) {
   const int x_px = (dx * patch.scale + 128) >> 8;

@@ -101,6 +101,33 @@ TEST(DetectProcess, BadFramesAreCountedReportedAndDropped) {
   EXPECT_EQ(status.last_error, "the detector refuses frame 4");
 }
 
+// As openni2-camera-lcm and the bot_core drivers send them: no metadata, no frame counter.
+TEST(DetectProcess, FramesOfOtherDriversAreWorkedOnWithTheCameraOption) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  DetectProcessOptions options;
+  options.camera = make_test_frame(1).camera;
+  Camera seen;
+  test.start([&](LcmBus& bus) {
+    run_detect_process(bus, options, [&](const RgbdFrame& frame) {
+      seen = frame.camera;
+      return find_nothing(frame);
+    });
+  });
+  images_t message = frame_message(7, 0);
+  for (image_t& image : message.images) {
+    image.metadata.clear();
+    image.nmetadata = 0;
+  }
+  message.images[1].row_stride = 2 * message.images[1].width;  // those drivers state it for zipped depth too
+  test.bus.publish(channel::kFrame, message);
+  ASSERT_TRUE(test.wait_for(channel::kDetections, 1));
+  test.stop();
+  EXPECT_EQ(seen, *options.camera);
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_processed, 1);
+  EXPECT_EQ(status.frames_refused, 0);
+}
+
 TEST(DetectProcess, ALogIsWorkedOnWithoutSkipping) {
   catch_stop_signals();
   const auto folder = std::filesystem::temp_directory_path();

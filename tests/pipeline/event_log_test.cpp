@@ -88,6 +88,52 @@ TEST_F(EventLogFile, ADamagedLogIsReported) {
   EXPECT_NE(refusal_after(file_, 1).find("no event header at byte 45"), std::string::npos);
 }
 
+// Each event of write_three() takes 45 bytes: header 28, channel 7, data 10.
+constexpr std::streamoff kEventBytes = 45;
+
+void put_at(const std::filesystem::path& file, std::streamoff position, char value) {
+  std::fstream log(file, std::ios::in | std::ios::out | std::ios::binary);
+  log.seekp(position);
+  log.put(value);
+}
+
+TEST_F(EventLogFile, WhatFollowsADamagedEventIsRead) {
+  write_three();
+  put_at(file_, kEventBytes, 'x');
+  LogReader reader(file_);
+  EXPECT_EQ(reader.next()->timestamp, 1000);
+  EXPECT_THROW(reader.next(), InputError);
+  const LogReader::Damage damage = reader.skip_damage();
+  EXPECT_EQ(damage.bytes, 45U);
+  EXPECT_FALSE(damage.last_event_too);
+  EXPECT_EQ(reader.next()->timestamp, 1002);
+  EXPECT_FALSE(reader.next().has_value());
+}
+
+TEST_F(EventLogFile, AWrongLengthDoesNotSwallowTheNextEvent) {
+  write_three();
+  put_at(file_, kEventBytes - 17 - 1, 10 + 20);  // the first event's data would reach into the second
+  LogReader reader(file_);
+  EXPECT_EQ(reader.next()->timestamp, 1000);
+  EXPECT_THROW(reader.next(), InputError);
+  const LogReader::Damage damage = reader.skip_damage();
+  EXPECT_TRUE(damage.last_event_too);
+  EXPECT_EQ(damage.bytes, 45U);
+  EXPECT_EQ(reader.next()->timestamp, 1001);
+  EXPECT_EQ(reader.next()->timestamp, 1002);
+}
+
+TEST_F(EventLogFile, DamageUpToTheEndIsPassedOver) {
+  write_three();
+  std::filesystem::resize_file(file_, 2 * kEventBytes + 30);
+  LogReader reader(file_);
+  reader.next();
+  reader.next();
+  EXPECT_THROW(reader.next(), InputError);
+  EXPECT_EQ(reader.skip_damage().bytes, 30U);
+  EXPECT_FALSE(reader.next().has_value());
+}
+
 TEST_F(EventLogFile, FilesThatAreNoLogsAreRefused) {
   EXPECT_THROW(LogReader(file_ / "missing"), InputError);
   EXPECT_THROW(LogWriter(file_ / "missing" / "too"), InputError);

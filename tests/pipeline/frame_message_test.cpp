@@ -96,6 +96,39 @@ TEST(FrameMessage, BgrGrayAndPaddedRowsAreUnderstood) {
   EXPECT_EQ(grey.at<cv::Vec3b>(1, 1), cv::Vec3b(17, 17, 17));
 }
 
+TEST(FrameMessage, AFourthChannelIsPassedOver) {
+  images_t message = raw_message();
+  image_t& colour = message.images[0];
+  colour.row_stride = 4 * 64;
+  colour.data.assign(static_cast<std::size_t>(colour.row_stride) * 48, 0);
+  colour.size = static_cast<std::int32_t>(colour.data.size());
+  colour.data[0] = 200;
+  colour.data[3] = 17;
+  colour.pixelformat = image_t::PIXEL_FORMAT_RGBA;
+  EXPECT_EQ(frame_from_message(message, std::nullopt).colour.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 200));
+  colour.pixelformat = image_t::PIXEL_FORMAT_BGRA;
+  EXPECT_EQ(frame_from_message(message, std::nullopt).colour.at<cv::Vec3b>(0, 0), cv::Vec3b(200, 0, 0));
+}
+
+TEST(FrameMessage, ImagesAreReadWithoutACamera) {
+  const images_t message = foreign(raw_message());
+  const ImagePair images = images_from_message(message);
+  EXPECT_EQ(cv::norm(images.colour, make_test_frame(99).colour, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(images.depth_mm, depth_to_millimetres(make_test_frame(99).depth), cv::NORM_INF), 0.0);
+  EXPECT_FALSE(camera_of(message).has_value());
+}
+
+TEST(FrameMessage, CameraAndCounterCanBeAdded) {
+  images_t message = foreign(raw_message());
+  const Camera camera = make_test_frame(99).camera;
+  add_camera(message, camera);
+  add_sequence(message, 7);
+  EXPECT_EQ(frame_from_message(message, std::nullopt).camera, camera);
+  EXPECT_EQ(sequence_of(message), 7);
+  images_t empty{};
+  EXPECT_THROW(add_camera(empty, camera), InputError);
+}
+
 TEST(FrameMessage, ImagesAreFoundByTypeNotByPosition) {
   images_t message = foreign(raw_message());
   std::swap(message.images[0], message.images[1]);

@@ -24,5 +24,11 @@ TEST(ReceiveBuffer, TooLittleComesWithTheLineThatMendsIt) {
   EXPECT_NE(advice.find("sudo sysctl -w net.core.rmem_max=16777216"), std::string::npos) << advice;
 }
 
+TEST(ReceiveBuffer, GrowsWithTheFrames) {
+  EXPECT_EQ(needed_receive_buffer(640 * 480 * 5), kNeededReceiveBuffer);
+  EXPECT_LT(needed_receive_buffer(50'000), 212'992) << "the kernel's default carries small frames";
+  EXPECT_NE(receive_buffer_advice(0).find(receive_buffer_remedy()), std::string::npos);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -45,16 +45,6 @@ TEST(ImportScene, BoxesBecomeASceneWithoutPosesInTheirOrder) {
   EXPECT_EQ(pack.object_id, 2);
 }
 
-TEST(ImportScene, FramesBecomeASceneWithoutObjectsInNaturalOrder) {
-  const fs::path scene_folder = fresh_folder("import_frames_out");
-  const Camera camera{64, 48, 60.0, 60.0, 31.5, 23.5};
-  EXPECT_EQ(import_frames(write_source("import_frames"), camera, scene_folder), 2);
-  const BopScene scene(scene_folder);
-  EXPECT_EQ(scene.read_frame(0).colour.at<cv::Vec3b>(0, 0)[0], 9);
-  EXPECT_FLOAT_EQ(scene.read_frame(0).depth.at<float>(0, 0), 0.7F);
-  EXPECT_TRUE(scene.images()[0].objects.empty());
-}
-
 TEST(ImportScene, UwVideosBecomeScenesAsBoxesDo) {
   const fs::path video = fresh_folder("import_uw") / "desk" / "desk_1";
   fs::create_directories(video);
@@ -87,7 +77,6 @@ TEST(ImportScene, UwVideosBecomeScenesAsBoxesDo) {
 TEST(ImportScene, BadSourcesAreRefused) {
   const fs::path out = fresh_folder("import_bad_out");
   EXPECT_THROW(import_boxes(fresh_folder("import_nothing"), out), InputError);
-  EXPECT_THROW(import_frames(fresh_folder("import_nothing"), {64, 48, 60.0, 60.0, 31.5, 23.5}, out), InputError);
   for (const auto& [from, to] :
        std::vector<std::pair<std::string, std::string>>{{"[10, 5, 30, 25]", "[10, 5, 300, 25]"},
                                                         {"[10, 5, 30, 25]", "[30, 5, 10, 25]"},

@@ -109,14 +109,6 @@ int import_boxes(const fs::path& source, const fs::path& scene_folder) {
   return static_cast<int>(frames.size());
 }
 
-int import_frames(const fs::path& source, const Camera& camera, const fs::path& scene_folder) {
-  BopWriter writer(scene_folder);
-  const std::vector<FramePair> pairs = list_frame_pairs(source);
-  for (const FramePair& pair : pairs) writer.add(read_frame_pair(pair, camera, 0), {}, {});
-  writer.finish();
-  return static_cast<int>(pairs.size());
-}
-
 int import_uw_scene(const fs::path& video, const Camera& camera, const fs::path& scene_folder) {
   check_camera(camera, "camera");
   const std::vector<UwSceneFrame> frames = read_uw_scene(video, {camera.width, camera.height});

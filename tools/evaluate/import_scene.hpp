@@ -12,10 +12,6 @@ namespace houghstream {
 /// NAME, "bbox_xyxy": [x0,y0,x1,y1]}]}]}. Returns the number of frames. Throws InputError.
 int import_boxes(const std::filesystem::path& source, const std::filesystem::path& scene_folder);
 
-/// Turns a folder of NAME_color.png (or NAME.png) and NAME_depth.png into a BOP scene without objects, in natural
-/// order. Returns the number of frames. Throws InputError.
-int import_frames(const std::filesystem::path& source, const Camera& camera, const std::filesystem::path& scene_folder);
-
 /// Turns a video of the UW RGB-D Scenes Dataset (drivers/uw_scenes.hpp) into a BOP scene whose objects have boxes only,
 /// as import_boxes() writes them. Returns the number of frames. Throws InputError.
 int import_uw_scene(const std::filesystem::path& video, const Camera& camera,

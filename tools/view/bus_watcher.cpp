@@ -9,6 +9,7 @@
 #include "pipeline/checks.hpp"
 #include "pipeline/messages.hpp"
 #include "pipeline/stop_signal.hpp"
+#include "tools/view/preview.hpp"
 
 namespace houghstream {
 namespace {
@@ -25,6 +26,7 @@ BusWatcher::BusWatcher(const std::string& lcm_url, const std::string& frame_chan
   require(!bus_.is_log(), "{}: a log is watched by replaying it with lcm-logplayer, expected a network URL",
           bus_.url());
   subscribe(frame_channel);
+  subscribe_to_status();
   const BlockStopSignals block;
   thread_ = std::thread([this] { listen(); });
 }
@@ -43,6 +45,7 @@ void BusWatcher::subscribe(const std::string& frame_channel) {
     status_.count_received();
     const FrameHeader header = read_frame_header(arrival.bytes);
     status_.note_sequence(header.sequence);
+    stream_.note_frame(microseconds(arrival.time));
     std::vector<std::uint8_t> bytes(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
     matcher_.add_frame(std::move(bytes), header.utime, microseconds(arrival.time));
   });
@@ -54,6 +57,30 @@ void BusWatcher::subscribe(const std::string& frame_channel) {
     const auto message = decode_message<houghstream::object_poses_t>(arrival.bytes);
     matcher_.add_poses(poses_from_message(message), microseconds(arrival.time));
   });
+}
+
+void BusWatcher::subscribe_to_status() {
+  bus_.subscribe(channel::kStatus, [this](const Arrival& arrival) {
+    const auto message = decode_message<houghstream::status_t>(arrival.bytes);
+    stream_.note_process({message.process, message.rate_hz, message.frames_skipped, message.frames_lost,
+                          message.frames_refused, microseconds(arrival.time)});
+  });
+}
+
+StreamState BusWatcher::stream_state() {
+  return stream_.state(microseconds(std::chrono::steady_clock::now()));
+}
+
+void BusWatcher::publish_preview(const cv::Mat& picture, std::int64_t utime) {
+  PreviewPicture preview = encode_preview(picture);
+  houghstream::image_t message{};
+  message.utime = utime;
+  message.width = preview.width;
+  message.height = preview.height;
+  message.pixelformat = houghstream::image_t::PIXEL_FORMAT_MJPEG;
+  message.size = static_cast<std::int32_t>(preview.jpeg.size());
+  message.data = std::move(preview.jpeg);
+  bus_.publish(channel::kPreview, message);
 }
 
 void BusWatcher::note_drawn(const MatchedFrame& frame) {

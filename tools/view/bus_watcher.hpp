@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <thread>
@@ -10,6 +11,7 @@
 #include "pipeline/process_loop.hpp"
 #include "pipeline/status_reporter.hpp"
 #include "tools/view/match_queue.hpp"
+#include "tools/view/stream_watch.hpp"
 
 namespace houghstream {
 
@@ -29,6 +31,14 @@ class BusWatcher {
   /// What became of a frame that was taken, for the status that goes out once a second.
   void note_drawn(const MatchedFrame& frame);
   void note_refused(const std::string& reason) { status_.count_refused(reason); }
+  void note_skipped() { status_.count_skipped(1); }
+
+  /// Rates, and what the processes say.
+  StreamState stream_state();
+  std::int64_t frames_lost() const { return status_.message().frames_lost; }
+
+  /// Sends a picture to those for whom frames are too large.
+  void publish_preview(const cv::Mat& picture, std::int64_t utime);
 
   /// Stops listening; frames that wait can still be taken.
   void stop();
@@ -38,12 +48,14 @@ class BusWatcher {
 
  private:
   void subscribe(const std::string& frame_channel);
+  void subscribe_to_status();
   void listen();
   void hand_over();
 
   LcmBus bus_;
   StatusReporter status_{"hs-view"};
   FrameMatcher matcher_;
+  StreamWatch stream_;
   MatchQueue queue_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;

@@ -3,7 +3,9 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "tools/view/latency_chart.hpp"
 #include "tools/view/overlay.hpp"
+#include "tools/view/stream_watch.hpp"
 
 namespace houghstream {
 
@@ -22,6 +24,15 @@ struct FrameViewSettings {
   bool show_depth = true;   ///< depth, colour-mapped, to the right
   float depth_near = 0.4F;  ///< metres, red end of the colour map
   float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue
+  bool show_keys = false;   ///< a line that names the window's keys
+  bool paused = false;      ///< said in that line
+};
+
+/// What the panel below the pictures shows of the stream as a whole.
+struct StreamView {
+  StreamState state;
+  std::int64_t frames_lost = 0;  ///< frames that never arrived here
+  LatencyHistory history;
 };
 
 /// Depth (CV_32FC1, metres) as BGR: near is warm, far is cold, no measurement is black.
@@ -30,8 +41,9 @@ cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
 /// The frame without detections weaker than `min_score` and without their poses.
 ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 
-/// The whole picture, CV_8UC3: overlay, depth beside it, and below them latency and stage times. Its size is even in
+/// The whole picture, CV_8UC3: overlay, depth beside it, and below them the panel (view_panel.hpp). Its size is even in
 /// both directions, as video encoders want. Throws InputError as draw_overlay does.
-cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings);
+cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
+                        const StreamView& stream = {});
 
 }  // namespace houghstream

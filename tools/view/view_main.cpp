@@ -3,9 +3,10 @@
 
 namespace {
 
-void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
+void add_options(CLI::App& app, houghstream::ViewerSettings& settings, std::string& camera) {
   houghstream::OutputSettings& outputs = settings.outputs;
   app.add_option("-c,--channel", settings.frame_channel, "channel of the frames")->capture_default_str();
+  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   houghstream::add_model_options(app, settings.models, settings.model_unit_m);
   app.add_option("--snapshot", outputs.snapshot, "write one picture to this file (.png or .jpg)");
   app.add_option("--after", outputs.snapshot_after, "the snapshot is the so-manieth picture drawn")
@@ -13,6 +14,8 @@ void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
       ->check(CLI::PositiveNumber);
   app.add_option("--video", outputs.video, "write a video to this file (.mp4)");
   app.add_option("--pictures", outputs.pictures, "write every picture drawn to this folder");
+  app.add_flag("--preview", settings.preview,
+               "send pictures as JPEG below 100 kB on HOUGHSTREAM_PREVIEW, for lcm-spy and others with small buffers");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 100.0));
@@ -30,9 +33,13 @@ void add_options(CLI::App& app, houghstream::ViewerSettings& settings) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Shows the stream: boxes, names, scores, pose axes and model outlines over each frame, depth, stage times and "
-      "latency. With --snapshot, --video or --pictures it needs no display.",
+      "latency. With --snapshot, --video, --pictures or --preview it needs no display.",
       "hs-view");
   houghstream::ViewerSettings settings;
-  add_options(app, settings);
-  return houghstream::run_tool(app, argc, argv, [&] { houghstream::run_viewer(settings); });
+  std::string camera;
+  add_options(app, settings, camera);
+  return houghstream::run_tool(app, argc, argv, [&] {
+    if (!camera.empty()) settings.camera = houghstream::parse_camera(camera);
+    houghstream::run_viewer(settings);
+  });
 }

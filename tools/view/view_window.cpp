@@ -1,8 +1,13 @@
 #include "tools/view/view_window.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <opencv2/highgui.hpp>
 #include <string>
@@ -13,38 +18,55 @@
 namespace houghstream {
 namespace {
 
-const std::string kTitle = "Houghstream (q end, space pause, d depth, s save)";
+const std::string kTitle = "Houghstream";
 
 bool is_set(const char* variable) {
   const char* value = std::getenv(variable);
   return value != nullptr && *value != '\0';
 }
 
+// Whether a window opens. Tried in a process of its own: where a display is named but does not answer, the window
+// library aborts the process instead of saying so.
+bool window_opens() {
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+    try {
+      cv::namedWindow("display check");
+    } catch (const cv::Exception&) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
 }  // namespace
 
 ViewWindow::ViewWindow() {
-  require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"),
-          "no display for a window (DISPLAY is not set); without one use --snapshot FILE.png, --video FILE.mp4 or "
-          "--pictures FOLDER");
+  const std::string advice = "without one use --snapshot FILE.png, --video FILE.mp4, --pictures FOLDER or --preview";
+  require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"), "no display for a window (DISPLAY is not set); {}", advice);
+  require(window_opens(), "no display for a window (the one named by DISPLAY does not answer); {}", advice);
   cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
 }
 
 void ViewWindow::show(const cv::Mat& picture, std::int64_t utime) {
-  if (paused_) return;
   shown_ = picture;
   utime_ = utime;
   cv::imshow(kTitle, picture);
 }
 
-bool ViewWindow::handle_keys(FrameViewSettings& settings) {
-  constexpr int kEscape = 27;
+KeyAction ViewWindow::handle_keys(FrameViewSettings& settings) {
   constexpr int kMoment = 5;  // milliseconds
   const int key = cv::waitKey(kMoment);
-  if (key == 'q' || key == kEscape) return false;
-  if (key == ' ') paused_ = !paused_;
-  if (key == 'd') settings.show_depth = !settings.show_depth;
   if (key == 's') save();
-  return cv::getWindowProperty(kTitle, cv::WND_PROP_VISIBLE) >= 1.0;
+  const KeyAction action = apply_key(key, settings);
+  return cv::getWindowProperty(kTitle, cv::WND_PROP_VISIBLE) >= 1.0 ? action : KeyAction::kEnd;
 }
 
 void ViewWindow::save() const {

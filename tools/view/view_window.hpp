@@ -3,28 +3,26 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-#include "tools/view/frame_view.hpp"
+#include "tools/view/view_keys.hpp"
 
 namespace houghstream {
 
-/// The window and its keys: q or Esc ends, space pauses, d shows or hides depth, s saves the picture.
+/// The window; its keys are those of apply_key, and s, which saves the picture.
 class ViewWindow {
  public:
   /// Throws InputError, naming the headless options, where there is no display.
   ViewWindow();
 
-  /// Shows a picture unless paused.
   void show(const cv::Mat& picture, std::int64_t utime);
 
-  /// Lets the window live for a moment and acts on keys. False when it was asked to end.
-  bool handle_keys(FrameViewSettings& settings);
+  /// Lets the window live for a moment and acts on keys.
+  KeyAction handle_keys(FrameViewSettings& settings);
 
  private:
   void save() const;
 
   cv::Mat shown_;
   std::int64_t utime_ = 0;
-  bool paused_ = false;
 };
 
 }  // namespace houghstream

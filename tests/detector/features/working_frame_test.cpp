@@ -30,6 +30,23 @@ TEST(WorkingFrame, TheNearestSurfaceOfABlockCountsAndNeverAMixture) {
   EXPECT_FLOAT_EQ(working.filled_depth.at<float>(0, 0), 2.0F);
 }
 
+TEST(WorkingFrame, MemoryIsUsedAgainButNeverThatOfTheFrameItself) {
+  const RgbdFrame small = flat_frame(8, 8, 2.0F);
+  WorkingFrame working;
+  make_working_frame(small, 1.0F, {}, working);
+  EXPECT_EQ(working.colour.data, small.colour.data);
+  RgbdFrame large = flat_frame(16, 16, 1.0F);
+  large.colour.setTo(cv::Scalar(90, 90, 90));
+  make_working_frame(large, 0.5F, {}, working);
+  EXPECT_EQ(small.colour.at<cv::Vec3b>(3, 3), cv::Vec3b(10, 20, 30));
+  EXPECT_EQ(working.colour.at<cv::Vec3b>(3, 3), cv::Vec3b(90, 90, 90));
+  const auto* colour = working.colour.data;
+  const auto* depth = working.filled_depth.data;
+  make_working_frame(large, 0.5F, {}, working);
+  EXPECT_EQ(working.colour.data, colour);
+  EXPECT_EQ(working.filled_depth.data, depth);
+}
+
 TEST(WorkingFrame, ASinglePixelOfDepthIsEnoughForABlock) {
   RgbdFrame frame = flat_frame(8, 8, kNone);
   frame.depth.at<float>(5, 5) = 0.9F;

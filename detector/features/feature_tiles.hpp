@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace houghstream {
+
+/// The parts of a FeatureImage that somebody will look at, in tiles of kSide pixels.
+class FeatureTiles {
+ public:
+  static constexpr int kSide = 32;  ///< pixels
+
+  FeatureTiles() = default;
+
+  /// No tile of an image of this size is wanted. Keeps its memory.
+  void clear(cv::Size image);
+  /// All are.
+  void want_all(cv::Size image);
+  /// A patch at (x,y), inside the image, will look `reach` pixels far.
+  void add_patch(int x, int y, int reach) {
+    const int right = std::min(x + reach, image_.width - 1) / kSide;
+    const int bottom = std::min(y + reach, image_.height - 1) / kSide;
+    for (int row = std::max(y - reach, 0) / kSide; row <= bottom; ++row) {
+      for (int column = std::max(x - reach, 0) / kSide; column <= right; ++column) {
+        wanted_[static_cast<std::size_t>(row * columns_ + column)] = 1;
+      }
+    }
+  }
+
+  cv::Size image() const { return image_; }
+  int rows() const { return rows_; }  ///< of tiles
+  /// Wanted pixels of a row of tiles, at most `longest` (a multiple of kSide) side by side, appended to `parts`.
+  void list_parts(int row, int longest, std::vector<cv::Rect>& parts) const;
+
+ private:
+  bool wanted(int row, int column) const { return wanted_[static_cast<std::size_t>(row * columns_ + column)] != 0; }
+
+  cv::Size image_;
+  int rows_ = 0;
+  int columns_ = 0;
+  std::vector<std::uint8_t> wanted_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,109 @@
+#include "detector/features/hole_filling.hpp"
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+constexpr int kBorder = 2;  // pixels around the distances, so that no neighbour needs a check
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+// In 1/65536 pixel.
+constexpr int kStraight = 65536;
+constexpr int kDiagonal = 91750;
+constexpr int kKnight = 143976;  // one step straight and one diagonal
+constexpr int kFarAway = INT_MAX - kKnight;
+
+struct Hole {
+  std::int16_t x = 0;
+  std::int16_t y = 0;
+};
+
+/// A neighbour that a distance may come from.
+struct Step {
+  int dx = 0;
+  int dy = 0;
+  int length = 0;
+};
+
+/// Those above and to the left; the others lie opposite.
+constexpr std::array<Step, 8> kSteps = {{{-1, -2, kKnight},
+                                         {1, -2, kKnight},
+                                         {-2, -1, kKnight},
+                                         {-1, -1, kDiagonal},
+                                         {0, -1, kStraight},
+                                         {1, -1, kDiagonal},
+                                         {2, -1, kKnight},
+                                         {-1, 0, kStraight}}};
+
+/// What is kept from frame to frame for its memory.
+struct Scratch {
+  std::vector<Hole> holes;              // row by row
+  std::vector<std::int32_t> distances;  // to the pixel that a hole has borrowed from; 0 where there is no hole
+};
+
+void list_holes(const cv::Mat& depth, std::vector<Hole>& holes) {
+  holes.clear();
+  for (int y = 0; y < depth.rows; ++y) {
+    const auto* row = depth.ptr<float>(y);
+    for (int x = 0; x < depth.cols; ++x) {
+      if (row[x] != row[x]) holes.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)});
+    }
+  }
+}
+
+class Distances {
+ public:
+  Distances(cv::Size size, std::vector<std::int32_t>& memory) : stride_(size.width + 2 * kBorder), memory_(memory) {
+    memory_.assign(static_cast<std::size_t>(stride_ * (size.height + 2 * kBorder)), kFarAway);
+    for (int y = 0; y < size.height; ++y) std::fill_n(&at({0, static_cast<std::int16_t>(y)}), size.width, 0);
+  }
+
+  std::int32_t& at(Hole hole) {
+    return memory_[static_cast<std::size_t>((hole.y + kBorder) * stride_ + hole.x + kBorder)];
+  }
+
+  /// Takes the depth of the neighbour that is nearest to its own source; `side` is 1, or -1 for those opposite.
+  void borrow(Hole hole, int side, cv::Mat& depth) {
+    std::int32_t& nearest = at(hole);
+    const std::int32_t* here = &nearest;
+    const Step* from = nullptr;
+    for (const Step& step : kSteps) {
+      const std::int32_t distance = here[side * (step.dy * stride_ + step.dx)] + step.length;
+      if (distance < nearest) {
+        nearest = distance;
+        from = &step;
+      }
+    }
+    if (from != nullptr) {
+      depth.ptr<float>(hole.y)[hole.x] = depth.ptr<float>(hole.y + side * from->dy)[hole.x + side * from->dx];
+    }
+  }
+
+ private:
+  int stride_ = 0;
+  std::vector<std::int32_t>& memory_;
+};
+
+}  // namespace
+
+void fill_holes(cv::Mat& depth, float max_distance_px) {
+  static thread_local Scratch scratch;
+  const std::vector<Hole>& holes = scratch.holes;
+  list_holes(depth, scratch.holes);
+  if (holes.empty() || holes.size() == depth.total()) return;
+  Distances distances(depth.size(), scratch.distances);
+  for (const Hole hole : holes) distances.at(hole) = kFarAway;
+  for (const Hole hole : holes) distances.borrow(hole, 1, depth);
+  for (auto hole = holes.rbegin(); hole != holes.rend(); ++hole) distances.borrow(*hole, -1, depth);
+  for (const Hole hole : holes) {
+    if (static_cast<float>(distances.at(hole)) > max_distance_px * kStraight) depth.ptr<float>(hole.y)[hole.x] = kNone;
+  }
+}
+
+}  // namespace houghstream

@@ -1,0 +1,76 @@
+#include "detector/features/hole_filling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/random.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+/// Every pixel another depth, so that it shows who has borrowed from whom.
+cv::Mat numbered_depth(cv::Size size) {
+  cv::Mat depth(size, CV_32FC1);
+  for (int i = 0; i < size.area(); ++i) depth.at<float>(i / size.width, i % size.width) = static_cast<float>(i + 1);
+  return depth;
+}
+
+/// Distance from each pixel to the one it has borrowed from; -1 where it is still a hole.
+cv::Mat borrowed_from(const cv::Mat& depth) {
+  cv::Mat distances(depth.size(), CV_32FC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const float value = depth.at<float>(y, x);
+      const int from = std::isnan(value) ? -1 : static_cast<int>(value) - 1;
+      distances.at<float>(y, x) =
+          from < 0 ? -1.0F
+                   : std::hypot(static_cast<float>(from % depth.cols - x), static_cast<float>(from / depth.cols - y));
+    }
+  }
+  return distances;
+}
+
+TEST(HoleFilling, HolesBorrowFromTheNearestPixelOrOneHardlyFartherAway) {
+  Random random(51);
+  for (const double share : {0.02, 0.5, 0.98}) {
+    cv::Mat depth = numbered_depth({90, 70});
+    cv::Mat missing = cv::Mat::zeros(depth.size(), CV_8UC1);
+    for (int i = 0; i < 90 * 70; ++i) missing.at<std::uint8_t>(i / 90, i % 90) = random.uniform() < share ? 1 : 0;
+    missing(cv::Rect(20, 20, 30, 25)).setTo(1);
+    depth.setTo(kNone, missing);
+    cv::Mat nearest;
+    cv::distanceTransform(missing, nearest, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+    fill_holes(depth, 1000.0F);
+    const cv::Mat found = borrowed_from(depth);
+    for (int i = 0; i < 90 * 70; ++i) {
+      const float expected = nearest.at<float>(i / 90, i % 90);
+      ASSERT_GE(found.at<float>(i / 90, i % 90), expected - 0.001F) << i;
+      ASSERT_LE(found.at<float>(i / 90, i % 90), expected * 1.05F + 0.001F) << i;
+    }
+  }
+}
+
+TEST(HoleFilling, WhatIsFartherAwayThanTheLimitStaysAHole) {
+  cv::Mat depth = numbered_depth({40, 1});
+  depth.colRange(5, 40).setTo(kNone);
+  fill_holes(depth, 10.0F);
+  EXPECT_EQ(depth.at<float>(0, 14), 5.0F);
+  EXPECT_TRUE(std::isnan(depth.at<float>(0, 15)));
+}
+
+TEST(HoleFilling, WithoutHolesAndWithoutDepthNothingChanges) {
+  cv::Mat full = numbered_depth({9, 7});
+  fill_holes(full, 5.0F);
+  EXPECT_EQ(cv::countNonZero(full != numbered_depth({9, 7})), 0);
+  cv::Mat empty(7, 9, CV_32FC1, cv::Scalar(kNone));
+  fill_holes(empty, 5.0F);
+  EXPECT_EQ(cv::countNonZero(empty == empty), 0);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,115 @@
+"""hs-stream with the real processes: what is killed comes back, Ctrl-C and even a killed hs-stream leave nothing behind.
+
+Takes the forest, models and scene that end_to_end_test.py has made.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from bus import enter_private_network
+
+NAMES = ["detect", "pose", "view", "capture"]
+
+
+class Stream:
+    """hs-stream in the background; its log and its processes'."""
+
+    def __init__(self, tools, made, folder, name, forest="small.forest"):
+        self.log = folder / f"{name}.err"
+        command = [tools / "hs-stream", "--source", f"bop:{made / 'scene'}", "--capture-options=--loop --rate 5",
+                   "--forest", made / forest, "--models", made / "views" / "models", "--every", "0.5",
+                   f"--view-options=--video {folder / name}.mp4"]
+        with open(self.log, "w", encoding="utf-8") as log:
+            self.process = subprocess.Popen([str(word) for word in command], stderr=log, stdout=subprocess.DEVNULL)
+
+    def find(self, pattern, seconds):
+        """The last match in the log, waiting for it."""
+        end = time.monotonic() + seconds
+        while True:
+            found = re.findall(pattern, self.log.read_text())
+            if found:
+                return found[-1]
+            assert time.monotonic() < end, f"no '{pattern}' in\n{self.log.read_text()}"
+            time.sleep(0.05)
+
+    def pids(self):
+        return {name: int(self.find(rf"{name} started, process (\d+)", 10)) for name in NAMES}
+
+
+def is_alive(pid):
+    """Whether the process runs; one that only waits for its burial does not."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
+
+
+def wait_until_gone(pids, seconds):
+    end = time.monotonic() + seconds
+    while any(is_alive(pid) for pid in pids):
+        assert time.monotonic() < end, f"still there: {[pid for pid in pids if is_alive(pid)]}"
+        time.sleep(0.02)
+
+
+def check_restart_and_stop(tools, made, folder):
+    stream = Stream(tools, made, folder, "restart")
+    before = stream.pids()
+    stream.find(r"detect [1-9.]+\d* Hz \d+ ms.* \| capture [1-9.]+\d* Hz", 30)
+    os.kill(before["detect"], signal.SIGKILL)
+    stream.find(r"detect was killed by signal 9 \(Killed\); starts again in 0.25 s", 5)
+    stream.find(r"detect [1-9.]+\d* Hz \d+ ms[^|]*\(restarts: 1\)", 30)
+    after = stream.pids()
+    assert after["detect"] != before["detect"] and not is_alive(before["detect"]), (before, after)
+    assert all(after[name] == before[name] for name in NAMES if name != "detect"), "the others were left alone"
+    start = time.monotonic()
+    stream.process.send_signal(signal.SIGINT)
+    assert stream.process.wait(20) == 0, stream.log.read_text()
+    took = time.monotonic() - start
+    print(f"all ended {took:.2f} s after Ctrl-C")
+    assert took < 4.0, "1.5 s, and more because tests share the processor"
+    assert not any(is_alive(pid) for pid in after.values())
+
+
+def check_killed_supervisor(tools, made, folder):
+    stream = Stream(tools, made, folder, "killed")
+    pids = stream.pids()
+    stream.find(r"detect [1-9.]+\d* Hz", 30)
+    stream.process.kill()
+    stream.process.wait()
+    wait_until_gone(pids.values(), 20)
+
+
+def check_bad_start(tools, made, folder):
+    """A forest that is not there: one try, one line that says so, a failure."""
+    stream = Stream(tools, made, folder, "bad", forest="missing.forest")
+    assert stream.process.wait(20) == 1, stream.log.read_text()
+    words = stream.log.read_text()
+    assert "detect ended with status 1 at its start" in words and str(made / "missing.forest") in words, words
+    assert words.count("detect started") == 1, words
+    wait_until_gone(stream.pids().values(), 1)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
+    parser.add_argument("--made", type=pathlib.Path, required=True, help="what end_to_end_test.py has made")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for what the test makes")
+    arguments = parser.parse_args()
+    enter_private_network()
+    shutil.rmtree(arguments.out, ignore_errors=True)
+    arguments.out.mkdir(parents=True)
+    tools, made, folder = arguments.tools.resolve(), arguments.made.resolve(), arguments.out.resolve()
+    check_restart_and_stop(tools, made, folder)
+    check_killed_supervisor(tools, made, folder)
+    check_bad_start(tools, made, folder)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,205 @@
+"""What people see of a running stream: lcm-spy with our viewers, the preview channel, and hs-view's window.
+
+Plays a scene live through hs-detect and hs-pose, opens the windows on a display without a screen, checks by their
+pixels that boxes and pose axes are drawn, and keeps the pictures: spy.png, spy_rgbd.png, spy_detections.png,
+spy_preview.png, view.png. Data and forest are those that end_to_end_test.py made.
+"""
+
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+from bus import Process, enter_private_network
+from virtual_display import VirtualDisplay
+
+BOX_COLOURS = {"bowl": (0xE6, 0x9F, 0x00), "soda_can": (0xF0, 0xE4, 0x42)}
+AXES = ((255, 60, 60), (60, 220, 60), (60, 120, 255))  # x, y, z
+COLOUR_SIZE = (640, 480)  # of the scene's frames
+AWAY = 3000  # where windows are put that are done with
+
+
+def overlay_pixels(picture):
+    """Pixels in the colours of boxes, and in the rarest colour of the axes."""
+    boxes = sum(picture.count(colour) for colour in BOX_COLOURS.values())
+    return boxes, min(picture.count(colour) for colour in AXES)
+
+
+def await_overlay(display, window, size=None, seconds=120):
+    """The first picture of a window on which a box and all three axes are drawn over a photograph, whose place is the
+    upper left corner of this size."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        picture = display.photograph(window)
+        width, height = size or (picture.width, picture.height)
+        boxes, axis = overlay_pixels(picture.cut(0, 0, width, height))
+        if boxes > 300 and axis > 25 and picture.colours() > 5000:
+            return picture
+        time.sleep(0.3)
+    raise AssertionError(f"no overlay after {seconds} s: {boxes} box pixels, {axis} axis pixels")
+
+
+def row_of_table(row):
+    """The middle of a row of spy's table, from 1, in pixels."""
+    return 16 * row + 12
+
+
+def written(picture, row):
+    """Whether there is text in the first column of a row."""
+    return picture.cut(2, row_of_table(row) - 6, 120, 12).count((51, 51, 51)) > 20  # the colour of its text
+
+
+def open_viewer(display, spy, channel):
+    """Double-clicks through the rows of spy's table until the window of a channel opens."""
+    for row in range(1, 12):
+        display.do("mousemove", 100, row_of_table(row), "click", "--repeat", 2, "--delay", 80, 1)
+        try:
+            title, window = channel_window(display)
+        except AssertionError:
+            continue  # a row without a channel
+        if title == channel:
+            return window
+        display.do("windowmove", window, AWAY, AWAY)
+    raise AssertionError(f"{channel} is not in spy's table: {spy.log.read_text()}")
+
+
+def channel_window(display, seconds=4):
+    """Title and id of a window that is named after a channel and in sight."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found = subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^[A-Z]+_[A-Z_]+$"],
+                               capture_output=True, text=True, check=False).stdout.split()
+        for window in found:
+            if display.geometry(window)[0] < AWAY:
+                return display.do("getwindowname", window).strip(), window
+        time.sleep(0.1)
+    raise AssertionError("no window of a channel")
+
+
+def check_spy(tools, logs, display, out):
+    spy = Process(logs, tools / "hs-spy")
+    try:
+        table = display.window("LCM Spy")
+        time.sleep(10)  # spy counts rates once a second
+        picture = display.photograph(table)
+        picture.save(out / "spy.png")
+        rows = sum(written(picture, row) for row in range(1, 20))
+        assert rows >= 6, f"{rows} channels in spy's table"
+        frames = open_viewer(display, spy, "OPENNI_FRAME")
+        check_frames(display, frames, out)
+        detections = open_viewer(display, spy, "HOUGHSTREAM_DETECTIONS")
+        await_overlay(display, detections).save(out / "spy_detections.png")
+        display.do("windowsize", detections, 300, 200)  # smaller than anything fits
+        display.do("windowsize", detections, 620, 700)
+        await_overlay(display, detections)
+        display.do("windowmove", detections, AWAY, AWAY)
+        preview = open_viewer(display, spy, "HOUGHSTREAM_PREVIEW")
+        end = time.monotonic() + 60
+        while display.photograph(preview).colours() < 5000:
+            assert time.monotonic() < end, "the preview shows nothing"
+        display.photograph(preview).save(out / "spy_preview.png")
+        assert spy.process.poll() is None and "Exception" not in spy.log.read_text(), spy.log.read_text()
+    finally:
+        spy.kill()
+
+
+def check_no_route(tools):
+    """Where there is no multicast route hs-spy says so, instead of showing an empty table."""
+    command = ["unshare", "-rn", str(tools / "hs-spy")]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
+    assert result.returncode == 1 and "is there a multicast route?" in result.stderr, result
+
+
+def check_frames(display, window, out):
+    """Colour beside depth: the right half holds the warm and cold colours of the map, the left hardly any."""
+    end = time.monotonic() + 60
+    while True:
+        picture = display.photograph(window)
+        left = picture.cut(0, 0, picture.width // 2, picture.height)
+        right = picture.cut(picture.width // 2, 0, picture.width // 2, picture.height)
+        vivid = [sum(max(row[x : x + 3]) - min(row[x : x + 3]) > 180 for row in half.rows for x in range(0, len(row), 3))
+                 for half in (left, right)]
+        if left.colours() > 5000 and vivid[1] > 50000 > 5 * vivid[0]:
+            break
+        assert time.monotonic() < end, f"{left.colours()} colours, {vivid} vivid pixels"
+        time.sleep(0.3)
+    picture.save(out / "spy_rgbd.png")
+    display.do("windowmove", window, AWAY, AWAY)
+
+
+def check_view(tools, data, logs, display, out):
+    view = Process(logs, tools / "hs-view", "--models", data / "views" / "models", "--rate", 30)
+    try:
+        window = display.window("Houghstream")
+        await_overlay(display, window, COLOUR_SIZE)
+        time.sleep(10)  # for a chart with something in it
+        await_overlay(display, window, COLOUR_SIZE).save(out / "view.png")
+        width = display.geometry(window)[2]
+        display.do("windowfocus", window)
+        press(display, "d", lambda: display.geometry(window)[2] < width, "d does not hide the depth")
+        press(display, "space", lambda: is_still(display, window), "space does not pause")
+        press(display, "q", lambda: view.process.poll() == 0, "q does not end hs-view")
+    finally:
+        view.kill()
+
+
+def press(display, key, condition, complaint, seconds=60):
+    """Presses a key once and waits for what it does."""
+    display.do("key", key)
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, complaint
+        time.sleep(0.2)
+
+
+def is_still(display, window):
+    before = display.photograph(window).rows
+    time.sleep(1.5)
+    return display.photograph(window).rows == before
+
+
+def check_no_display(tools):
+    """Without a display, one clear line that names the ways to go on."""
+    for display in ("", ":9999"):
+        result = subprocess.run([str(tools / "hs-view")], env=dict(os.environ, DISPLAY=display), capture_output=True,
+                                text=True, check=False, timeout=30)
+        assert result.returncode == 1 and result.stderr.count("\n") == 1, result
+        assert "no display" in result.stderr and "--snapshot" in result.stderr, result
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
+    parser.add_argument("--data", type=pathlib.Path, required=True, help="what end_to_end_test.py made")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for the pictures")
+    arguments = parser.parse_args()
+    enter_private_network()
+    tools, data, out = arguments.tools.resolve(), arguments.data.resolve(), arguments.out.resolve()
+    logs = out / "log"
+    logs.mkdir(parents=True, exist_ok=True)
+    check_no_display(tools)
+    processes = []
+    with VirtualDisplay(logs) as display:
+        try:
+            processes.append(Process(logs, tools / "hs-detect", "--forest", data / "small.forest", "--threads", 1))
+            processes.append(Process(logs, tools / "hs-pose", "--models", data / "views" / "models"))
+            processes.append(Process(logs, tools / "hs-view", "--models", data / "views" / "models", "--preview"))
+            for process in processes:
+                process.wait_until_ready()
+            os.replace(processes[-1].log, logs / "preview.err")
+            processes.append(Process(logs, tools / "hs-capture", "--source", f"bop:{data / 'scene'}", "--loop", "--rate",
+                                     10, "--jpeg-quality", 80))
+            if subprocess.run(["unshare", "-rn", "true"], capture_output=True, check=False).returncode == 0:
+                check_no_route(tools)
+            check_spy(tools, logs, display, out)
+            check_view(tools, data, logs, display, out)
+        finally:
+            for process in processes:
+                process.kill()
+    print(f"pictures in {out}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,110 @@
+#include "tools/log/export_results.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "drivers/json_file.hpp"
+#include "pipeline/channels.hpp"
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+#include "tests/tools/log/recordings.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+Detections make_detections(std::int64_t utime, int count) {
+  Detections found;
+  found.utime = utime;
+  found.source_channel = "OPENNI_FRAME";
+  for (int i = 0; i < count; ++i) {
+    Detection d;
+    d.class_id = i + 1;
+    d.class_name = i == 0 ? "bowl" : "a \"can\", red";
+    d.score = 0.5F;
+    d.box_px = {1.0F, 2.0F, 30.0F, 40.0F};
+    d.centre_camera = {0.25F, 0.5F, 1.0F};
+    if (i > 0) d.centre_camera.setConstant(std::numeric_limits<float>::quiet_NaN());
+    found.detections.push_back(d);
+  }
+  found.stages = {{"detect.forest", 1000}};
+  return found;
+}
+
+ObjectPoses make_poses(std::int64_t utime) {
+  ObjectPoses poses;
+  poses.utime = utime;
+  poses.source_channel = "OPENNI_FRAME";
+  ObjectPose pose;
+  pose.class_id = 1;
+  pose.class_name = "bowl";
+  pose.detection_index = 0;
+  pose.status = PoseStatus::kValid;
+  pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.25, 2.0));
+  pose.quality = 0.875F;
+  poses.poses.push_back(pose);
+  poses.stages = {{"detect.forest", 1000}, {"pose.refinement", 500}};
+  return poses;
+}
+
+/// Frame 10 with a bowl that has a pose and a can that has none, frame 20 with nothing.
+fs::path write_results(const std::string& name) {
+  fs::path file = fresh_folder(name) / "results.lcmlog";
+  TestLog log(file);
+  log.add(channel::kDetections, to_message(make_detections(10, 2)));
+  log.add(channel::kPoses, to_message(make_poses(10)));
+  log.add(channel::kDetections, to_message(make_detections(20, 0)));
+  log.add_bytes(channel::kDetections, {1, 2, 3});
+  log.close();
+  return file;
+}
+
+TEST(ExportResults, CsvHasARowForEachDetection) {
+  const fs::path log = write_results("results_csv");
+  LossAccount losses;
+  EXPECT_EQ(export_results_csv(log, log.parent_path() / "a.csv", losses), 2);
+  EXPECT_EQ(losses.refused(), 1);
+  std::istringstream lines(read_text(log.parent_path() / "a.csv"));
+  std::string header;
+  std::string bowl;
+  std::string can;
+  std::string end;
+  std::getline(lines, header);
+  std::getline(lines, bowl);
+  std::getline(lines, can);
+  EXPECT_EQ(bowl, "10,OPENNI_FRAME,0,1,bowl,0.5,1,2,30,40,0.25,0.5,1," + std::string(to_string(PoseStatus::kValid)) +
+                      ",0.5,0.25,2,1,0,0,0,0.875");
+  EXPECT_EQ(can, "10,OPENNI_FRAME,1,2,\"a \"\"can\"\", red\",0.5,1,2,30,40,,,,not looked for,,,,,,,,");
+  EXPECT_FALSE(std::getline(lines, end));
+  EXPECT_EQ(std::count(bowl.begin(), bowl.end(), ','), std::count(header.begin(), header.end(), ','));
+  EXPECT_EQ(std::count(can.begin(), can.end(), ','), std::count(header.begin(), header.end(), ',') + 1);
+}
+
+TEST(ExportResults, JsonHasEmptyFramesToo) {
+  const fs::path log = write_results("results_json");
+  LossAccount losses;
+  EXPECT_EQ(export_results_json(log, log.parent_path() / "a.json", losses), 2);
+  const nlohmann::json frames = read_json_object(log.parent_path() / "a.json").at("frames");
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0]["utime"], 10);
+  EXPECT_EQ(frames[0]["detections"][0]["pose"]["trans"], (nlohmann::json{0.5, 0.25, 2.0}));
+  EXPECT_TRUE(frames[0]["detections"][1]["pose"].is_null());
+  EXPECT_TRUE(frames[0]["detections"][1]["centre"][2].is_null());
+  EXPECT_EQ(frames[0]["stages_us"]["pose.refinement"], 500);
+  EXPECT_TRUE(frames[1]["detections"].empty());
+}
+
+TEST(ExportResults, ALogWithoutResultsIsRefused) {
+  const fs::path folder = fresh_folder("results_none");
+  TestLog log(folder / "log");
+  log.add("OPENNI_FRAME", foreign_images(numbered_frame(0)));
+  log.close();
+  LossAccount losses;
+  EXPECT_THROW(export_results_csv(folder / "log", folder / "a.csv", losses), InputError);
+  EXPECT_THROW(export_results_json(write_results("results_where"), folder / "no" / "a.json", losses), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

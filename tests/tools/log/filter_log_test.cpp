@@ -1,0 +1,75 @@
+#include "tools/log/filter_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FilterLog : public testing::Test {
+ protected:
+  /// Ten events a second apart, even ones on A_ONE, odd ones on B.
+  FilterLog() : folder_(fresh_folder("filter_log")) {
+    LogWriter writer(folder_ / "in");
+    for (int i = 0; i < 10; ++i) {
+      const std::vector<std::uint8_t> data(5, static_cast<std::uint8_t>(i));
+      writer.write(1'000'000'000 + 1'000'000 * i, i % 2 == 0 ? "A_ONE" : "B", {data.data(), data.size()});
+    }
+    writer.close();
+  }
+
+  /// The numbers of the events that pass.
+  std::vector<int> pass(const LogFilter& filter) const {
+    LossAccount losses;
+    const std::int64_t count = filter_log(folder_ / "in", filter, folder_ / "out", losses);
+    std::vector<int> numbers;
+    LogReader log(folder_ / "out");
+    while (const auto event = log.next()) {
+      EXPECT_EQ(event->timestamp, 1'000'000'000 + 1'000'000 * event->data[0]);
+      EXPECT_EQ(event->channel, event->data[0] % 2 == 0 ? "A_ONE" : "B");
+      numbers.push_back(event->data[0]);
+    }
+    EXPECT_EQ(count, static_cast<std::int64_t>(numbers.size()));
+    return numbers;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(FilterLog, ByTime) {
+  LogFilter filter;
+  filter.start_s = 2.5;
+  filter.end_s = 6.0;
+  EXPECT_EQ(pass(filter), (std::vector<int>{3, 4, 5, 6}));
+}
+
+TEST_F(FilterLog, ByChannel) {
+  LogFilter filter;
+  filter.channels = "A_.*";
+  EXPECT_EQ(pass(filter), (std::vector<int>{0, 2, 4, 6, 8}));
+  filter.others = true;
+  EXPECT_EQ(pass(filter), (std::vector<int>{1, 3, 5, 7, 9}));
+  filter.channels = "A";  // not the whole name
+  EXPECT_EQ(pass(filter).size(), 10U);
+}
+
+TEST_F(FilterLog, WhatMakesNoSenseIsRefused) {
+  LogFilter filter;
+  filter.channels = "(";
+  EXPECT_THROW(pass(filter), InputError);
+  filter = {};
+  filter.start_s = 100.0;
+  fs::remove(folder_ / "out");
+  EXPECT_THROW(pass(filter), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing is written where nothing passes";
+  LossAccount losses;
+  EXPECT_THROW(filter_log(folder_ / "in", {}, folder_ / "in", losses), InputError);
+  EXPECT_GT(fs::file_size(folder_ / "in"), 300U);
+}
+
+}  // namespace
+}  // namespace houghstream

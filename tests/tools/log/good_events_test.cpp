@@ -1,0 +1,87 @@
+#include "tools/log/good_events.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Header 28, channel "CHANNEL" 7, data 10.
+constexpr std::streamoff kEventBytes = 45;
+
+fs::path write_events(const std::string& name, int events) {
+  fs::path file = fresh_folder(name) / "log";
+  LogWriter writer(file);
+  for (int i = 0; i < events; ++i) {
+    const std::vector<std::uint8_t> data(10, static_cast<std::uint8_t>(i));
+    writer.write(i, "CHANNEL", {data.data(), data.size()});
+  }
+  writer.close();
+  return file;
+}
+
+void put_at(const fs::path& file, std::streamoff position, char value) {
+  std::fstream log(file, std::ios::in | std::ios::out | std::ios::binary);
+  log.seekp(position);
+  log.put(value);
+}
+
+std::vector<std::int64_t> read_all(const fs::path& file, LossAccount& losses) {
+  std::vector<std::int64_t> timestamps;
+  GoodEvents events(file, losses);
+  while (const auto event = events.next()) timestamps.push_back(event->timestamp);
+  return timestamps;
+}
+
+using Timestamps = std::vector<std::int64_t>;
+
+TEST(GoodEvents, AHealthyLogIsReadToItsEnd) {
+  LossAccount losses;
+  EXPECT_EQ(read_all(write_events("good_healthy", 3), losses), (Timestamps{0, 1, 2}));
+  EXPECT_EQ(losses.line(), "");
+}
+
+TEST(GoodEvents, ACutLogLosesItsLastEventOnly) {
+  const fs::path file = write_events("good_cut", 4);
+  fs::resize_file(file, 4 * kEventBytes - 3);
+  LossAccount losses;
+  EXPECT_EQ(read_all(file, losses), (Timestamps{0, 1, 2}));
+  EXPECT_NE(losses.line().find("42 bytes lost at 1 damaged place, first: " + file.string() + ": cut in event 3"),
+            std::string::npos)
+      << losses.line();
+}
+
+TEST(GoodEvents, DamagedPlacesArePassedOver) {
+  const fs::path file = write_events("good_damaged", 9);
+  put_at(file, 2 * kEventBytes, 'x');           // a sync word
+  put_at(file, 5 * kEventBytes + 26, '\x01');   // a length: the event would reach far beyond the end
+  put_at(file, 7 * kEventBytes + 27, 10 + 12);  // a length: the event reaches into the next
+  LossAccount losses;
+  EXPECT_EQ(read_all(file, losses), (Timestamps{0, 1, 3, 4, 6, 8}));
+  EXPECT_EQ(losses.damaged_places(), 3);
+  EXPECT_NE(losses.line().find("135 bytes lost at 3 damaged places"), std::string::npos) << losses.line();
+}
+
+TEST(GoodEvents, WhatIsNoLogIsRefused) {
+  const fs::path folder = fresh_folder("good_none");
+  write_text(folder / "text", std::string(1000, 'x'));
+  LossAccount losses;
+  EXPECT_THROW(read_all(folder / "text", losses), InputError);
+  EXPECT_THROW(read_all(folder / "missing", losses), InputError);
+}
+
+TEST(LossAccount, SaysInOneLineWhatWasLost) {
+  LossAccount losses;
+  losses.note_refused("frame 7: no camera");
+  losses.note_refused("frame 8: no camera");
+  EXPECT_EQ(losses.line(), "2 left out, first: frame 7: no camera");
+  losses.note_damage(12, "cut");
+  EXPECT_EQ(losses.line(), "12 bytes lost at 1 damaged place, first: cut; 2 left out, first: frame 7: no camera");
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,64 @@
+package houghstream.spy;
+
+import houghstream.detections_t;
+import houghstream.image_t;
+import houghstream.images_t;
+import houghstream.object_pose_t;
+import houghstream.object_poses_t;
+import houghstream.rigid_transform_t;
+import houghstream.status_t;
+import javax.swing.JDesktopPane;
+import lcm.spy.LCMTypeDatabase;
+import lcm.spy.SpyPlugin;
+
+/** Types and plug-ins as spy asks for them, and which messages a viewer shows together. */
+final class PluginsTest {
+  private PluginsTest() {}
+
+  static void run() {
+    Check.test("plug-ins tell name and types without a place", PluginsTest::plugins);
+    Check.test("spy knows every type that is sent", PluginsTest::types);
+    Check.test("frames, detections and poses meet by utime", PluginsTest::matching);
+  }
+
+  private static void plugins() {
+    SpyPlugin[] plugins = {new RgbdPlugin(), new ImagePlugin(), new DetectionPlugin()};
+    long[] types = {images_t.LCM_FINGERPRINT, image_t.LCM_FINGERPRINT, detections_t.LCM_FINGERPRINT};
+    for (int i = 0; i < plugins.length; ++i) {
+      for (int k = 0; k < types.length; ++k) Check.equal(plugins[i].canHandle(types[k]), i == k);
+      Check.that(plugins[i].getAction(null, null).getValue("Name") instanceof String, "a name");
+      plugins[i].getAction(null, null).actionPerformed(null);
+      plugins[i].getAction(new JDesktopPane(), null).actionPerformed(null);
+    }
+    Check.that(plugins[2].canHandle(object_poses_t.LCM_FINGERPRINT), "poses");
+  }
+
+  private static void types() {
+    LCMTypeDatabase known = new LCMTypeDatabase();
+    Check.equal(known.getClassByFingerprint(images_t.LCM_FINGERPRINT), images_t.class);
+    Check.equal(known.getClassByFingerprint(image_t.LCM_FINGERPRINT), image_t.class);
+    Check.equal(known.getClassByFingerprint(detections_t.LCM_FINGERPRINT), detections_t.class);
+    Check.equal(known.getClassByFingerprint(object_poses_t.LCM_FINGERPRINT), object_poses_t.class);
+    Check.equal(known.getClassByFingerprint(rigid_transform_t.LCM_FINGERPRINT), rigid_transform_t.class);
+    Check.equal(known.getClassByFingerprint(status_t.LCM_FINGERPRINT), status_t.class);
+  }
+
+  private static void matching() throws Exception {
+    ResultMatcher matcher = new ResultMatcher();
+    Check.equal(matcher.newest(0), null);
+    matcher.addFrame(ViewersTest.frame(10));
+    matcher.addDetections(Samples.detections(10));
+    Check.equal(matcher.newest(0).utime, 10L); // poses never came: detections alone
+    matcher.addPoses(Samples.poses(10, object_pose_t.VALID), 0);
+    matcher.addDetections(Samples.detections(20));
+    Check.equal(matcher.newest(1).utime, 10L); // poses of 20 are still to come
+    Check.equal(matcher.newest(9_000_000).utime, 10L); // 20 came without its frame
+    matcher.addDetections(Samples.detections(3_000_000));
+    Check.equal(matcher.newest(9_000_000).utime, 3_000_000L); // a second later the frame of 10 is too old
+    Check.equal(matcher.arrivedPercent(), 33);
+    for (int i = 0; i < 200; ++i) matcher.addFrame(ViewersTest.frame(i)); // a log that is played again, from an earlier time
+    matcher.addDetections(Samples.detections(150));
+    Check.equal(matcher.newest(9_000_000).utime, 150L);
+    Check.refused("message of 8 bytes", () -> matcher.addFrame(new byte[8]));
+  }
+}

@@ -1,0 +1,83 @@
+#include "tools/stream/child.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+using std::chrono::milliseconds;
+
+Ending wait_for(Child& child) {
+  for (int i = 0; i < 1000; ++i) {
+    if (const auto ending = child.ending()) return *ending;
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  ADD_FAILURE() << "it did not end";
+  return {};
+}
+
+TEST(Child, TellsHowItEnded) {
+  Child good({"/bin/sh", "-c", "exit 0"});
+  EXPECT_TRUE(wait_for(good).success);
+  Child bad({"/bin/sh", "-c", "exit 7"});
+  const Ending ending = wait_for(bad);
+  EXPECT_FALSE(ending.success);
+  EXPECT_FALSE(ending.by_signal);
+  EXPECT_EQ(ending.words, "ended with status 7");
+  Child killed({"/bin/sh", "-c", "exec sleep 100"});
+  killed.signal(SIGTERM);
+  EXPECT_TRUE(wait_for(killed).by_signal);
+}
+
+TEST(Child, DoesNotOutliveItsOwner) {
+  pid_t pid = 0;
+  {
+    Child child({"/bin/sh", "-c", "exec sleep 100"});
+    pid = child.pid();
+    EXPECT_EQ(kill(pid, 0), 0);
+  }
+  EXPECT_NE(kill(pid, 0), 0);
+}
+
+// The owner is a process that is killed without a chance to tidy up.
+TEST(Child, DoesNotOutliveAnOwnerThatIsKilled) {
+  const auto file = fresh_folder("child_orphan") / "pid";
+  const pid_t owner = fork();
+  if (owner == 0) {
+    const Child child({"/bin/sh", "-c", "exec sleep 100"});
+    std::ofstream(file) << child.pid() << std::endl;
+    pause();
+    _exit(0);
+  }
+  pid_t orphan = 0;
+  for (int i = 0; i < 1000 && !(std::ifstream(file) >> orphan); ++i) std::this_thread::sleep_for(milliseconds(10));
+  ASSERT_GT(orphan, 0);
+  kill(owner, SIGKILL);
+  waitpid(owner, nullptr, 0);
+  const auto ended = [&] {
+    std::ifstream stat("/proc/" + std::to_string(orphan) + "/stat");
+    std::string number;
+    std::string name;
+    std::string state = "X";
+    stat >> number >> name >> state;
+    return state == "X" || state == "Z";  // nobody may be there to bury it
+  };
+  for (int i = 0; i < 1000 && !ended(); ++i) std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_TRUE(ended());
+}
+
+TEST(Child, AMissingProgramIsNamed) {
+  EXPECT_THROW(Child({"/nowhere/hs-detect"}), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

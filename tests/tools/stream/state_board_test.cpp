@@ -1,0 +1,39 @@
+#include "tools/stream/state_board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace houghstream {
+namespace {
+
+using std::chrono::seconds;
+
+status_t status_of(pid_t pid, float rate_hz) {
+  status_t status{};
+  status.pid = pid;
+  status.rate_hz = rate_hz;
+  status.latency_p50_ms = std::numeric_limits<float>::quiet_NaN();
+  return status;
+}
+
+TEST(StateBoard, TellsTheStreamsStateInOneLine) {
+  StateBoard board;
+  const auto now = StateBoard::Clock::now();
+  status_t detect = status_of(10, 9.84F);
+  detect.latency_p50_ms = 119.4F;
+  detect.frames_lost = 3;
+  detect.frames_refused = 2;
+  detect.last_error = "no camera";
+  board.note(detect, now);
+  board.note(status_of(11, 30.0F), now - seconds(4));
+  board.note(status_of(12, 30.0F), now);
+  const std::string line =
+      board.line({{"detect", 10, 0}, {"pose", 11, 0}, {"view", 0, 2}, {"capture", 12, 1}, {"new", 13, 0}}, now);
+  EXPECT_EQ(line,
+            "detect 9.8 Hz 119 ms, 3 lost, 2 refused: no camera | pose silent | view down (restarts: 2) | "
+            "capture 30.0 Hz (restarts: 1) | new silent");
+}
+
+}  // namespace
+}  // namespace houghstream

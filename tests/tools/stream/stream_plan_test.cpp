@@ -1,0 +1,43 @@
+#include "tools/stream/stream_plan.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(StreamPlan, PutsTheStreamTogether) {
+  StreamOptions options;
+  options.executables = "/bin";
+  options.source = "openni2";
+  options.forest = "my.forest";
+  options.models = "models";
+  options.lcm_url = "udpm://239.255.76.67:7777?ttl=0";
+  options.detect_options = "--threads 2  --threshold 0.3";
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 4U);
+  EXPECT_EQ(plans[0].command, (Words{"/bin/hs-detect", "--channel", "OPENNI_FRAME", "--lcm-url", options.lcm_url,
+                                     "--forest", "my.forest", "--threads", "2", "--threshold", "0.3"}));
+  EXPECT_EQ(plans[1].name, "pose");
+  EXPECT_EQ(plans[2].name, "view");
+  EXPECT_EQ(plans[3].command.back(), "openni2");
+  EXPECT_FALSE(plans[0].ends_stream);
+  EXPECT_TRUE(plans[2].ends_stream);
+  EXPECT_TRUE(plans[3].ends_stream);
+}
+
+TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
+  StreamOptions options;
+  options.executables = "/bin";
+  options.forest = "my.forest";
+  options.camera = "640x480,525,525,319.5,239.5";
+  options.view = false;
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 1U) << "another driver sends the frames, there are no models and no window";
+  EXPECT_EQ(plans[0].command, (Words{"/bin/hs-detect", "--channel", "OPENNI_FRAME", "--forest", "my.forest", "--camera",
+                                     options.camera}));
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,132 @@
+#include "tools/stream/supervisor.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <thread>
+
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+using std::chrono::milliseconds;
+
+ChildPlan shell(const std::string& name, const std::string& script, bool ends_stream = false) {
+  return {name, {"/bin/sh", "-c", script}, ends_stream};
+}
+
+SupervisorSettings quick() {
+  SupervisorSettings settings;
+  settings.first_wait = milliseconds(20);
+  settings.longest_wait = milliseconds(80);
+  settings.start_time = milliseconds(100);
+  return settings;
+}
+
+bool is_running(pid_t pid) {
+  return kill(pid, 0) == 0;
+}
+
+/// Steps until `done`, for ten seconds at most.
+template <typename Done>
+bool step_until(Supervisor& supervisor, const Done& done) {
+  for (int i = 0; i < 1000 && !done(); ++i) {
+    if (!supervisor.step()) return done();
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  return done();
+}
+
+void be_silent(const std::string& /*words*/) {}
+
+TEST(Supervisor, StartsAgainWhatIsKilled) {
+  std::vector<std::string> lines;
+  Supervisor supervisor({shell("a", "exec sleep 100"), shell("b", "exec sleep 100")}, quick(),
+                        [&](const std::string& words) { lines.push_back(words); });
+  const pid_t first = supervisor.states()[0].pid;
+  const pid_t other = supervisor.states()[1].pid;
+  kill(first, SIGKILL);
+  ASSERT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 1; }));
+  EXPECT_NE(supervisor.states()[0].pid, first);
+  EXPECT_EQ(supervisor.states()[1].pid, other);
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_EQ(lines[2], "a was killed by signal 9 (Killed); starts again in 0.02 s");
+}
+
+TEST(Supervisor, StopLeavesNoProcess) {
+  Supervisor supervisor({shell("a", "exec sleep 100"), shell("parent", "sleep 100 & wait")}, quick(), be_silent);
+  std::vector<pid_t> pids;
+  for (const auto& state : supervisor.states()) pids.push_back(state.pid);
+  std::this_thread::sleep_for(milliseconds(100));
+  EXPECT_TRUE(supervisor.stop().empty());
+  for (const pid_t pid : pids) {
+    EXPECT_FALSE(is_running(pid));
+    for (int i = 0; i < 500 && is_running(-pid); ++i) std::this_thread::sleep_for(milliseconds(10));
+    EXPECT_FALSE(is_running(-pid)) << "nor anything that it has started";
+  }
+}
+
+TEST(Supervisor, WhoDoesNotEndIsKilled) {
+  const auto folder = fresh_folder("supervisor_deaf");
+  SupervisorSettings settings = quick();
+  settings.patience = milliseconds(200);
+  Supervisor supervisor(
+      {shell("deaf", "trap '' INT TERM; touch " + (folder / "ready").string() + "; while true; do sleep 0.1; done")},
+      settings, be_silent);
+  step_until(supervisor, [&] { return std::filesystem::exists(folder / "ready"); });
+  const pid_t pid = supervisor.states()[0].pid;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(supervisor.stop(), std::vector<std::string>{"deaf"});
+  EXPECT_FALSE(is_running(pid));
+  EXPECT_GE(std::chrono::steady_clock::now() - start, settings.patience);
+}
+
+TEST(Supervisor, WhoFailsAtItsStartIsNotTriedAgain) {
+  Supervisor supervisor({shell("wrong", "exit 3")}, quick(), be_silent);
+  try {
+    step_until(supervisor, [] { return false; });
+    FAIL() << "goes on without it";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("wrong ended with status 3 at its start"), std::string::npos);
+  }
+}
+
+TEST(Supervisor, WhoHasRunIsTriedAgainEverMoreSlowly) {
+  std::vector<std::string> lines;
+  Supervisor supervisor({shell("a", "sleep 0.2; exit 3")}, quick(),
+                        [&](const std::string& words) { lines.push_back(words); });
+  ASSERT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 4; }));
+  std::vector<std::string> waits;
+  for (const std::string& line : lines) {
+    const std::size_t in = line.find(" in ");
+    if (in != std::string::npos) waits.push_back(line.substr(in + 4));
+  }
+  EXPECT_EQ(waits, (std::vector<std::string>{"0.02 s", "0.04 s", "0.08 s", "0.08 s"}));
+}
+
+TEST(Supervisor, WhoIsKnownToRunNeedNotWait) {
+  SupervisorSettings settings = quick();
+  settings.start_time = milliseconds(100'000);
+  Supervisor supervisor({shell("a", "sleep 0.2; exit 3")}, settings, be_silent);
+  supervisor.note_running(supervisor.states()[0].pid);
+  EXPECT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 1; }));
+}
+
+TEST(Supervisor, TheEndOfTheSourceEndsTheStream) {
+  Supervisor supervisor({shell("detect", "exec sleep 100"), shell("capture", "exit 0", true)}, quick(), be_silent);
+  bool ended = false;
+  for (int i = 0; i < 1000 && !ended; ++i) {
+    ended = !supervisor.step();
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_TRUE(ended);
+}
+
+TEST(Supervisor, AMissingProgramIsNamed) {
+  EXPECT_THROW(Supervisor({{"a", {"/nowhere/hs-detect"}, false}}, quick(), be_silent), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

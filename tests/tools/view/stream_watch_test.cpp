@@ -1,0 +1,38 @@
+#include "tools/view/stream_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+ProcessState heard(const std::string& name, std::int64_t time_us) {
+  ProcessState process;
+  process.name = name;
+  process.heard_us = time_us;
+  return process;
+}
+
+TEST(StreamWatch, RateIsThatOfTheLastTwoSeconds) {
+  StreamWatch watch;
+  EXPECT_EQ(watch.state(0).frames_hz, 0.0);
+  for (std::int64_t i = 0; i < 100; ++i) watch.note_frame(i * 1'000'000);  // once a second
+  for (std::int64_t i = 0; i < 90; ++i) watch.note_frame(100'000'000 + i * 33'333);
+  EXPECT_NEAR(watch.state(103'000'000).frames_hz, 30.0, 0.5);
+  EXPECT_EQ(watch.state(110'000'000).frames_hz, 0.0);  // nothing comes any more
+}
+
+TEST(StreamWatch, ProcessesAreShownByNameUntilTheyFallSilent) {
+  StreamWatch watch;
+  watch.note_process(heard("hs-pose", 1'000'000));
+  watch.note_process(heard("hs-detect", 2'000'000));
+  watch.note_process(heard("hs-detect", 3'000'000));
+  const StreamState both = watch.state(4'000'000);
+  ASSERT_EQ(both.processes.size(), 2U);
+  EXPECT_EQ(both.processes[0].name, "hs-detect");
+  const StreamState later = watch.state(7'000'000);
+  ASSERT_EQ(later.processes.size(), 1U);
+  EXPECT_EQ(later.processes[0].heard_us, 3'000'000);
+}
+
+}  // namespace
+}  // namespace houghstream

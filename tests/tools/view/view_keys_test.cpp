@@ -1,0 +1,34 @@
+#include "tools/view/view_keys.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+TEST(ViewKeys, EachKeyDoesWhatTheWindowSays) {
+  FrameViewSettings settings;
+  EXPECT_EQ(apply_key('d', settings), KeyAction::kRedraw);
+  EXPECT_FALSE(settings.show_depth);
+  EXPECT_EQ(apply_key(' ', settings), KeyAction::kRedraw);
+  EXPECT_TRUE(settings.paused);
+  apply_key(' ', settings);
+  EXPECT_FALSE(settings.paused);
+  EXPECT_EQ(apply_key('q', settings), KeyAction::kEnd);
+  EXPECT_EQ(apply_key(27, settings), KeyAction::kEnd);
+  EXPECT_EQ(apply_key(-1, settings), KeyAction::kNone);
+  EXPECT_EQ(apply_key('x', settings), KeyAction::kNone);
+}
+
+TEST(ViewKeys, TheThresholdStaysBetweenZeroAndOne) {
+  FrameViewSettings settings;
+  settings.min_score = 0.5F;
+  EXPECT_EQ(apply_key('+', settings), KeyAction::kRedraw);
+  EXPECT_NEAR(settings.min_score, 0.55F, 1e-6);
+  for (int i = 0; i < 30; ++i) apply_key('+', settings);
+  EXPECT_EQ(settings.min_score, 1.0F);
+  for (int i = 0; i < 30; ++i) apply_key('-', settings);
+  EXPECT_EQ(settings.min_score, 0.0F);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "tools/doctor/finding.hpp"
+#include "tools/doctor/machine.hpp"
+
+namespace houghstream {
+
+struct ExaminationSettings {
+  std::string lcm_url;                         ///< "" = LCM's default
+  std::string frame_channel = "OPENNI_FRAME";  ///< listened to for the size of the frames in use
+  int width = 640;                             ///< pixels of a raw frame, where no frame is heard
+  int height = 480;                            ///< pixels
+  bool live = false;                           ///< a camera is needed
+  std::filesystem::path types_jar;             ///< our types for lcm-spy
+};
+
+/// Looks at everything the stream needs. Changes nothing.
+Findings examine(const Machine& machine, const ExaminationSettings& settings);
+
+/// A line for each finding, and below it the command that mends it.
+std::string to_text(const Findings& findings);
+
+/// How many findings keep the stream from working.
+int count_wrong(const Findings& findings);
+
+}  // namespace houghstream

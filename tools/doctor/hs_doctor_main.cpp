@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+
+#include "pipeline/checks.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/doctor/examination.hpp"
+
+int main(int argc, char** argv) {
+  using namespace houghstream;
+  CLI::App app(
+      "Looks for what would keep the stream from working, and says how to mend it; changes nothing. Fails where the "
+      "stream would not work.",
+      "hs-doctor");
+  ExaminationSettings settings;
+  app.add_flag("--live", settings.live, "a camera is needed: without one the stream would not work");
+  app.add_option("--width", settings.width, "pixels of a frame, where none is heard on the bus")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  app.add_option("--height", settings.height, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
+  app.add_option("-c,--channel", settings.frame_channel, "channel of the frames")->capture_default_str();
+  add_lcm_url_option(app, settings.lcm_url);
+
+  return run_tool(app, argc, argv, [&] {
+    // The bus would warn of small buffers itself.
+    if (spdlog::get_level() > spdlog::level::debug) spdlog::set_level(spdlog::level::err);
+    std::error_code unknown;
+    settings.types_jar =
+        std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path() / "houghstream_types.jar";
+    const Findings findings = examine(this_machine(), settings);
+    fmt::print("{}", to_text(findings));
+    std::fflush(stdout);
+    const int wrongs = count_wrong(findings);
+    require(wrongs == 0, "the stream would not work: {} of the lines above", wrongs);
+    fmt::print("the stream works\n");
+  });
+}

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "tools/doctor/machine.hpp"
+
+// Probes of a Machine that use the bus itself. Neither throws.
+
+namespace houghstream {
+
+/// Machine::heard_bytes of this machine.
+std::size_t heard_bytes(const std::string& url, const std::string& channel);
+
+/// Machine::self_test of this machine: some messages one after another on a channel of their own.
+SelfTest self_test(const std::string& url, std::size_t bytes);
+
+}  // namespace houghstream

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace houghstream {
+
+/// What became of messages that were sent on the bus to be received by the sender itself.
+struct SelfTest {
+  int sent = 0;
+  int received = 0;   ///< whole and unchanged
+  std::string error;  ///< why the bus could not be used at all, else ""
+};
+
+/// How the doctor looks at a machine: files below `root`, and probes for what files do not tell. Tests put in others.
+struct Machine {
+  std::filesystem::path root = "/";
+  /// Value of an environment variable, "" where it is not set.
+  std::function<std::string(const std::string& name)> environment;
+  /// Bytes of receive buffer that the kernel grants of those asked for.
+  std::function<std::int64_t(std::int64_t asked)> granted_receive_buffer;
+  /// Size of the largest message heard on the channel within a second; 0 = none.
+  std::function<std::size_t(const std::string& url, const std::string& channel)> heard_bytes;
+  /// Sends messages of so many bytes and waits for them.
+  std::function<SelfTest(const std::string& url, std::size_t bytes)> self_test;
+  /// Whether this user may read and write the file (a full path below root).
+  std::function<bool(const std::filesystem::path&)> may_use;
+  /// Why the shared library cannot be loaded, "" where it can.
+  std::function<std::string(const std::filesystem::path&)> load_error;
+  /// Whether the program runs when started with the argument.
+  std::function<bool(const std::filesystem::path& program, const std::string& argument)> runs;
+
+  /// The file's text, "" where it cannot be read. `path` from the root on, without a leading slash.
+  std::string read(const std::string& path) const;
+  /// Where a program lies on $PATH.
+  std::optional<std::filesystem::path> find_program(const std::string& name) const;
+};
+
+/// This machine, as the calling process sees it.
+Machine this_machine();
+
+}  // namespace houghstream

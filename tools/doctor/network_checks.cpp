@@ -1,0 +1,121 @@
+#include "tools/doctor/network_checks.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <sstream>
+#include <tuple>
+
+#include "pipeline/receive_buffer.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr const char* kRoute = "multicast route";
+constexpr const char* kBuffer = "receive buffer";
+constexpr const char* kJavaBuffer = "Java's buffer";
+constexpr const char* kSelfTest = "LCM self test";
+const std::string kRouteRemedy = "sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo";
+
+/// ADDRESS:PORT of a udpm URL.
+std::optional<std::pair<std::string, std::string>> group_of(const std::string& url) {
+  const std::string scheme = "udpm://";
+  if (url.rfind(scheme, 0) != 0) return std::nullopt;
+  const std::string place = url.substr(scheme.size(), url.find('?') - scheme.size());
+  const std::size_t colon = place.find(':');
+  if (colon == std::string::npos) return std::nullopt;
+  return std::make_pair(place.substr(0, colon), place.substr(colon + 1));
+}
+
+/// The interface through which packets to the address leave, by /proc/net/route: the narrowest route, then the
+/// smallest metric. Numbers there are in the order of the network, read as those of this machine, like inet_addr().
+std::optional<std::string> interface_to(const Machine& machine, const std::string& address) {
+  const std::uint32_t target = inet_addr(address.c_str());
+  std::optional<std::tuple<std::uint32_t, std::int64_t, std::string>> best;
+  std::istringstream lines(machine.read("proc/net/route"));
+  std::string line;
+  std::getline(lines, line);  // names of the columns
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string name;
+    std::uint32_t destination = 0;
+    std::uint32_t gateway = 0;
+    std::uint32_t flags = 0;
+    std::string counts[2];
+    std::int64_t metric = 0;
+    std::uint32_t mask = 0;
+    words >> name >> std::hex >> destination >> gateway >> flags >> counts[0] >> counts[1] >> std::dec >> metric >>
+        std::hex >> mask;
+    constexpr std::uint32_t kUp = 0x1;
+    constexpr std::uint32_t kReject = 0x200;
+    if (!words || (flags & (kUp | kReject)) != kUp || (target & mask) != destination) continue;
+    const auto candidate = std::make_tuple(ntohl(mask), -metric, name);
+    if (!best || candidate > *best) best = candidate;
+  }
+  return best ? std::optional<std::string>(std::get<2>(*best)) : std::nullopt;
+}
+
+Finding check_route(const Machine& machine, const std::string& url) {
+  const auto group = group_of(url);
+  if (!group) return ok(kRoute, fmt::format("not needed with {}", url));
+  const std::optional<std::string> name = interface_to(machine, group->first);
+  if (!name) return wrong(kRoute, fmt::format("no route to {}: LCM cannot send", group->first), kRouteRemedy);
+  return ok(kRoute, fmt::format("{} goes through {}", group->first, *name));
+}
+
+Finding check_buffer(const Machine& machine, std::size_t frame_bytes, bool heard) {
+  const std::int64_t needed = needed_receive_buffer(static_cast<std::int64_t>(frame_bytes));
+  const std::int64_t granted = machine.granted_receive_buffer(std::max(kAskedReceiveBuffer, needed));
+  const std::string frames =
+      fmt::format("frames of {} kB ({})", frame_bytes / 1000, heard ? "heard on the bus" : "none heard, so assumed");
+  if (granted >= needed) return ok(kBuffer, fmt::format("{} kB granted for {}", granted / 1024, frames));
+  const std::string what = fmt::format("{} kB granted, {} kB needed for {}: frames are lost without a word",
+                                       granted / 1024, needed / 1024, frames);
+  if (needed <= kAskedReceiveBuffer) return wrong(kBuffer, what, receive_buffer_remedy());
+  return wrong(kBuffer, what, fmt::format("sudo sysctl -w net.core.rmem_max={0} net.core.rmem_default={0}", needed));
+}
+
+Finding check_java_buffer(const Machine& machine, std::size_t frame_bytes) {
+  const std::int64_t given = std::atoll(machine.read("proc/sys/net/core/rmem_default").c_str());
+  if (given >= needed_receive_buffer(static_cast<std::int64_t>(frame_bytes))) {
+    return ok(kJavaBuffer, fmt::format("net.core.rmem_default is {} kB", given / 1024));
+  }
+  return note(kJavaBuffer,
+              fmt::format("net.core.rmem_default is {} kB: lcm-spy, lcm-logger and other programs that ask for no more "
+                          "lose most frames of {} kB",
+                          given / 1024, frame_bytes / 1000),
+              receive_buffer_remedy());
+}
+
+Finding check_self_test(const Machine& machine, const std::string& url, std::size_t bytes) {
+  const SelfTest test = machine.self_test(url, bytes);
+  const auto group = group_of(url).value_or(std::make_pair("239.255.76.67", "7667"));
+  const std::string firewall =
+      fmt::format("sudo iptables -I INPUT -p udp -d {} --dport {} -j ACCEPT", group.first, group.second);
+  if (!test.error.empty()) return wrong(kSelfTest, test.error, kRouteRemedy);
+  const std::string what = fmt::format("{} of {} messages of {} kB came back", test.received, test.sent, bytes / 1000);
+  if (test.received == test.sent) return ok(kSelfTest, what);
+  if (test.received == 0) return wrong(kSelfTest, what + "; is there a firewall?", firewall);
+  return wrong(kSelfTest, what + "; the machine is overloaded or its buffers are too small", receive_buffer_remedy());
+}
+
+}  // namespace
+
+Findings check_network(const Machine& machine, const BusSettings& settings) {
+  Findings findings = {check_route(machine, settings.url)};
+  const bool route = findings.back().level == Finding::Level::kOk;
+  const std::size_t heard = route ? machine.heard_bytes(settings.url, settings.frame_channel) : 0;
+  const std::size_t frame_bytes = heard > 0 ? heard : settings.frame_bytes;
+  if (group_of(settings.url)) {
+    findings.push_back(check_buffer(machine, frame_bytes, heard > 0));
+    findings.push_back(check_java_buffer(machine, frame_bytes));
+  }
+  // Without a route LCM would wait for its own test for ten seconds, to say the same.
+  findings.push_back(route ? check_self_test(machine, settings.url, frame_bytes)
+                           : note(kSelfTest, "not tried: there is no route"));
+  return findings;
+}
+
+}  // namespace houghstream

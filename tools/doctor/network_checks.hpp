@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "tools/doctor/finding.hpp"
+#include "tools/doctor/machine.hpp"
+
+namespace houghstream {
+
+struct BusSettings {
+  std::string url;            ///< as LCM takes it, complete
+  std::string frame_channel;  ///< listened to for the size of the frames in use
+  std::size_t frame_bytes;    ///< taken where no frame is heard
+};
+
+/// Multicast route, receive buffers for the frames in use and for Java, and messages of that size sent and received.
+Findings check_network(const Machine& machine, const BusSettings& settings);
+
+}  // namespace houghstream

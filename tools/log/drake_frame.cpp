@@ -1,0 +1,148 @@
+#include <cstring>
+#include <houghstream/drake_image_array_t.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "pipeline/checks.hpp"
+#include "pipeline/codecs.hpp"
+#include "pipeline/frame.hpp"
+#include "tools/log/foreign_frames.hpp"
+#include "tools/log/image_parts.hpp"
+
+namespace houghstream {
+namespace {
+
+using Wire = drake_image_t;
+
+/// A drake.lcmt_image; the data belong to the message.
+struct DrakeImage {
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+  std::int32_t row_stride = 0;
+  ByteView data;
+  bool big_endian = false;
+  std::int8_t pixel_format = 0;
+  std::int8_t channel_type = 0;
+  std::int8_t compression = 0;
+};
+
+std::int64_t read_header(WireReader& reader) {
+  reader.skip(4);  // counter
+  const std::int64_t utime = reader.read_int64();
+  reader.read_string();  // coordinate frame
+  return utime;
+}
+
+DrakeImage read_image(WireReader& reader) {
+  read_header(reader);
+  DrakeImage image;
+  image.width = reader.read_int32();
+  image.height = reader.read_int32();
+  image.row_stride = reader.read_int32();
+  image.data = reader.read_bytes(reader.read_count(1));
+  image.big_endian = reader.read_int8() != 0;
+  image.pixel_format = reader.read_int8();
+  image.channel_type = reader.read_int8();
+  image.compression = reader.read_int8();
+  return image;
+}
+
+/// The image's rows, unpacked.
+std::vector<std::uint8_t> unpacked(const DrakeImage& image, std::int64_t pixel_bytes) {
+  check_image_size(image.width, image.height);
+  require(image.row_stride == image.width * pixel_bytes, "rows of {} bytes, expected {} for {} pixels",
+          image.row_stride, image.width * pixel_bytes, image.width);
+  const auto size = static_cast<std::size_t>(pixel_bytes * image.width * image.height);
+  if (image.compression == Wire::COMPRESSION_METHOD_ZLIB) return unzip(image.data, size);
+  require(image.compression == Wire::COMPRESSION_METHOD_NOT_COMPRESSED,
+          "images compressed by method {}, expected 0 to 3", image.compression);
+  require(image.data.size == size, "raw image of {} bytes, expected {}", image.data.size, size);
+  return bytes_of(image.data);
+}
+
+cv::Mat decode_png(const DrakeImage& image, int type) {
+  const cv::Mat bytes(1, static_cast<int>(image.data.size), CV_8UC1, const_cast<std::uint8_t*>(image.data.data));
+  cv::Mat decoded = cv::imdecode(bytes, type == CV_8UC3 ? cv::IMREAD_COLOR : cv::IMREAD_UNCHANGED);
+  require(decoded.type() == type && decoded.cols == image.width && decoded.rows == image.height,
+          "PNG of {}x{} pixels and OpenCV type {}, expected {}x{} of type {}", decoded.cols, decoded.rows,
+          decoded.type(), image.width, image.height, type);
+  return decoded;
+}
+
+std::vector<std::uint8_t> bytes_of(const cv::Mat& continuous) {
+  return {continuous.data, continuous.data + continuous.total() * continuous.elemSize()};
+}
+
+image_t colour_image(const DrakeImage& image) {
+  require(image.channel_type == Wire::CHANNEL_TYPE_UINT8, "colour of channel type {}, expected 8 bits (1)",
+          image.channel_type);
+  if (image.compression == Wire::COMPRESSION_METHOD_JPEG) {
+    return make_image(image.width, image.height, image_t::PIXEL_FORMAT_MJPEG, 0, bytes_of(image.data));
+  }
+  if (image.compression == Wire::COMPRESSION_METHOD_PNG) {
+    return make_image(image.width, image.height, image_t::PIXEL_FORMAT_BGR, 3 * image.width,
+                      bytes_of(decode_png(image, CV_8UC3)));
+  }
+  const auto raw = [&](std::int32_t format, int channels) {
+    return make_image(image.width, image.height, format, channels * image.width, unpacked(image, channels));
+  };
+  switch (image.pixel_format) {
+    case Wire::PIXEL_FORMAT_GRAY: return raw(image_t::PIXEL_FORMAT_GRAY, 1);
+    case Wire::PIXEL_FORMAT_RGB: return raw(image_t::PIXEL_FORMAT_RGB, 3);
+    case Wire::PIXEL_FORMAT_BGR: return raw(image_t::PIXEL_FORMAT_BGR, 3);
+    case Wire::PIXEL_FORMAT_RGBA: return raw(image_t::PIXEL_FORMAT_RGBA, 4);
+    default: return raw(image_t::PIXEL_FORMAT_BGRA, 4);
+  }
+}
+
+/// Metres to millimetres; what is infinite or not positive is missing.
+std::vector<std::uint8_t> millimetres(const DrakeImage& image) {
+  const std::vector<std::uint8_t> bytes = unpacked(image, 4);
+  cv::Mat metres(image.height, image.width, CV_32FC1);
+  std::memcpy(metres.data, bytes.data(), bytes.size());
+  return bytes_of(depth_to_millimetres(metres));
+}
+
+image_t depth_image(const DrakeImage& image) {
+  require(!image.big_endian, "depth with the high byte first, expected the low one");
+  const auto raw = [&](std::vector<std::uint8_t> data) {
+    return make_image(image.width, image.height, image_t::PIXEL_FORMAT_LE_GRAY16, 2 * image.width, std::move(data));
+  };
+  if (image.channel_type == Wire::CHANNEL_TYPE_FLOAT32) return raw(millimetres(image));
+  require(image.channel_type == Wire::CHANNEL_TYPE_UINT16,
+          "depth of channel type {}, expected 16 bits (3) or 32-bit floats (6)", image.channel_type);
+  if (image.compression == Wire::COMPRESSION_METHOD_PNG) return raw(bytes_of(decode_png(image, CV_16UC1)));
+  return raw(unpacked(image, 2));
+}
+
+bool is_colour(const DrakeImage& image) {
+  return image.pixel_format >= Wire::PIXEL_FORMAT_GRAY && image.pixel_format <= Wire::PIXEL_FORMAT_BGRA;
+}
+
+std::vector<DrakeImage> read_images(WireReader& reader) {
+  constexpr std::size_t kLeastImage = 4 + 8 + 5 + 4 * 4 + 4;
+  std::vector<DrakeImage> images;
+  for (std::size_t left = reader.read_count(kLeastImage); left > 0; --left) images.push_back(read_image(reader));
+  return images;
+}
+
+}  // namespace
+
+images_t images_from_drake(ByteView message) {
+  WireReader reader(message, "drake.lcmt_image_array");
+  const std::int64_t fingerprint = reader.read_int64();
+  require(fingerprint == drake_image_array_t::getHash(), "{}: another fingerprint", reader.source());
+  const std::int64_t utime = read_header(reader);
+  const std::vector<DrakeImage> images = read_images(reader);
+  require(reader.left() == 0, "{}: {} bytes after its end", reader.source(), reader.left());
+  std::vector<DrakeImage> colours;
+  std::vector<DrakeImage> depths;
+  for (const DrakeImage& image : images) {
+    if (is_colour(image)) colours.push_back(image);
+    if (image.pixel_format == Wire::PIXEL_FORMAT_DEPTH) depths.push_back(image);
+  }
+  require(colours.size() == 1 && depths.size() == 1, "{}: {} colour images and {} of depth, expected one each",
+          reader.source(), colours.size(), depths.size());
+  return make_images(utime, colour_image(colours[0]), images_t::DEPTH_MM, depth_image(depths[0]));
+}
+
+}  // namespace houghstream

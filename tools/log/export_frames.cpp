@@ -1,0 +1,68 @@
+#include "tools/log/export_frames.hpp"
+
+#include <fstream>
+
+#include "drivers/bop_writer.hpp"
+#include "drivers/image_file.hpp"
+#include "pipeline/checks.hpp"
+#include "pipeline/messages.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Calls `write` for each frame; what it refuses is counted. Returns the number of frames written.
+template <typename Write>
+std::int64_t for_each_frame(const RecordingSettings& settings, LossAccount& losses, const Write& write) {
+  const NextFrame next = open_recording(settings, losses);
+  std::int64_t frames = 0;
+  while (const std::optional<RecordedFrame> frame = next()) {
+    if (write(*frame)) ++frames;
+  }
+  require(frames > 0, "{}: no frame could be exported: {}", settings.source, losses.line());
+  return frames;
+}
+
+}  // namespace
+
+std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
+  BopWriter writer(folder);
+  const auto write = [&](const RecordedFrame& recorded) {
+    RgbdFrame frame;
+    try {
+      frame = frame_from_message(recorded.message, settings.camera);
+    } catch (const InputError& error) {
+      losses.note_refused(error.what());
+      return false;
+    }
+    writer.add(frame, {}, {});
+    return true;
+  };
+  const std::int64_t frames = for_each_frame(settings, losses, write);
+  writer.finish();
+  return frames;
+}
+
+std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::ofstream list(folder / "frames.csv");
+  require(!error && list.good(), "{}: cannot be written", folder.string());
+  list << "frame,utime,timestamp\n";
+  std::int64_t index = 0;
+  const auto write = [&](const RecordedFrame& recorded) {
+    const ImagePair images = images_from_message(recorded.message);
+    const std::string name = fmt::format("{:06d}", index++);
+    write_png(images.colour, folder / (name + "_color.png"));
+    write_png(images.depth_mm, folder / (name + "_depth.png"));
+    list << fmt::format("{},{},{}\n", name, recorded.message.utime, recorded.timestamp);
+    return true;
+  };
+  const std::int64_t frames = for_each_frame(settings, losses, write);
+  list.close();
+  require(!list.fail(), "{}: cannot be written to the end", (folder / "frames.csv").string());
+  return frames;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,157 @@
+#include "tools/log/export_results.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "drivers/json_file.hpp"
+#include "pipeline/channels.hpp"
+#include "pipeline/checks.hpp"
+#include "pipeline/messages.hpp"
+#include "pipeline/wire_check.hpp"
+
+namespace houghstream {
+namespace {
+
+/// What was found in one frame.
+struct FrameResults {
+  Detections detections;
+  ObjectPoses poses;  ///< empty where none were published for the frame
+};
+
+/// By the frames' times. A frame's last message counts, so that a log of several runs stays readable.
+std::map<std::int64_t, FrameResults> read_results(const std::filesystem::path& log_file, LossAccount& losses) {
+  std::map<std::int64_t, FrameResults> results;
+  std::map<std::int64_t, ObjectPoses> poses;
+  GoodEvents events(log_file, losses);
+  while (const std::optional<LogEvent> event = events.next()) {
+    const ByteView bytes{event->data.data(), event->data.size()};
+    try {
+      if (event->channel == channel::kDetections) {
+        Detections found = detections_from_message(decode_message<detections_t>(bytes));
+        results[found.utime].detections = std::move(found);
+      } else if (event->channel == channel::kPoses) {
+        ObjectPoses found = poses_from_message(decode_message<object_poses_t>(bytes));
+        poses[found.utime] = std::move(found);
+      }
+    } catch (const InputError& error) {
+      losses.note_refused(error.what());
+    }
+  }
+  require(!results.empty(), "{}: no message on {}, expected results", log_file.string(), channel::kDetections);
+  for (auto& [utime, found] : poses) {
+    const auto frame = results.find(utime);
+    if (frame != results.end()) frame->second.poses = std::move(found);
+  }
+  return results;
+}
+
+const ObjectPose* pose_of(const FrameResults& frame, std::size_t detection) {
+  for (const ObjectPose& pose : frame.poses.poses) {
+    if (pose.detection_index == static_cast<int>(detection)) return &pose;
+  }
+  return nullptr;
+}
+
+/// Empty for what is not finite.
+std::string field(double value) {
+  return std::isfinite(value) ? fmt::format(",{:.9g}", value) : ",";
+}
+
+std::string pose_fields(const ObjectPose* pose) {
+  if (pose == nullptr) return ",not looked for,,,,,,,,";
+  std::string text = fmt::format(",{}", to_string(pose->status));
+  if (pose->T_camera_object) {
+    const Eigen::Vector3d t = pose->T_camera_object->translation();
+    const Eigen::Quaterniond q(pose->T_camera_object->linear());
+    for (const double value : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) text += field(value);
+  } else {
+    text += ",,,,,,,";
+  }
+  return text + field(pose->quality);
+}
+
+/// Names may hold commas and quotes.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + '"';
+}
+
+std::string row(const FrameResults& frame, std::size_t index) {
+  const Detection& d = frame.detections.detections[index];
+  std::string text = fmt::format("{},{},{},{},{}", frame.detections.utime, quoted(frame.detections.source_channel),
+                                 index, d.class_id, quoted(d.class_name));
+  for (const float value : {d.score, d.box_px.x, d.box_px.y, d.box_px.width, d.box_px.height, d.centre_camera.x(),
+                            d.centre_camera.y(), d.centre_camera.z()}) {
+    text += field(static_cast<double>(value));
+  }
+  return text + pose_fields(pose_of(frame, index));
+}
+
+OrderedJson number(float value) {
+  return finite_or_null(static_cast<double>(value));
+}
+
+OrderedJson pose_json(const ObjectPose* pose) {
+  if (pose == nullptr) return nullptr;
+  OrderedJson json = {{"status", to_string(pose->status)}, {"quality", number(pose->quality)}};
+  if (pose->T_camera_object) {
+    const Eigen::Vector3d t = pose->T_camera_object->translation();
+    const Eigen::Quaterniond q(pose->T_camera_object->linear());
+    json["trans"] = {t.x(), t.y(), t.z()};
+    json["quat"] = {q.w(), q.x(), q.y(), q.z()};
+  }
+  return json;
+}
+
+OrderedJson frame_json(const FrameResults& frame) {
+  OrderedJson json = {{"utime", frame.detections.utime}, {"source_channel", frame.detections.source_channel}};
+  json["detections"] = OrderedJson::array();
+  for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) {
+    const Detection& d = frame.detections.detections[i];
+    json["detections"].push_back(
+        {{"class_id", d.class_id},
+         {"class_name", d.class_name},
+         {"score", number(d.score)},
+         {"box", {number(d.box_px.x), number(d.box_px.y), number(d.box_px.width), number(d.box_px.height)}},
+         {"centre", {number(d.centre_camera.x()), number(d.centre_camera.y()), number(d.centre_camera.z())}},
+         {"pose", pose_json(pose_of(frame, i))}});
+  }
+  // The poses' stages begin with the detections'.
+  const bool posed = !frame.poses.stages.empty();
+  json["stages_us"] = OrderedJson::object();
+  for (const StageTime& stage : posed ? frame.poses.stages : frame.detections.stages) {
+    json["stages_us"][stage.stage] = stage.duration_us;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::int64_t export_results_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
+                                LossAccount& losses) {
+  const std::map<std::int64_t, FrameResults> results = read_results(log_file, losses);
+  std::ofstream out(out_file);
+  out << "utime,source_channel,detection,class_id,class_name,score,box_x,box_y,box_width,box_height,"
+         "centre_x,centre_y,centre_z,pose_status,x,y,z,qw,qx,qy,qz,quality\n";
+  for (const auto& [utime, frame] : results) {
+    for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) out << row(frame, i) << '\n';
+  }
+  out.close();
+  require(!out.fail(), "{}: cannot be written", out_file.string());
+  return static_cast<std::int64_t>(results.size());
+}
+
+std::int64_t export_results_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
+                                 LossAccount& losses) {
+  const std::map<std::int64_t, FrameResults> results = read_results(log_file, losses);
+  OrderedJson json;
+  json["frames"] = OrderedJson::array();
+  for (const auto& [utime, frame] : results) json["frames"].push_back(frame_json(frame));
+  write_json(json, out_file);
+  return static_cast<std::int64_t>(results.size());
+}
+
+}  // namespace houghstream

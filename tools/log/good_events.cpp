@@ -1,0 +1,57 @@
+#include "tools/log/good_events.hpp"
+
+#include <utility>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+
+void LossAccount::note_damage(std::uint64_t bytes, const std::string& reason) {
+  if (damaged_places_ == 0) first_damage_ = reason;
+  ++damaged_places_;
+  damaged_bytes_ += bytes;
+}
+
+void LossAccount::note_refused(const std::string& reason) {
+  if (refused_ == 0) first_refusal_ = reason;
+  ++refused_;
+}
+
+std::string LossAccount::line() const {
+  std::string line;
+  if (damaged_places_ > 0) {
+    line = fmt::format("{} bytes lost at {} damaged {}, first: {}", damaged_bytes_, damaged_places_,
+                       damaged_places_ == 1 ? "place" : "places", first_damage_);
+  }
+  if (refused_ > 0) {
+    line += fmt::format("{}{} left out, first: {}", line.empty() ? "" : "; ", refused_, first_refusal_);
+  }
+  return line;
+}
+
+GoodEvents::GoodEvents(const std::filesystem::path& file, LossAccount& losses) : log_(file), losses_(losses) {}
+
+std::optional<LogEvent> GoodEvents::read() {
+  while (!ended_) {
+    std::optional<LogEvent> ready = std::exchange(held_, std::nullopt);
+    try {
+      held_ = log_.next();
+      ended_ = !held_;
+    } catch (const InputError& error) {
+      const LogReader::Damage damage = log_.skip_damage();
+      losses_.note_damage(damage.bytes, error.what());
+      if (damage.last_event_too) ready.reset();
+    }
+    if (ready) return ready;
+  }
+  return std::nullopt;
+}
+
+std::optional<LogEvent> GoodEvents::next() {
+  std::optional<LogEvent> event = read();
+  require(event.has_value() || count_ > 0, "no event of an LCM log in it: {}", losses_.line());
+  if (event) ++count_;
+  return event;
+}
+
+}  // namespace houghstream

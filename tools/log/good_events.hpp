@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "pipeline/event_log.hpp"
+
+namespace houghstream {
+
+/// What of a recording could not be kept.
+class LossAccount {
+ public:
+  void note_damage(std::uint64_t bytes, const std::string& reason);
+  /// A message or frame that arrived whole and cannot be understood.
+  void note_refused(const std::string& reason);
+
+  std::int64_t damaged_places() const { return damaged_places_; }
+  std::int64_t refused() const { return refused_; }
+  /// One line that says what was lost and why, or "" where nothing was.
+  std::string line() const;
+
+ private:
+  std::int64_t damaged_places_ = 0;
+  std::uint64_t damaged_bytes_ = 0;
+  std::int64_t refused_ = 0;
+  std::string first_damage_;
+  std::string first_refusal_;
+};
+
+/// Reads the events of a log that are whole, and goes on behind damage.
+class GoodEvents {
+ public:
+  /// `losses` must outlive it. Throws InputError when the file cannot be read or is empty.
+  GoodEvents(const std::filesystem::path& file, LossAccount& losses);
+
+  /// The next whole event, or nothing at the end. Throws InputError when the file holds none at all.
+  std::optional<LogEvent> next();
+
+ private:
+  std::optional<LogEvent> read();
+
+  LogReader log_;
+  LossAccount& losses_;
+  std::optional<LogEvent> held_;  // handed out once the next event has begun where this one ends
+  bool ended_ = false;
+  std::int64_t count_ = 0;
+};
+
+}  // namespace houghstream

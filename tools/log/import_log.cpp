@@ -1,0 +1,27 @@
+#include "tools/log/import_log.hpp"
+
+#include "pipeline/checks.hpp"
+#include "pipeline/wire_check.hpp"
+
+namespace houghstream {
+
+std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
+                        const std::filesystem::path& log_file, LossAccount& losses) {
+  std::error_code no_such_file;
+  require(!std::filesystem::equivalent(settings.source, log_file, no_such_file),
+          "{}: is the source itself, expected another file to write", log_file.string());
+  const NextFrame next = open_recording(settings, losses);
+  std::optional<LogWriter> log;  // not before there is something to write
+  std::int64_t frames = 0;
+  while (const std::optional<RecordedFrame> frame = next()) {
+    const std::vector<std::uint8_t> bytes = encode_message(frame->message);
+    if (!log) log.emplace(log_file);
+    log->write(frame->timestamp, channel, {bytes.data(), bytes.size()});
+    ++frames;
+  }
+  require(log.has_value(), "{}: no frame could be imported: {}", settings.source, losses.line());
+  log->close();
+  return frames;
+}
+
+}  // namespace houghstream

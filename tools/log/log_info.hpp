@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include "tools/log/good_events.hpp"
+
+namespace houghstream {
+
+/// The messages of one channel.
+struct ChannelInfo {
+  std::set<std::string> types;  ///< names of type_name()
+  std::int64_t messages = 0;
+  std::uint64_t bytes = 0;
+  std::int64_t first = 0;        ///< timestamp, microseconds since the epoch
+  std::int64_t last = 0;         ///< timestamp of the latest
+  std::int64_t longest_gap = 0;  ///< between two messages, microseconds
+  std::int64_t gap_at = 0;       ///< timestamp of the message after that gap
+  std::string frames;            ///< what the first frame looks like; "" where the channel holds none
+  std::int64_t frames_lost = 0;  ///< as gaps in the source's numbering tell
+
+  /// Messages per second between the first and the latest; 0 for a single one.
+  double rate_hz() const;
+};
+
+struct LogInfo {
+  std::string file;
+  std::uint64_t file_bytes = 0;
+  std::int64_t events = 0;
+  std::int64_t first = 0;  ///< timestamps, microseconds since the epoch
+  std::int64_t last = 0;
+  std::map<std::string, ChannelInfo> channels;
+};
+
+/// Reads a log through; damage goes to `losses`. Throws InputError when the file cannot be read or holds no event.
+LogInfo read_log_info(const std::filesystem::path& log_file, LossAccount& losses);
+
+/// A table for people, its times counted from the log's first event.
+std::string to_text(const LogInfo& info);
+
+}  // namespace houghstream

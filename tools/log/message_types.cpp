@@ -1,0 +1,44 @@
+#include "tools/log/message_types.hpp"
+
+#include <fmt/format.h>
+
+#include <houghstream/detections_t.hpp>
+#include <houghstream/drake_image_array_t.hpp>
+#include <houghstream/image_t.hpp>
+#include <houghstream/images_t.hpp>
+#include <houghstream/kinect_frame_msg_t.hpp>
+#include <houghstream/object_poses_t.hpp>
+#include <houghstream/rigid_transform_t.hpp>
+#include <houghstream/status_t.hpp>
+#include <map>
+
+namespace houghstream {
+
+std::int64_t fingerprint_of(ByteView message) {
+  if (message.size < 8) return 0;
+  return WireReader(message, "message").read_int64();
+}
+
+std::string type_name(std::int64_t fingerprint) {
+  static const std::map<std::int64_t, std::string> names = {
+      {images_t::getHash(), "images_t (bot_core)"},
+      {image_t::getHash(), "image_t (bot_core)"},
+      {rigid_transform_t::getHash(), "rigid_transform_t (bot_core)"},
+      {kinect_frame_msg_t::getHash(), "frame_msg_t (kinect)"},
+      {drake_image_array_t::getHash(), "lcmt_image_array (drake)"},
+      {detections_t::getHash(), "detections_t"},
+      {object_poses_t::getHash(), "object_poses_t"},
+      {status_t::getHash(), "status_t"},
+      {0x6c636d2073656c66, "LCM's own test"},  // the text "lcm self test"
+  };
+  if (fingerprint == 0) return "no message";
+  const auto known = names.find(fingerprint);
+  return known != names.end() ? known->second : fmt::format("?? {:016x}", static_cast<std::uint64_t>(fingerprint));
+}
+
+bool is_frame_type(std::int64_t fingerprint) {
+  return fingerprint == images_t::getHash() || fingerprint == kinect_frame_msg_t::getHash() ||
+         fingerprint == drake_image_array_t::getHash();
+}
+
+}  // namespace houghstream

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "pipeline/wire_reader.hpp"
+
+namespace houghstream {
+
+/// The fingerprint that an encoded message begins with; 0 where it is too short to have one.
+std::int64_t fingerprint_of(ByteView message);
+
+/// The type that a fingerprint stands for, "images_t (bot_core)" for one that others use under the same fingerprint,
+/// "?? 20ba4f05e8f5e33a" where it is not known, "no message" for 0.
+std::string type_name(std::int64_t fingerprint);
+
+/// Whether it is a type of RGB-D frames: ours, or one that to_images() makes ours of.
+bool is_frame_type(std::int64_t fingerprint);
+
+}  // namespace houghstream

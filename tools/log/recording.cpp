@@ -1,0 +1,159 @@
+#include "tools/log/recording.hpp"
+
+#include <houghstream/drake_image_array_t.hpp>
+#include <houghstream/kinect_frame_msg_t.hpp>
+#include <memory>
+
+#include "drivers/frame_source.hpp"
+#include "pipeline/checks.hpp"
+#include "pipeline/messages.hpp"
+#include "pipeline/wire_check.hpp"
+#include "tools/log/foreign_frames.hpp"
+#include "tools/log/klg_file.hpp"
+#include "tools/log/message_types.hpp"
+
+namespace houghstream {
+namespace {
+
+bool starts_with(const std::string& text, const std::string& start) {
+  return text.rfind(start, 0) == 0;
+}
+
+/// The file of FILE.klg or klg:FILE.
+std::optional<std::string> klg_path(const std::string& source) {
+  if (starts_with(source, "klg:")) return source.substr(4);
+  const std::string end = ".klg";
+  const bool is_klg = source.size() > end.size() && source.compare(source.size() - end.size(), end.size(), end) == 0;
+  return is_klg ? std::optional<std::string>(source) : std::nullopt;
+}
+
+/// KIND:WHERE, as open_frame_source() takes it; the names of files may hold a colon too.
+bool is_frame_source(const std::string& source) {
+  return source.find(':') != std::string::npos && !std::filesystem::exists(source);
+}
+
+images_t images_of(ByteView bytes) {
+  const std::int64_t fingerprint = fingerprint_of(bytes);
+  if (fingerprint == kinect_frame_msg_t::getHash()) return images_from_kinect(bytes);
+  if (fingerprint == drake_image_array_t::getHash()) return images_from_drake(bytes);
+  return decode_message<images_t>(bytes);
+}
+
+/// Gives it the camera that it lacks; throws InputError unless it is a frame with images that can be decoded.
+void complete(images_t& message, const RecordingSettings& settings, std::int64_t sequence) {
+  const ImagePair images = images_from_message(message);
+  if (settings.camera && !camera_of(message)) {
+    require(images.colour.cols == settings.camera->width && images.colour.rows == settings.camera->height,
+            "frame {}: {}x{} pixels, the camera given has {}x{}", message.utime, images.colour.cols, images.colour.rows,
+            settings.camera->width, settings.camera->height);
+    add_camera(message, *settings.camera);
+  }
+  if (!sequence_of(message)) add_sequence(message, sequence);
+}
+
+class LogRecording {
+ public:
+  LogRecording(const RecordingSettings& settings, LossAccount& losses)
+      : settings_(settings), losses_(losses), events_(settings.source, losses) {}
+
+  std::optional<RecordedFrame> next() {
+    while (std::optional<LogEvent> event = events_.next()) {
+      const ByteView bytes{event->data.data(), event->data.size()};
+      if (!is_wanted(*event, bytes)) continue;
+      try {
+        RecordedFrame frame{event->timestamp, images_of(bytes)};
+        complete(frame.message, settings_, sequence_++);
+        return frame;
+      } catch (const InputError& error) {
+        losses_.note_refused(error.what());
+      }
+    }
+    require(sequence_ > 0, "{}: no frames {}", settings_.source,
+            settings_.channel.empty() ? "on any channel" : "on channel " + settings_.channel);
+    return std::nullopt;
+  }
+
+ private:
+  bool is_wanted(const LogEvent& event, ByteView bytes) {
+    if (settings_.channel.empty() && is_frame_type(fingerprint_of(bytes))) settings_.channel = event.channel;
+    return event.channel == settings_.channel;
+  }
+
+  RecordingSettings settings_;
+  LossAccount& losses_;
+  GoodEvents events_;
+  std::int64_t sequence_ = 0;
+};
+
+class KlgRecording {
+ public:
+  KlgRecording(const std::string& file, const RecordingSettings& settings, LossAccount& losses)
+      : settings_(settings),
+        losses_(losses),
+        klg_(file, settings.camera ? settings.camera->width : 640, settings.camera ? settings.camera->height : 480) {}
+
+  std::optional<RecordedFrame> next() {
+    while (std::optional<images_t> message = read()) {
+      try {
+        complete(*message, settings_, sequence_++);
+        return RecordedFrame{message->utime, std::move(*message)};
+      } catch (const InputError& error) {
+        losses_.note_refused(error.what());
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::optional<images_t> read() {
+    if (ended_) return std::nullopt;
+    try {
+      return klg_.next();
+    } catch (const InputError& error) {
+      losses_.note_damage(klg_.bytes_left(), error.what());
+      ended_ = true;
+      return std::nullopt;
+    }
+  }
+
+  RecordingSettings settings_;
+  LossAccount& losses_;
+  KlgFile klg_;
+  std::int64_t sequence_ = 0;
+  bool ended_ = false;
+};
+
+class SourceRecording {
+ public:
+  explicit SourceRecording(const std::string& source) : source_(open_frame_source(source)) {}
+
+  std::optional<RecordedFrame> next() {
+    const std::optional<RgbdFrame> frame = source_->next();
+    if (!frame) return std::nullopt;
+    WireFormat lossless;
+    lossless.jpeg = false;
+    return RecordedFrame{frame->utime, to_message(*frame, lossless, sequence_++)};
+  }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  std::int64_t sequence_ = 0;
+};
+
+template <typename Recording>
+NextFrame reading(std::shared_ptr<Recording> recording) {
+  return [recording = std::move(recording)] { return recording->next(); };
+}
+
+}  // namespace
+
+NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses) {
+  if (settings.camera) check_camera(*settings.camera, "--camera");
+  if (const auto file = klg_path(settings.source)) {
+    return reading(std::make_shared<KlgRecording>(*file, settings, losses));
+  }
+  if (is_frame_source(settings.source)) return reading(std::make_shared<SourceRecording>(settings.source));
+  return reading(std::make_shared<LogRecording>(settings, losses));
+}
+
+}  // namespace houghstream

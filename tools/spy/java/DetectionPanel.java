@@ -1,0 +1,105 @@
+package houghstream.spy;
+
+import houghstream.camera_t;
+import houghstream.detections_t;
+import houghstream.object_poses_t;
+import java.awt.BorderLayout;
+import java.awt.Dimension;
+import java.awt.FlowLayout;
+import java.awt.event.ComponentAdapter;
+import java.awt.event.ComponentEvent;
+import java.awt.image.BufferedImage;
+import java.util.List;
+import javax.swing.JComponent;
+import javax.swing.JLabel;
+import javax.swing.JPanel;
+import javax.swing.JScrollPane;
+import javax.swing.JSpinner;
+import javax.swing.JSplitPane;
+import javax.swing.JTable;
+import javax.swing.SpinnerNumberModel;
+
+/** The picture with its overlay, beside it the objects and the stages' times. */
+final class DetectionPanel {
+  /** Everything about one frame; `poses` and `camera` may be null. */
+  record Shown(BufferedImage picture, detections_t detections, object_poses_t poses, camera_t camera) {}
+
+  private static final int RIGHT_WIDTH = 500;
+  private static final int RIGHT_HEIGHT = 320;
+  private static final int[] COLUMN_WIDTHS = {100, 50, 150, 140, 60};
+  private final PicturePane pane = new PicturePane();
+  private final ObjectsTable objects = new ObjectsTable();
+  private final StageBars stages = new StageBars();
+  private final StatusLine status = new StatusLine("waiting for detections");
+  private final JSpinner leastScore = new JSpinner(new SpinnerNumberModel(0.5, 0.0, 1.0, 0.05));
+  private Shown shown;
+  private final JPanel panel = new JPanel(new BorderLayout());
+
+  DetectionPanel() {
+    JTable table = new JTable(objects);
+    for (int i = 0; i < COLUMN_WIDTHS.length; ++i) {
+      table.getColumnModel().getColumn(i).setPreferredWidth(COLUMN_WIDTHS[i]);
+    }
+    table.setRowHeight(table.getRowHeight() + 4);
+    JPanel right = new JPanel(new BorderLayout());
+    right.add(scoreChooser(), BorderLayout.NORTH);
+    right.add(new JScrollPane(table), BorderLayout.CENTER);
+    right.add(stages, BorderLayout.SOUTH);
+    right.setMinimumSize(new Dimension(RIGHT_WIDTH, RIGHT_HEIGHT));
+    right.setPreferredSize(new Dimension(RIGHT_WIDTH, RIGHT_HEIGHT));
+    JSplitPane split = new JSplitPane(JSplitPane.HORIZONTAL_SPLIT, pane, right);
+    split.setResizeWeight(1.0); // the picture takes what a larger window gives
+    split.addComponentListener(new ComponentAdapter() {
+      @Override
+      public void componentResized(ComponentEvent event) {
+        turn(split);
+      }
+    });
+    pane.setMinimumSize(new Dimension(100, 100));
+    pane.setPreferredSize(new Dimension(700, 400));
+    panel.add(split, BorderLayout.CENTER);
+    panel.add(status, BorderLayout.SOUTH);
+  }
+
+  // Lists go below the picture where the window is narrow.
+  private static void turn(JSplitPane split) {
+    boolean narrow = split.getWidth() < 1.3 * split.getHeight();
+    int orientation = narrow ? JSplitPane.VERTICAL_SPLIT : JSplitPane.HORIZONTAL_SPLIT;
+    if (split.getOrientation() == orientation) return;
+    split.setOrientation(orientation);
+    split.resetToPreferredSizes();
+  }
+
+  /** Shows a frame. On Swing's thread, like all here. */
+  void show(Shown frame) {
+    shown = frame;
+    double minScore = ((Number) leastScore.getValue()).doubleValue();
+    pane.show(List.of(frame.picture), new DetectionOverlay(frame.detections, frame.poses, frame.camera, minScore));
+    objects.show(frame.detections, frame.poses, minScore);
+    stages.show(frame.poses == null ? frame.detections.stages : frame.poses.stages);
+  }
+
+  // A change of the least score shows at once, also when nothing comes any more.
+  private JComponent scoreChooser() {
+    leastScore.setEditor(new JSpinner.NumberEditor(leastScore, "0.00"));
+    leastScore.addChangeListener(event -> {
+      if (shown != null) show(shown);
+    });
+    JPanel line = new JPanel(new FlowLayout(FlowLayout.LEFT));
+    line.add(new JLabel("from score"));
+    line.add(leastScore);
+    return line;
+  }
+
+  void say(String text, String complaint) {
+    status.say(text, complaint);
+  }
+
+  void complain(String complaint) {
+    status.say("", complaint);
+  }
+
+  JComponent component() {
+    return panel;
+  }
+}

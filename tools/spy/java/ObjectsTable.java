@@ -1,0 +1,66 @@
+package houghstream.spy;
+
+import houghstream.detection_t;
+import houghstream.detections_t;
+import houghstream.object_pose_t;
+import houghstream.object_poses_t;
+import java.util.ArrayList;
+import java.util.List;
+import javax.swing.table.AbstractTableModel;
+
+/** A row per detection: what it is, how sure, where, and what became of its pose. */
+@SuppressWarnings("serial")
+final class ObjectsTable extends AbstractTableModel {
+  private static final String[] COLUMNS = {"object", "score", "x, y, z in m", "pose", "quality"};
+  private transient List<String[]> rows = List.of();
+
+  /** `poses` may be null. Detections with scores below `minScore` are left out. */
+  void show(detections_t detections, object_poses_t poses, double minScore) {
+    List<String[]> newRows = new ArrayList<>();
+    for (int i = 0; i < detections.n_detections; ++i) {
+      if (detections.detections[i].score >= minScore) newRows.add(row(detections.detections[i], poseOf(i, poses)));
+    }
+    rows = newRows;
+    fireTableDataChanged();
+  }
+
+  private static object_pose_t poseOf(int detection, object_poses_t poses) {
+    if (poses == null) return null;
+    for (object_pose_t pose : poses.poses) {
+      if (pose.detection_index == detection) return pose;
+    }
+    return null;
+  }
+
+  private static String[] row(detection_t detection, object_pose_t pose) {
+    boolean valid = pose != null && pose.status == object_pose_t.VALID;
+    float[] centre = detection.centre_camera;
+    String place = valid ? place(pose.trans[0], pose.trans[1], pose.trans[2]) : place(centre[0], centre[1], centre[2]);
+    return new String[] {detection.class_name, String.format("%.2f", detection.score), place,
+        pose == null ? "-" : PoseStatus.text(pose.status), pose == null ? "-" : String.format("%.2f", pose.quality)};
+  }
+
+  private static String place(double x, double y, double z) {
+    return Double.isNaN(z) ? "-" : String.format("%.3f, %.3f, %.3f", x, y, z);
+  }
+
+  @Override
+  public int getRowCount() {
+    return rows.size();
+  }
+
+  @Override
+  public int getColumnCount() {
+    return COLUMNS.length;
+  }
+
+  @Override
+  public String getColumnName(int column) {
+    return COLUMNS[column];
+  }
+
+  @Override
+  public Object getValueAt(int row, int column) {
+    return rows.get(row)[column];
+  }
+}

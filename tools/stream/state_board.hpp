@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <houghstream/status_t.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/stream/supervisor.hpp"
+
+namespace houghstream {
+
+/// What the processes say of themselves, and since when.
+class StateBoard {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  void note(const status_t& status, Clock::time_point time);
+
+  /// The stream in one line: rate, latency and losses of each process, or that it waits for its restart, or has not
+  /// been heard of for three seconds.
+  std::string line(const std::vector<Supervisor::State>& states, Clock::time_point now) const;
+
+ private:
+  struct Entry {
+    status_t status;
+    Clock::time_point time;
+  };
+  std::map<pid_t, Entry> entries_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,52 @@
+#include "tools/stream/stream_plan.hpp"
+
+#include <sstream>
+
+namespace houghstream {
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words split(const std::string& text) {
+  std::istringstream in(text);
+  Words words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+/// hs-NAME with what all of them take, and with the further words.
+ChildPlan plan(const StreamOptions& options, const std::string& name, const Words& words, const std::string& further) {
+  ChildPlan plan;
+  plan.name = name;
+  plan.command = {(options.executables / ("hs-" + name)).string(), "--channel", options.channel};
+  if (!options.lcm_url.empty()) plan.command.insert(plan.command.end(), {"--lcm-url", options.lcm_url});
+  plan.command.insert(plan.command.end(), words.begin(), words.end());
+  const Words more = split(further);
+  plan.command.insert(plan.command.end(), more.begin(), more.end());
+  return plan;
+}
+
+}  // namespace
+
+std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
+  const Words camera = options.camera.empty() ? Words() : Words{"--camera", options.camera};
+  const Words models = options.models.empty() ? Words() : Words{"--models", options.models};
+  const auto with_camera = [&](Words words) {
+    words.insert(words.end(), camera.begin(), camera.end());
+    return words;
+  };
+  std::vector<ChildPlan> plans;
+  plans.push_back(plan(options, "detect", with_camera({"--forest", options.forest}), options.detect_options));
+  if (!models.empty()) plans.push_back(plan(options, "pose", with_camera(models), options.pose_options));
+  if (options.view) {
+    plans.push_back(plan(options, "view", with_camera(models), options.view_options));
+    plans.back().ends_stream = true;
+  }
+  if (!options.source.empty()) {
+    plans.push_back(plan(options, "capture", {"--source", options.source}, options.capture_options));
+    plans.back().ends_stream = true;
+  }
+  return plans;
+}
+
+}  // namespace houghstream

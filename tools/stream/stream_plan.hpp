@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/stream/supervisor.hpp"
+
+namespace houghstream {
+
+/// What hs-stream starts.
+struct StreamOptions {
+  std::filesystem::path executables;  ///< folder of hs-capture, hs-detect, hs-pose, hs-view
+  std::string source;                 ///< of hs-capture; "" = the frames come from somebody else's driver
+  std::string forest;                 ///< of hs-detect
+  std::string models;                 ///< folder for hs-pose and hs-view; "" = no poses
+  std::string camera;                 ///< for frames without a camera of their own
+  std::string channel = "OPENNI_FRAME";
+  std::string lcm_url;  ///< "" = LCM's default
+  bool view = true;
+  std::string capture_options;  ///< further options, words between spaces
+  std::string detect_options;
+  std::string pose_options;
+  std::string view_options;
+};
+
+/// The processes with their command lines, in the order of the stream. Without models there is no hs-pose.
+std::vector<ChildPlan> plan_stream(const StreamOptions& options);
+
+}  // namespace houghstream

@@ -1,0 +1,99 @@
+#include "tools/stream/supervisor.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <thread>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+
+using std::chrono::milliseconds;
+
+Supervisor::Supervisor(std::vector<ChildPlan> plans, const SupervisorSettings& settings, Say say)
+    : settings_(settings), say_(std::move(say)) {
+  for (ChildPlan& plan : plans) {
+    members_.emplace_back();
+    members_.back().plan = std::move(plan);
+  }
+  for (Member& member : members_) start(member);
+}
+
+Supervisor::~Supervisor() {
+  stop();
+}
+
+void Supervisor::start(Member& member) {
+  member.child = std::make_unique<Child>(member.plan.command);
+  member.since = Clock::now();
+  say_(fmt::format("{} started, process {}", member.plan.name, member.child->pid()));
+}
+
+void Supervisor::plan_restart(Member& member, const Ending& ending) {
+  const bool settled = Clock::now() - member.since > settings_.settled;
+  member.wait =
+      settled || member.wait.count() == 0 ? settings_.first_wait : std::min(2 * member.wait, settings_.longest_wait);
+  member.since = Clock::now() + member.wait;
+  member.child.reset();
+  say_(fmt::format("{} {}; starts again in {:.2f} s", member.plan.name, ending.words,
+                   static_cast<double>(member.wait.count()) * 1e-3));
+}
+
+bool Supervisor::look_after(Member& member) {
+  if (!member.child) {
+    if (Clock::now() < member.since) return true;
+    ++member.restarts;
+    start(member);
+    return true;
+  }
+  if (Clock::now() - member.since > settings_.start_time) member.has_run = true;
+  const std::optional<Ending> ending = member.child->ending();
+  if (!ending) return true;
+  if (ending->success && member.plan.ends_stream) {
+    say_(fmt::format("{} has ended: the stream ends", member.plan.name));
+    return false;
+  }
+  // A signal is somebody's doing; a status says that the process itself sees no way.
+  const bool gave_up = !ending->success && !ending->by_signal;
+  require(member.has_run || !gave_up, "{} {} at its start; its own line above says why", member.plan.name,
+          ending->words);
+  plan_restart(member, *ending);
+  return true;
+}
+
+bool Supervisor::step() {
+  return std::all_of(members_.begin(), members_.end(), [&](Member& member) { return look_after(member); });
+}
+
+void Supervisor::note_running(pid_t pid) {
+  for (Member& member : members_) {
+    if (member.child && member.child->pid() == pid) member.has_run = true;
+  }
+}
+
+std::vector<std::string> Supervisor::stop() {
+  for (const Member& member : members_) {
+    if (member.child) member.child->signal(SIGINT);
+  }
+  const auto running = [](Member& member) { return member.child && !member.child->ending(); };
+  const Clock::time_point end = Clock::now() + settings_.patience;
+  while (Clock::now() < end && std::any_of(members_.begin(), members_.end(), running)) {
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  std::vector<std::string> killed;
+  for (Member& member : members_) {
+    if (running(member)) killed.push_back(member.plan.name);
+    member.child.reset();
+  }
+  return killed;
+}
+
+std::vector<Supervisor::State> Supervisor::states() const {
+  std::vector<State> states;
+  for (const Member& member : members_) {
+    states.push_back({member.plan.name, member.child ? member.child->pid() : 0, member.restarts});
+  }
+  return states;
+}
+
+}  // namespace houghstream

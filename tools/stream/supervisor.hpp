@@ -1,0 +1,75 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/stream/child.hpp"
+
+namespace houghstream {
+
+/// A process of the stream.
+struct ChildPlan {
+  std::string name;                  ///< for people, for instance "detect"
+  std::vector<std::string> command;  ///< program with its path, arguments
+  bool ends_stream = false;          ///< when it ends with status 0, all do: the source's end, the closed window
+};
+
+struct SupervisorSettings {
+  std::chrono::milliseconds first_wait{250};  ///< before a restart; doubled by each failure that follows
+  std::chrono::milliseconds longest_wait{10'000};
+  std::chrono::milliseconds settled{10'000};   ///< after so long a run the next failure counts as the first
+  std::chrono::milliseconds start_time{3000};  ///< who runs that long has started
+  std::chrono::milliseconds patience{1500};    ///< for a process to end by itself when it is asked to
+};
+
+/// Keeps the processes of a stream running: one that dies is started again, after a pause that grows with each failure.
+/// One that fails before it has ever run is not: it would fail again for the same reason. Call it from one thread.
+class Supervisor {
+ public:
+  using Clock = std::chrono::steady_clock;
+  using Say = std::function<void(const std::string&)>;
+
+  /// `say` takes a line for people about each start and end. Throws InputError when a program cannot be started.
+  Supervisor(std::vector<ChildPlan> plans, const SupervisorSettings& settings, Say say);
+  /// Ends them all.
+  ~Supervisor();
+
+  /// Looks after the processes. False once the stream is to end. Throws InputError when one has failed at its start.
+  bool step();
+
+  /// The process has shown that it runs.
+  void note_running(pid_t pid);
+
+  /// Asks all to end, waits, insists after `patience`. Returns the names of those that had to be killed.
+  std::vector<std::string> stop();
+
+  /// What there is to know of a process.
+  struct State {
+    std::string name;
+    pid_t pid = 0;  ///< 0 while it waits for its restart
+    int restarts = 0;
+  };
+  std::vector<State> states() const;
+
+ private:
+  struct Member {
+    ChildPlan plan;
+    std::unique_ptr<Child> child;
+    bool has_run = false;
+    int restarts = 0;
+    std::chrono::milliseconds wait{0};
+    Clock::time_point since;  // of the start, or when the restart is due
+  };
+  void start(Member& member);
+  bool look_after(Member& member);
+  void plan_restart(Member& member, const Ending& ending);
+
+  std::vector<Member> members_;
+  SupervisorSettings settings_;
+  Say say_;
+};
+
+}  // namespace houghstream

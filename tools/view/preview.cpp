@@ -1,0 +1,26 @@
+#include "tools/view/preview.hpp"
+
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/checks.hpp"
+#include "pipeline/codecs.hpp"
+
+namespace houghstream {
+
+PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes) {
+  constexpr double kSmaller = 0.75;
+  constexpr int kLeastPixels = 16;
+  cv::Mat current = picture;
+  while (current.cols >= kLeastPixels && current.rows >= kLeastPixels) {
+    for (const int quality : {85, 70, 55}) {
+      std::vector<std::uint8_t> jpeg = encode_jpeg(current, quality);
+      if (jpeg.size() <= max_bytes) return {current.cols, current.rows, std::move(jpeg)};
+    }
+    cv::Mat smaller;
+    cv::resize(current, smaller, {}, kSmaller, kSmaller, cv::INTER_AREA);
+    current = smaller;
+  }
+  fail("preview of {}x{} pixels does not fit {} bytes", picture.cols, picture.rows, max_bytes);
+}
+
+}  // namespace houghstream

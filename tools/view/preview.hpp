@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace houghstream {
+
+/// A message of this size passes through the receive buffer that an untuned Linux gives to programs that ask for none,
+/// Java's among them, with room for what else is on the bus.
+constexpr std::size_t kMaxPreviewBytes = 90'000;
+
+/// A picture as JPEG of at most so many bytes.
+struct PreviewPicture {
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  std::vector<std::uint8_t> jpeg;
+};
+
+/// The picture (CV_8UC3, BGR) at the best quality, and if need be at a smaller size, that fits `max_bytes`.
+/// Throws InputError where even a few pixels do not fit.
+PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes = kMaxPreviewBytes);
+
+}  // namespace houghstream

@@ -1,0 +1,38 @@
+#include "tools/view/stream_watch.hpp"
+
+#include <utility>
+
+namespace houghstream {
+namespace {
+
+constexpr std::int64_t kWindowUs = 2'000'000;   // over which rates are counted
+constexpr std::int64_t kSilenceUs = 5'000'000;  // five times the interval of status_t
+
+}  // namespace
+
+void StreamWatch::note_frame(std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  arrivals_us_.push_back(now_us);
+  while (now_us - arrivals_us_.front() > kWindowUs) arrivals_us_.pop_front();
+}
+
+void StreamWatch::note_process(ProcessState process) {
+  const std::lock_guard lock(mutex_);
+  processes_[process.name] = std::move(process);
+}
+
+StreamState StreamWatch::state(std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  while (!arrivals_us_.empty() && now_us - arrivals_us_.front() > kWindowUs) arrivals_us_.pop_front();
+  StreamState state;
+  if (arrivals_us_.size() > 1 && arrivals_us_.back() > arrivals_us_.front()) {
+    state.frames_hz = static_cast<double>(arrivals_us_.size() - 1) * 1e6 /
+                      static_cast<double>(arrivals_us_.back() - arrivals_us_.front());
+  }
+  for (const auto& [name, process] : processes_) {
+    if (now_us - process.heard_us <= kSilenceUs) state.processes.push_back(process);
+  }
+  return state;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace houghstream {
+
+/// What a process said about itself last.
+struct ProcessState {
+  std::string name;           ///< executable
+  float rate_hz = 0.0F;       ///< frames finished per second
+  std::int64_t skipped = 0;   ///< frames passed over since its start
+  std::int64_t lost = 0;      ///< frames that never arrived; -1 = cannot be told
+  std::int64_t refused = 0;   ///< frames that could not be understood
+  std::int64_t heard_us = 0;  ///< when it was heard, local clock
+};
+
+/// How the stream goes at a moment.
+struct StreamState {
+  double frames_hz = 0.0;               ///< frames that arrive here per second
+  std::vector<ProcessState> processes;  ///< those heard of late, by name
+};
+
+/// Keeps the rates of a stream. Every function may be called from any thread; times are microseconds of one clock.
+class StreamWatch {
+ public:
+  void note_frame(std::int64_t now_us);
+  void note_process(ProcessState process);
+
+  /// A process that has been silent for five seconds is gone.
+  StreamState state(std::int64_t now_us);
+
+ private:
+  std::mutex mutex_;
+  std::deque<std::int64_t> arrivals_us_;
+  std::map<std::string, ProcessState> processes_;
+};
+
+}  // namespace houghstream

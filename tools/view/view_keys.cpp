@@ -1,0 +1,25 @@
+#include "tools/view/view_keys.hpp"
+
+#include <algorithm>
+
+namespace houghstream {
+
+KeyAction apply_key(int key, FrameViewSettings& settings) {
+  constexpr int kEscape = 27;
+  constexpr float kStep = 0.05F;
+  switch (key) {
+    case 'q':
+    case kEscape: return KeyAction::kEnd;
+    case ' ': settings.paused = !settings.paused; break;
+    case 'd': settings.show_depth = !settings.show_depth; break;
+    case '+':
+    case '=':  // the same key without shift
+      settings.min_score = std::min(settings.min_score + kStep, 1.0F);
+      break;
+    case '-': settings.min_score = std::max(settings.min_score - kStep, 0.0F); break;
+    default: return KeyAction::kNone;
+  }
+  return KeyAction::kRedraw;
+}
+
+}  // namespace houghstream

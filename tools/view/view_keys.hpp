@@ -1,0 +1,18 @@
+#pragma once
+
+#include "tools/view/frame_view.hpp"
+
+namespace houghstream {
+
+/// What a key asks for.
+enum class KeyAction {
+  kNone,
+  kRedraw,  ///< the settings have changed
+  kEnd,
+};
+
+/// What a key, as cv::waitKey gives it, does to the settings: q or Esc ends, space pauses, d shows or hides depth,
+/// + and - move the smallest score that is drawn.
+KeyAction apply_key(int key, FrameViewSettings& settings);
+
+}  // namespace houghstream
