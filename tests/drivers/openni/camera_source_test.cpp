@@ -93,6 +93,14 @@ TEST(CameraSource, UnregisteredDepthIsRefusedUnlessToldOtherwise) {
   EXPECT_NEAR(error_px(frame), 20.0, 1.0) << "the virtual camera's parallax: what registration takes away";
 }
 
+TEST(CameraSource, DepthFromBeforeItsRegistrationIsNotUsed) {
+  for (const char* script : {"register_late 2\n", "register_late 2\nregisters_running yes\n"}) {
+    const VirtualCamera camera("before", script);
+    const auto source = open_camera_source("", CameraOptions{}, patient_listener(20));
+    for (int i = 0; i < 10; ++i) EXPECT_LT(error_px(source->next().value()), 0.5) << script << i;
+  }
+}
+
 TEST(CameraSource, ACalibrationMustBeOfTheMode) {
   const VirtualCamera camera("calibration", "");
   CameraOptions options;
