@@ -14,9 +14,9 @@ using std::chrono::microseconds;
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-constexpr std::chrono::milliseconds kTransfer(8);  // a picture is on the cable for so long: late ones come no closer
-constexpr double kClockAtOpeningUs = 5e6;          // a device's clock does not start when it is opened
-constexpr int kColourAhead = 7;                    // unsynchronised, a sensor counts its own images
+constexpr double kTransfer = 0.75;  // of a period: VGA depth and colour fill a USB 2 cable; late ones come no closer
+constexpr double kClockAtOpeningUs = 5e6;  // a device's clock does not start when it is opened
+constexpr int kColourAhead = 7;            // unsynchronised, a sensor counts its own images
 
 bool is_dropped(int number, int every) {
   return every > 0 && number % every == every - 1;
@@ -151,8 +151,9 @@ void VirtualDevice::run() {
     send_late_colour(now);
     if (now >= shutter && now >= cable_free) {
       open_shutters(number++, shutter);
-      cable_free = now + kTransfer;
-      shutter += milliseconds_of(1e3 / script_.current()->rate_hz);
+      const double period_ms = 1e3 / script_.current()->rate_hz;
+      cable_free = now + milliseconds_of(kTransfer * period_ms);
+      shutter += milliseconds_of(period_ms);
     }
     lock.lock();
   }
