@@ -77,8 +77,12 @@ void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t co
   for (std::size_t i = 0; i < count; ++i) fetched[i] = nodes[at[i]];
 }
 
-void fetch_pixels(const std::uint8_t* origin, const std::int32_t* offsets, std::size_t count, std::uint8_t* values) {
-  for (std::size_t i = 0; i < count; ++i) values[i] = origin[offsets[i]];
+void fetch_pixels(const std::uint8_t* origin, const std::int32_t* first, const std::int32_t* second, std::size_t count,
+                  std::uint8_t* first_values, std::uint8_t* second_values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    first_values[i] = origin[first[i]];
+    second_values[i] = origin[second[i]];
+  }
 }
 
 }  // namespace houghstream

@@ -24,6 +24,7 @@ void pack_trees(Forest& forest);
 /// Copies the nodes that patches stand at, and the values of the pixels that they look at, side by side. Apart from the
 /// walk, whose instruction set has gathers: dozens of plain loads overlap where a cache misses, but few gathers do.
 void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t count, PackedNode* fetched);
-void fetch_pixels(const std::uint8_t* origin, const std::int32_t* offsets, std::size_t count, std::uint8_t* values);
+void fetch_pixels(const std::uint8_t* origin, const std::int32_t* first, const std::int32_t* second, std::size_t count,
+                  std::uint8_t* first_values, std::uint8_t* second_values);
 
 }  // namespace houghstream

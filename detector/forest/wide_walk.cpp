@@ -104,8 +104,7 @@ void walk(const PackedTrees& trees, int tree, const WalkingPatches& patches, std
     do {
       fetch_nodes(trees.nodes.data(), w.at, w.count, w.nodes);
       find_pixels(*patches.image, w);
-      fetch_pixels(origin, w.first, w.count, w.first_values);
-      fetch_pixels(origin, w.second, w.count, w.second_values);
+      fetch_pixels(origin, w.first, w.second, w.count, w.first_values, w.second_values);
     } while (take_step(w));
     const std::size_t arrived = std::min(kMost, count - first);
     for (std::size_t i = 0; i < arrived; ++i) leaves[first + i] = trees.leaf_of[static_cast<std::size_t>(w.at[i])];
