@@ -71,9 +71,13 @@ TEST(PackedTrees, NodesAndPixelsAreFetched) {
   fetch_nodes(nodes.data(), places.data(), places.size(), fetched.data());
   EXPECT_EQ(fetched[0].test, 5U);
   EXPECT_EQ(fetched[1].way, 2);
-  std::vector<std::uint8_t> values(3);
-  fetch_pixels(pixels.data() + 1, std::vector<std::int32_t>{1, -1, 0}.data(), 3, values.data());
-  EXPECT_EQ(values, (std::vector<std::uint8_t>{30, 10, 20}));
+  const std::vector<std::int32_t> first = {1, -1, 0};
+  const std::vector<std::int32_t> second = {0, 0, 1};
+  std::vector<std::uint8_t> first_values(3);
+  std::vector<std::uint8_t> second_values(3);
+  fetch_pixels(pixels.data() + 1, first.data(), second.data(), 3, first_values.data(), second_values.data());
+  EXPECT_EQ(first_values, (std::vector<std::uint8_t>{30, 10, 20}));
+  EXPECT_EQ(second_values, (std::vector<std::uint8_t>{20, 20, 30}));
 }
 
 }  // namespace
