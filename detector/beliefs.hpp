@@ -1,7 +1,5 @@
 #pragma once
 
-#include <hwy/cache_control.h>
-
 #include <cstdint>
 #include <vector>
 
@@ -41,9 +39,6 @@ class PatchBeliefs {
       const Believers& believers = believers_[b];
       std::uint32_t begin = 0;
       for (std::size_t i = 0; i < believers.patches.size(); ++i) {
-        for (std::uint32_t e = begin; e < believers.ends[i]; ++e) {  // the caller's cache misses overlap
-          hwy::Prefetch(forest_->votes.data() + forest_->leaf_classes[believers.entries[e]].first_vote);
-        }
         visit(believers.patches[i], believers.entries.data() + begin, believers.ends[i] - begin);
         begin = believers.ends[i];
       }
@@ -55,6 +50,10 @@ class PatchBeliefs {
   float least_share_ = 0.0F;
   std::vector<Believers> believers_;  // [run * classes + class]
 };
+
+/// Of a patch's leaves, from which it votes for a class: min_class_share, and less where more classes than four are
+/// taught, of which each has a thinner share.
+float least_share(const DetectionSettings& settings, std::size_t classes);
 
 /// What the patches believe, by the engine that the settings name. `features`: one image per level. What `beliefs` held
 /// is overwritten and its memory used again.

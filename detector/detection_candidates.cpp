@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "detector/boxes.hpp"
 #include "detector/evidence/attitude_spread.hpp"
 #include "detector/evidence/view_alignment.hpp"
-#include "detector/hypotheses.hpp"
 #include "detector/scale_space_search.hpp"
 #include "detector/seen_patches.hpp"
 #include "detector/voting.hpp"
@@ -51,6 +51,7 @@ std::vector<std::pair<std::uint32_t, float>> weighed_views(const Hypothesis& hyp
   constexpr float kSharpness = 4.0F;
   if (spread == 1.0F || compared.empty()) return {hypothesis.views.begin(), hypothesis.views.end()};
   std::vector<std::pair<std::uint32_t, float>> weighed;
+  weighed.reserve(compared.size());
   for (const ComparedView& seen : compared) weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
   std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return weighed;
@@ -66,10 +67,18 @@ cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const 
           0.5F * (voted.height + inside.height)};
 }
 
-Candidate to_candidate(const Forest& forest, int class_index, const Hypothesis& hypothesis, const SeenPatches& seen,
+/// A hypothesis and whose it is.
+struct ClassHypothesis {
+  std::size_t class_index = 0;
+  float spread = 1.0F;  // attitude_spread of the class
+  Hypothesis hypothesis;
+};
+
+Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const SeenPatches& seen,
                        const LabFrame& frame, int max_rotations, const std::vector<std::uint32_t>& forgotten) {
-  const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
-  const float spread = attitude_spread(forest, static_cast<std::uint32_t>(class_index));
+  const ObjectClass& object = forest.classes[found.class_index];
+  const Hypothesis& hypothesis = found.hypothesis;
+  const float spread = found.spread;
   std::vector<ComparedView> compared;
   Candidate candidate;
   Detection& detection = candidate.detection;
@@ -96,18 +105,48 @@ Candidate to_candidate(const Forest& forest, int class_index, const Hypothesis& 
   return candidate;
 }
 
-std::vector<Candidate> class_candidates(const Forest& forest, int class_index, const SeenPatches& seen,
-                                        const LabFrame& frame, const DetectionSettings& settings,
-                                        const std::vector<std::uint32_t>& forgotten) {
-  const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
-  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings);
-  const float least_mass = settings.min_mass_share * object.expected_mass;
-  std::vector<Candidate> candidates;
-  for (const Hypothesis& hypothesis : find_maxima(forest, space, seen.grid, seen.hough_camera, least_mass, settings)) {
-    if (candidates.size() >= static_cast<std::size_t>(settings.max_per_class)) break;
-    candidates.push_back(to_candidate(forest, class_index, hypothesis, seen, frame, settings.max_rotations, forgotten));
+std::vector<Hypothesis> class_hypotheses(const Forest& forest, std::size_t class_index, const SeenPatches& seen,
+                                         const DetectionSettings& settings) {
+  static thread_local HoughSpace space;  // its memory is kept from class to class
+  cast_votes(forest, static_cast<int>(class_index), seen.grid, seen.beliefs, seen.hough_camera, settings, space);
+  const float least_mass = settings.min_mass_share * forest.classes[class_index].expected_mass;
+  std::vector<Hypothesis> hypotheses =
+      find_hypotheses(forest, space, seen.grid, seen.hough_camera, least_mass, settings);
+  if (hypotheses.size() > static_cast<std::size_t>(settings.max_per_class)) {
+    hypotheses.resize(static_cast<std::size_t>(settings.max_per_class));
   }
-  return candidates;
+  return hypotheses;
+}
+
+/// The classes, those with the most to do first, so that no thread starts with one when the others have ended.
+std::vector<std::size_t> by_work(const Forest& forest, const PatchBeliefs& beliefs) {
+  std::vector<std::size_t> work(forest.classes.size(), 0);
+  std::vector<std::size_t> order(work.size());
+  for (std::size_t c = 0; c < work.size(); ++c) {
+    order[c] = c;
+    beliefs.for_believers(static_cast<int>(c),
+                          [&](std::uint32_t, const std::uint32_t*, std::uint32_t count) { work[c] += count; });
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return work[a] > work[b]; });
+  return order;
+}
+
+/// Of all classes, class by class.
+std::vector<ClassHypothesis> all_hypotheses(const Forest& forest, const SeenPatches& seen,
+                                            const DetectionSettings& settings) {
+  const std::vector<std::size_t> order = by_work(forest, seen.beliefs);
+  std::vector<std::vector<Hypothesis>> by_class(order.size());
+  parallel_for(settings.threads, static_cast<int>(order.size()), [&](int i) {
+    const std::size_t c = order[static_cast<std::size_t>(i)];
+    by_class[c] = class_hypotheses(forest, c, seen, settings);
+  });
+  std::vector<ClassHypothesis> all;
+  for (std::size_t c = 0; c < by_class.size(); ++c) {
+    if (by_class[c].empty()) continue;
+    const float spread = attitude_spread(forest, static_cast<std::uint32_t>(c));
+    for (Hypothesis& hypothesis : by_class[c]) all.push_back({c, spread, std::move(hypothesis)});
+  }
+  return all;
 }
 
 }  // namespace
@@ -120,15 +159,13 @@ std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& fr
   static thread_local SeenPatches seen_here;  // its memory is kept from frame to frame
   const SeenPatches& seen = seen_here;        // the same for the threads below
   classify_patches(forest, frame, settings, clock, seen_here);
+  const std::vector<ClassHypothesis> found = all_hypotheses(forest, seen, settings);  // Section 2
   const LabFrame in_lab = make_lab_frame(frame, seen.colour, forest.features.image_scale);
-  std::vector<std::vector<Candidate>> by_class(forest.classes.size());
-  parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {  // Section 2
-    by_class[static_cast<std::size_t>(c)] = class_candidates(forest, c, seen, in_lab, settings, forgotten);
+  std::vector<Candidate> all(found.size());
+  parallel_for(settings.threads, static_cast<int>(found.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    all[at] = to_candidate(forest, found[at], seen, in_lab, settings.max_rotations, forgotten);
   });
-  std::vector<Candidate> all;
-  for (std::vector<Candidate>& candidates : by_class) {
-    std::move(candidates.begin(), candidates.end(), std::back_inserter(all));
-  }
   clock.mark("detect.voting");
   return all;
 }

@@ -31,7 +31,7 @@ cv::Mat masses_by_cell(const HoughSpace& space, const SeenPatches& seen, const D
     for (std::uint32_t v = space.first_vote[c]; v < space.first_vote[c + 1]; ++v) {
       const Vote& vote = space.votes[v];
       const float distance = vote.centre_camera.z();
-      mass += vote.weight * seen.grid.area[vote.patch] * kernel_at_1m / (distance * distance);
+      mass += vote.weight * seen.grid.area[space.voters[space.voter[v]].patch] * kernel_at_1m / (distance * distance);
     }
   }
   const double sigma = static_cast<double>(settings.hough_sigma_px) / space.cell_px;
@@ -60,7 +60,8 @@ cv::Mat hough_image(const Forest& forest, int class_index, const RgbdFrame& fram
   StageClock clock;
   SeenPatches seen;
   classify_patches(forest, frame, settings, clock, seen);
-  const HoughSpace space = cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings);
+  HoughSpace space;
+  cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings, space);
   const cv::Mat masses = masses_by_cell(space, seen, settings);
   const float expected = forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
   return at_frame_size(masses / expected, space.cell_px, seen.hough_camera, frame.colour.size());

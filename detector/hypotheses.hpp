@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "detector/voting.hpp"
-#include "pipeline/detection.hpp"
 
 namespace houghstream {
 
@@ -17,19 +16,9 @@ struct Hypothesis {
   std::vector<std::pair<std::uint32_t, float>> views;    ///< remembered training view and its weight, heaviest first
 };
 
-/// Maxima of the Hough image, each moved to the nearest maximum of the votes in 3-D by mean shift (Comaniciu & Meer
-/// 2002), those that meet merged. Those of at least `least_mass`, strongest first.
-std::vector<Hypothesis> find_maxima(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
-                                    const Camera& working_camera, float least_mass, const DetectionSettings& settings);
-
-/// Box by back-projection of all supporting patches (paper, Section 2), frame pixels. Patches at an object's rim see
-/// little of it and support it weakly, so each side moves out to where the training views that the votes
-/// remember have theirs, unless the patches end so far from it that the object must be hidden there.
-cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
-                             const Camera& camera);
-
-/// Strongest first; one whose box overlaps that of a stronger one of its class, or of a significantly stronger one of
-/// another class (paper, Section 2), by more than the settings allow is dropped.
-std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const DetectionSettings& settings);
+/// The maxima of a class's votes with at least `least_mass`, strongest first.
+std::vector<Hypothesis> find_hypotheses(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
+                                        const Camera& working_camera, float least_mass,
+                                        const DetectionSettings& settings);
 
 }  // namespace houghstream

@@ -1,13 +1,15 @@
 #include "detector/scale_space_search.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "detector/beliefs.hpp"
+#include "detector/boxes.hpp"
 #include "detector/features/features.hpp"
-#include "detector/hypotheses.hpp"
 #include "detector/voting.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -48,6 +50,9 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
   const auto width = static_cast<float>(seen.camera.width);
   const auto height = static_cast<float>(seen.camera.height);
   seen.beliefs.for_believers(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+    for (std::uint32_t e = 0; e < count; ++e) {  // the cache misses below overlap
+      hwy::Prefetch(forest.votes.data() + forest.leaf_classes[entries[e]].first_vote);
+    }
     const auto patch_x = static_cast<float>(seen.grid.x[p]);
     const auto patch_y = static_cast<float>(seen.grid.y[p]);
     for (std::uint32_t e = 0; e < count; ++e) {

@@ -1,49 +1,66 @@
 #include "detector/voting.hpp"
 
-#include <cmath>
 #include <opencv2/imgproc.hpp>
+
+#include "detector/vote_casting.hpp"
 
 namespace houghstream {
 namespace {
 
-/// Appends the patch's votes whose centre is seen inside the image; `cells` gets the cell of each.
-void cast_from_patch(const Forest& forest, const Eigen::Vector3f& point, std::uint32_t patch,
-                     const std::uint32_t* entries, std::uint32_t count, const Camera& camera, const HoughSpace& space,
-                     std::vector<Vote>& votes, std::vector<std::uint32_t>& cells) {
-  const Eigen::Matrix3f R_camera_ray = ray_rotation(point);
-  const float share = 1.0F / static_cast<float>(forest.roots.size());
-  for (const std::uint32_t* e = entries; e != entries + count; ++e) {
-    const LeafClass& entry = forest.leaf_classes[*e];
-    for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
-      const LeafVote& leaf_vote = forest.votes[v];
-      const Eigen::Vector3f centre = point + R_camera_ray * leaf_vote.offset;
-      if (centre.z() < 0.1F) continue;
-      const Eigen::Vector2d px = camera.project(centre.cast<double>());
-      const int x = static_cast<int>(std::floor((px.x() + 0.5) / space.cell_px));
-      const int y = static_cast<int>(std::floor((px.y() + 0.5) / space.cell_px));
-      if (x < 0 || y < 0 || x >= space.width || y >= space.height) continue;
-      votes.push_back({centre, entry.probability * leaf_vote.weight * share, patch, *e});
-      cells.push_back(static_cast<std::uint32_t>(y * space.width + x));
-    }
+/// What meets in a cell.
+struct CellSum {
+  std::uint32_t votes = 0;
+  float weight = 0.0F;
+};
+
+/// The last element is of the votes outside the image.
+void sum_by_cell(const CastVotes& cast, const CellGrid& grid, std::vector<CellSum>& sums) {
+  sums.assign(grid.outside() + 1, CellSum{});
+  CellSum* const by_cell = sums.data();
+  const std::uint32_t* cell = cast.cells.data();
+  const Vote* const end = cast.votes.data() + cast.count;
+  for (const Vote* vote = cast.votes.data(); vote != end; ++vote, ++cell) {
+    ++by_cell[*cell].votes;
+    by_cell[*cell].weight += vote->weight;
   }
+}
+
+/// Lays the votes out cell by cell, those outside the image last, and copies the weights to the image; of each cell
+/// `next` gets the place of its first vote.
+void lay_out(const std::vector<CellSum>& sums, std::vector<std::uint32_t>& next, HoughSpace& space) {
+  next.resize(sums.size());
+  space.image.resize(sums.size() - 1);
+  std::uint32_t count = 0;
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    next[c] = count;
+    count += sums[c].votes;
+    if (c < space.image.size()) space.image[c] = sums[c].weight;
+  }
+  space.first_vote = next;
+  space.votes.resize(count + kSpareVotes);
+  space.voter.resize(count);
 }
 
 /// Counting sort: stable, so the order does not depend on anything but the votes.
-void sort_by_cell(const std::vector<Vote>& votes, const std::vector<std::uint32_t>& cells, HoughSpace& space) {
-  space.first_vote.assign(static_cast<std::size_t>(space.width * space.height) + 1, 0);
-  for (const std::uint32_t cell : cells) ++space.first_vote[cell + 1];
-  for (std::size_t c = 1; c < space.first_vote.size(); ++c) space.first_vote[c] += space.first_vote[c - 1];
-  std::vector<std::uint32_t> next(space.first_vote.begin(), space.first_vote.end() - 1);
-  space.votes.resize(votes.size());
-  for (std::size_t v = 0; v < votes.size(); ++v) space.votes[next[cells[v]]++] = votes[v];
+void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, HoughSpace& space) {
+  std::uint32_t* const free = next.data();
+  Vote* const votes = space.votes.data();
+  std::uint32_t* const voters = space.voter.data();
+  const std::uint32_t* cell = cast.cells.data();
+  const std::uint32_t* voter = cast.voters.data();
+  const Vote* const end = cast.votes.data() + cast.count;
+  for (const Vote* vote = cast.votes.data(); vote != end; ++vote) {
+    const std::uint32_t place = free[*cell++]++;
+    // four numbers at once, not one by one
+    Eigen::Map<Eigen::Array4f>(votes[place].centre_camera.data()) =
+        Eigen::Map<const Eigen::Array4f>(vote->centre_camera.data());
+    voters[place] = *voter++;
+  }
+  space.votes.resize(space.first_vote.back() + kSpareVotes);  // without those outside
+  space.voter.resize(space.first_vote.back());
 }
 
-void fill_image(double sigma_px, HoughSpace& space) {
-  space.image.assign(static_cast<std::size_t>(space.width * space.height), 0.0F);
-  for (std::size_t c = 0; c < space.image.size(); ++c) {
-    for (std::uint32_t v = space.first_vote[c]; v < space.first_vote[c + 1]; ++v)
-      space.image[c] += space.votes[v].weight;
-  }
+void smooth(double sigma_px, HoughSpace& space) {
   cv::Mat image(space.height, space.width, CV_32FC1, space.image.data());
   const double sigma = sigma_px / space.cell_px;
   cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
@@ -51,20 +68,24 @@ void fill_image(double sigma_px, HoughSpace& space) {
 
 }  // namespace
 
-HoughSpace cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchBeliefs& beliefs,
-                      const Camera& working_camera, const DetectionSettings& settings) {
-  HoughSpace space;
+void cast_votes(const Forest& forest, int class_index, const PatchGrid& patches, const PatchBeliefs& beliefs,
+                const Camera& working_camera, const DetectionSettings& settings, HoughSpace& space) {
+  static thread_local CastVotes cast;  // these three are kept from class to class
+  static thread_local std::vector<CellSum> sums;
+  static thread_local std::vector<std::uint32_t> next;
   space.cell_px = 2;
-  space.width = (working_camera.width + space.cell_px - 1) / space.cell_px;
-  space.height = (working_camera.height + space.cell_px - 1) / space.cell_px;
-  std::vector<Vote> votes;
-  std::vector<std::uint32_t> cells;
+  const CellGrid grid(working_camera, space.cell_px);
+  space.width = grid.width;
+  space.height = grid.height;
+  space.voters.clear();
   beliefs.for_believers(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
-    cast_from_patch(forest, patches.point_camera[p], p, entries, count, working_camera, space, votes, cells);
+    for (std::uint32_t e = 0; e < count; ++e) space.voters.push_back({p, entries[e]});
   });
-  sort_by_cell(votes, cells, space);
-  fill_image(settings.hough_sigma_px, space);
-  return space;
+  cast_all(forest, patches, space.voters, grid, cast);
+  sum_by_cell(cast, grid, sums);
+  lay_out(sums, next, space);
+  sort_by_cell(cast, next, space);
+  smooth(settings.hough_sigma_px, space);
 }
 
 }  // namespace houghstream

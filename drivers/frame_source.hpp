@@ -19,6 +19,9 @@ class FrameSource {
 
   /// Frames per second at which the source was recorded, or runs.
   virtual double rate_hz() const = 0;
+
+  /// Whether frames come at their own time, as a camera's do; those of a recording come as soon as they are asked for.
+  virtual bool is_live() const { return false; }
 };
 
 /// Opens "bop:DIR" (a BOP scene folder), "uw:DIR" (a UW RGB-D scene folder: NAME_color.png or NAME.png with

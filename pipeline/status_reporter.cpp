@@ -60,6 +60,11 @@ void StatusReporter::note_error(const std::string& reason) {
   spdlog::warn("{} ({} refused so far)", reason, refused_);
 }
 
+void StatusReporter::remember_error(const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  last_error_ = reason;
+}
+
 status_t StatusReporter::message() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Clock::time_point now = Clock::now();

@@ -31,6 +31,8 @@ class StatusReporter {
   void count_refused(const std::string& reason);
   /// Remembers the last error, and logs it, but no more than one a second.
   void note_error(const std::string& reason);
+  /// Remembers the last error, which somebody else has logged.
+  void remember_error(const std::string& reason);
 
   status_t message() const;
 

@@ -1,4 +1,4 @@
-# Processes in the background and a log played to them, for scripts that run the whole stream. Sourced after common.sh,
+# Processes in the background and frames sent to them, for scripts that run the whole stream. Sourced after common.sh,
 # not run; needs $process_words, a folder for what each says. Whatever still runs when the script ends is ended.
 
 declare -A pids
@@ -44,10 +44,10 @@ await_ready() {
   done
 }
 
-# play LOG: to the end of it, and until the observer, who ends by himself when all frames have come and the bus is quiet,
-# has done so.
+# play COMMAND...: runs what sends the frames to its end, and waits for the observer, who ends by himself when all frames
+# have come and the bus is quiet.
 play() {
-  lcm-logplayer "$1" >"$process_words/player.txt" 2>&1 || { show_words; die "lcm-logplayer failed"; }
+  "$@" >"$process_words/player.txt" 2>&1 || { show_words; die "the frames could not be sent: $1 failed"; }
   for _ in $(seq 80); do
     kill -0 "${pids[observe]}" 2>/dev/null || break
     sleep 0.1

@@ -10,23 +10,10 @@ constexpr int kFewest = 12;  // pairs from which a comparison means something
 
 }  // namespace
 
-void Likeness::add(const std::array<std::uint8_t, 3>& remembered, const cv::Vec3b& seen) {
-  ++count_;
-  for (std::size_t c = 0; c < channels_.size(); ++c) {
-    const double a = remembered[c];
-    const double b = seen[static_cast<int>(c)];
-    Sums& sums = channels_[c];
-    sums[0] += a;
-    sums[1] += b;
-    sums[2] += a * a;
-    sums[3] += b * b;
-    sums[4] += a * b;
-  }
-}
-
 double Likeness::seen_variance(std::size_t channel) const {
-  const double mean = channels_[channel][1] / count_;
-  return channels_[channel][3] / count_ - mean * mean;
+  const double count = count_;
+  const double mean = channels_[channel][1] / count;
+  return channels_[channel][3] / count - mean * mean;
 }
 
 float Likeness::foreign_colour() const {
@@ -35,8 +22,9 @@ float Likeness::foreign_colour() const {
   constexpr double kPalest = 0.5;  // strengths over the remembered one
   constexpr double kStrongest = 2.5;
   if (count_ < kFewest) return 0.0F;
+  const double count = count_;
   const auto mean = [&](std::size_t channel, std::size_t which) {
-    return channels_[channel][which] / count_ - kNeutral;
+    return channels_[channel][which] / count - kNeutral;
   };
   const double remembered_sq = mean(1, 0) * mean(1, 0) + mean(2, 0) * mean(2, 0);
   const double product = mean(1, 0) * mean(1, 1) + mean(2, 0) * mean(2, 1);
@@ -49,15 +37,16 @@ float Likeness::foreign_colour() const {
 float Likeness::correlation() const {
   constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
   if (count_ < kFewest) return 0.0F;
+  const double count = count_;
   double covariance = 0.0;
   double remembered = 3.0 * kNoise;
   double seen = 3.0 * kNoise;
   for (const Sums& sums : channels_) {
-    const double mean_a = sums[0] / count_;
-    const double mean_b = sums[1] / count_;
-    covariance += sums[4] / count_ - mean_a * mean_b;
-    remembered += sums[2] / count_ - mean_a * mean_a;
-    seen += sums[3] / count_ - mean_b * mean_b;
+    const double mean_a = sums[0] / count;
+    const double mean_b = sums[1] / count;
+    covariance += sums[4] / count - mean_a * mean_b;
+    remembered += sums[2] / count - mean_a * mean_a;
+    seen += sums[3] / count - mean_b * mean_b;
   }
   return static_cast<float>(covariance / std::sqrt(remembered * seen));
 }

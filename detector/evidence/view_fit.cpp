@@ -5,7 +5,6 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <utility>
-#include <vector>
 
 #include "detector/evidence/likeness.hpp"
 
@@ -45,18 +44,25 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
   // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
   out.left = static_cast<float>(centre_px.x()) + 0.5F + px_per_metre * view.box[0] - Appearance::kRim * out.cell_width;
   out.top = static_cast<float>(centre_px.y()) + 0.5F + px_per_metre * view.box[1] - Appearance::kRim * out.cell_height;
-  for (std::size_t cell = 0; cell < out.excess.size(); ++cell) {
-    const cv::Point2f px = out.cell_centre(cell);
-    const int x = static_cast<int>(std::floor(px.x));
-    const int y = static_cast<int>(std::floor(px.y));
-    if (x < 0 || y < 0 || x >= frame.depth.cols || y >= frame.depth.rows) continue;
-    const float beyond_centre = frame.depth.at<float>(y, x) - centre.z();
-    const std::int16_t remembered = view.appearance.mm[cell];
-    const std::int16_t neighbour = view.appearance.beside[cell];
-    out.on_object[cell] = remembered != Appearance::kBeside;
-    out.beside[cell] = neighbour != Appearance::kBeside;
-    out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - 0.001F * remembered : kNone;
-    out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - 0.001F * neighbour : kNone;
+  std::array<int, kSide> column_px{};
+  for (std::size_t column = 0; column < kSide; ++column)
+    column_px[column] = static_cast<int>(std::floor(out.cell_centre(column).x));
+  for (std::size_t row = 0; row < kSide; ++row) {
+    const int y = static_cast<int>(std::floor(out.cell_centre(row * kSide).y));
+    if (y < 0 || y >= frame.depth.rows) continue;
+    const auto* depth = frame.depth.ptr<float>(y);
+    for (std::size_t column = 0; column < kSide; ++column) {
+      const int x = column_px[column];
+      if (x < 0 || x >= frame.depth.cols) continue;
+      const std::size_t cell = row * kSide + column;
+      const float beyond_centre = depth[x] - centre.z();
+      const std::int16_t remembered = view.appearance.mm[cell];
+      const std::int16_t neighbour = view.appearance.beside[cell];
+      out.on_object[cell] = remembered != Appearance::kBeside;
+      out.beside[cell] = neighbour != Appearance::kBeside;
+      out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - 0.001F * remembered : kNone;
+      out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - 0.001F * neighbour : kNone;
+    }
   }
   return out;
 }
@@ -64,13 +70,15 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
 /// Median of what lies within reach of the expected depth.
 float common_shift(const Comparison& comparison) {
   constexpr float kReach = 0.03F;
-  std::vector<float> near;
-  for (const float e : comparison.excess) {
-    if (std::abs(e) < kReach) near.push_back(e);
+  std::array<float, kSide * kSide> near;
+  std::size_t count = 0;
+  for (std::size_t cell = 0; cell < near.size(); ++cell) {
+    near[count] = comparison.excess[cell];
+    count += std::abs(near[count]) < kReach ? 1 : 0;
   }
-  if (near.empty()) return 0.0F;
-  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-  std::nth_element(near.begin(), middle, near.end());
+  if (count == 0) return 0.0F;
+  auto* middle = near.data() + count / 2;
+  std::nth_element(near.data(), middle, near.data() + count);
   return *middle;
 }
 
@@ -116,9 +124,61 @@ float continued_share(const Comparison& comparison, float shift, float tolerance
   return static_cast<float>(continued) / static_cast<float>(std::max(beside, 1));
 }
 
-cv::Vec3b colour_at(const LabFrame& frame, const cv::Point2f& frame_px) {
-  return frame.lab.at<cv::Vec3b>(std::min(static_cast<int>(frame_px.y * frame.scale), frame.lab.rows - 1),
-                                 std::min(static_cast<int>(frame_px.x * frame.scale), frame.lab.cols - 1));
+/// How the object's cells compare.
+struct Tally {
+  int cells = 0;
+  int visible = 0;
+  int hidden = 0;
+  int seen_through = 0;
+  int unknown = 0;
+  Lines rows;
+  Lines columns;
+  std::array<std::uint16_t, kSide * kSide> visible_cells;  // the first `visible` of them
+
+  float share(int count) const { return static_cast<float>(count) / static_cast<float>(std::max(cells, 1)); }
+};
+
+/// Without branches, which nobody could predict.
+Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
+  Tally tally;
+  for (std::size_t row = 0; row < kSide; ++row) {
+    for (std::size_t column = 0; column < kSide; ++column) {
+      const std::size_t cell = row * kSide + column;
+      const int object = comparison.on_object[cell] ? 1 : 0;
+      const float e = comparison.excess[cell] - shift;
+      const int unknown = object & (std::isnan(e) ? 1 : 0);
+      const int visible = object & (std::abs(e) <= tolerance ? 1 : 0);
+      tally.visible_cells[static_cast<std::size_t>(tally.visible)] = static_cast<std::uint16_t>(cell);
+      tally.cells += object;
+      tally.visible += visible;
+      tally.unknown += unknown;
+      tally.hidden += object & (e < -tolerance ? 1 : 0);
+      tally.seen_through += object & (e > tolerance ? 1 : 0);
+      tally.rows.whole[row] += object;
+      tally.columns.whole[column] += object;
+      tally.rows.seen[row] += unknown | visible;
+      tally.columns.seen[column] += unknown | visible;
+    }
+  }
+  return tally;
+}
+
+/// Of the visible cells.
+Likeness compare_colours(const Comparison& comparison, const Tally& tally, const Appearance& appearance,
+                         const LabFrame& frame) {
+  std::array<int, kSide> x_px{};
+  std::array<int, kSide> y_px{};
+  for (std::size_t i = 0; i < kSide; ++i) {
+    const cv::Point2f px = comparison.cell_centre(i * kSide + i);
+    x_px[i] = std::min(static_cast<int>(px.x * frame.scale), frame.lab.cols - 1);
+    y_px[i] = std::min(static_cast<int>(px.y * frame.scale), frame.lab.rows - 1);
+  }
+  Likeness likeness;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(tally.visible); ++i) {
+    const std::size_t cell = tally.visible_cells[i];
+    likeness.add(appearance.lab[cell], frame.lab.ptr<cv::Vec3b>(y_px[cell / kSide])[x_px[cell % kSide]]);
+  }
+  return likeness;
 }
 
 }  // namespace
@@ -135,36 +195,21 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   const float shift = common_shift(comparison);
   const float z = centre_camera.z();
   const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
+  const Tally tally = tally_cells(comparison, shift, tolerance);
+  const Likeness likeness = compare_colours(comparison, tally, view.appearance, frame);
   ViewFit fit;
-  Lines rows;
-  Lines columns;
-  Likeness likeness;
-  int cells = 0;
-  for (std::size_t cell = 0; cell < comparison.excess.size(); ++cell) {
-    if (!comparison.on_object[cell]) continue;
-    const float e = comparison.excess[cell] - shift;
-    const bool unknown = std::isnan(e);
-    const bool visible = std::abs(e) <= tolerance;
-    if (visible) likeness.add(view.appearance.lab[cell], colour_at(frame, comparison.cell_centre(cell)));
-    if (visible) fit.unevenness += std::abs(e) / tolerance;
-    ++cells;
-    fit.unknown += unknown ? 1.0F : 0.0F;
-    fit.visible += visible ? 1.0F : 0.0F;
-    fit.hidden += e < -tolerance ? 1.0F : 0.0F;
-    fit.seen_through += e > tolerance ? 1.0F : 0.0F;
-    ++rows.whole[cell / kSide];
-    ++columns.whole[cell % kSide];
-    rows.seen[cell / kSide] += unknown || visible ? 1 : 0;
-    columns.seen[cell % kSide] += unknown || visible ? 1 : 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(tally.visible); ++i) {
+    fit.unevenness += std::abs(comparison.excess[tally.visible_cells[i]] - shift) / tolerance;
   }
-  fit.unevenness /= std::max(fit.visible, 1.0F);
-  for (float* share : {&fit.visible, &fit.hidden, &fit.seen_through, &fit.unknown}) {
-    *share /= static_cast<float>(std::max(cells, 1));
-  }
+  fit.unevenness /= static_cast<float>(std::max(tally.visible, 1));
+  fit.visible = tally.share(tally.visible);
+  fit.hidden = tally.share(tally.hidden);
+  fit.seen_through = tally.share(tally.seen_through);
+  fit.unknown = tally.share(tally.unknown);
   fit.continued = continued_share(comparison, shift, tolerance);
   fit.likeness = likeness.correlation();
   fit.foreign_colour = likeness.foreign_colour();
-  fit.visible_box_px = visible_box(comparison, columns, rows);
+  fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
 }
 

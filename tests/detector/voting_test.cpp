@@ -34,7 +34,9 @@ HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0U);
   beliefs.note({0, all.size(), all.data(), leaves.data()});
-  return cast_votes(forest, 0, patches, beliefs, kCamera, settings);
+  HoughSpace space;
+  cast_votes(forest, 0, patches, beliefs, kCamera, settings, space);
+  return space;
 }
 
 std::size_t cell_of(const HoughSpace& space, std::uint32_t vote) {
@@ -45,7 +47,7 @@ std::size_t cell_of(const HoughSpace& space, std::uint32_t vote) {
 
 TEST(Voting, AVoteLandsWhereItsCentreIsSeen) {
   const HoughSpace space = vote(one_leaf({0.1F, 0.05F, 0.0F}, 0.8F), {{0.0F, 0.0F, 1.0F}}, {});
-  ASSERT_EQ(space.votes.size(), 1U);
+  ASSERT_EQ(space.voter.size(), 1U);
   EXPECT_LT((space.votes[0].centre_camera - Eigen::Vector3f(0.1F, 0.05F, 1.0F)).norm(), 1e-6F);
   EXPECT_FLOAT_EQ(space.votes[0].weight, 0.8F);
   EXPECT_EQ(space.width, 50);
@@ -57,31 +59,31 @@ TEST(Voting, AVoteLandsWhereItsCentreIsSeen) {
 TEST(Voting, OffsetsTurnWithTheViewingRay) {
   const Eigen::Vector3f point(0.3F, -0.2F, 1.0F);
   const HoughSpace space = vote(one_leaf({0.0F, 0.0F, 0.05F}, 1.0F), {point}, {});
-  ASSERT_EQ(space.votes.size(), 1U);  // behind the point on its own ray
+  ASSERT_EQ(space.voter.size(), 1U);  // behind the point on its own ray
   EXPECT_LT((space.votes[0].centre_camera - point * (1.0F + 0.05F / point.norm())).norm(), 1e-5F);
 }
 
 TEST(Voting, APatchThatHardlyBelievesCastsNone) {
   DetectionSettings settings;
   settings.min_class_share = 0.5F;
-  EXPECT_TRUE(vote(one_leaf({0, 0, 0}, 0.49F), {{0, 0, 1}}, settings).votes.empty());
-  EXPECT_EQ(vote(one_leaf({0, 0, 0}, 0.51F), {{0, 0, 1}}, settings).votes.size(), 1U);
+  EXPECT_TRUE(vote(one_leaf({0, 0, 0}, 0.49F), {{0, 0, 1}}, settings).voter.empty());
+  EXPECT_EQ(vote(one_leaf({0, 0, 0}, 0.51F), {{0, 0, 1}}, settings).voter.size(), 1U);
 }
 
 TEST(Voting, VotesOutsideTheImageOrBehindTheCameraAreDropped) {
   const Forest sideways = one_leaf({0.2F, 0.0F, 0.0F}, 1.0F);
-  EXPECT_EQ(vote(sideways, {{0.25F, 0, 1}}, {}).votes.size(), 1U);
-  EXPECT_TRUE(vote(sideways, {{0.45F, 0, 1}}, {}).votes.empty());
-  EXPECT_TRUE(vote(one_leaf({-0.2F, 0, 0}, 1.0F), {{-0.45F, 0, 1}}, {}).votes.empty());
-  EXPECT_TRUE(vote(one_leaf({0, 0, -2.0F}, 1.0F), {{0, 0, 1}}, {}).votes.empty());
+  EXPECT_EQ(vote(sideways, {{0.25F, 0, 1}}, {}).voter.size(), 1U);
+  EXPECT_TRUE(vote(sideways, {{0.45F, 0, 1}}, {}).voter.empty());
+  EXPECT_TRUE(vote(one_leaf({-0.2F, 0, 0}, 1.0F), {{-0.45F, 0, 1}}, {}).voter.empty());
+  EXPECT_TRUE(vote(one_leaf({0, 0, -2.0F}, 1.0F), {{0, 0, 1}}, {}).voter.empty());
 }
 
 TEST(Voting, VotesAreSortedByCellAndKeepTheOrderOfPatches) {
   const HoughSpace space = vote(one_leaf({0, 0, 0}, 1.0F), {{0.3F, 0, 1}, {-0.3F, 0, 1}, {0.3F, 0, 1}}, {});
-  ASSERT_EQ(space.votes.size(), 3U);
-  EXPECT_EQ(space.votes[0].patch, 1U);
-  EXPECT_EQ(space.votes[1].patch, 0U);
-  EXPECT_EQ(space.votes[2].patch, 2U);
+  ASSERT_EQ(space.voter.size(), 3U);
+  EXPECT_EQ(space.voters[space.voter[0]].patch, 1U);
+  EXPECT_EQ(space.voters[space.voter[1]].patch, 0U);
+  EXPECT_EQ(space.voters[space.voter[2]].patch, 2U);
   EXPECT_LT(cell_of(space, 0), cell_of(space, 1));
   EXPECT_EQ(cell_of(space, 1), cell_of(space, 2));
   EXPECT_EQ(space.first_vote.size(), 50U * 40U + 1U);
@@ -92,8 +94,26 @@ TEST(Voting, AVoteIsSharedAmongTheTrees) {
   Forest forest = one_leaf({0, 0, 0}, 0.9F);
   forest.roots = {-1, -1, -1};
   const HoughSpace space = vote(forest, {{0, 0, 1}}, {});
-  ASSERT_EQ(space.votes.size(), 3U);
+  ASSERT_EQ(space.voter.size(), 3U);
   EXPECT_FLOAT_EQ(space.votes[1].weight, 0.3F);
+}
+
+TEST(Voting, ASpaceIsUsedAgain) {
+  HoughSpace space = vote(one_leaf({0, 0, 0}, 0.9F), {{0.3F, 0, 1}, {0, 0, 1}}, {});
+  const Forest forest = one_leaf({0, 0, 0}, 0.9F);
+  PatchGrid patches;
+  patches.point_camera = {{0.1F, 0, 1}};
+  patches.x.resize(1);
+  const std::uint32_t patch = 0;
+  const std::int32_t leaf = 0;
+  PatchBeliefs beliefs(forest, 1, 0.0F);
+  beliefs.note({0, 1, &patch, &leaf});
+  cast_votes(forest, 0, patches, beliefs, kCamera, {}, space);
+  const HoughSpace fresh = vote(forest, patches.point_camera, {});
+  EXPECT_EQ(space.voter.size(), 1U);
+  EXPECT_EQ(space.voters.size(), 1U);
+  EXPECT_EQ(space.first_vote, fresh.first_vote);
+  EXPECT_EQ(space.image, fresh.image);
 }
 
 TEST(Voting, SmoothingKeepsTheWeight) {

@@ -13,6 +13,7 @@ import sys
 
 from bus import Process, enter_private_network
 from lcm_messages import detections_of, poses_of, read_log, utime_of
+from live_stream import check_live_stream
 
 FRAMES = 24
 REPLAYED = 120  # the scene again and again
@@ -192,6 +193,7 @@ def main():
     check_same_on_the_bus(heard, offline)
     check_poses(truth, folder, heard)
     capture_live(tools, folder)
+    check_live_stream(tools, folder, start_stream, offline)
     check_bad_input(tools, folder)
     print("end to end: everything accounted for")
 

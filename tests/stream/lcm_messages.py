@@ -76,3 +76,40 @@ def poses_of(data):
         wire.read("4dbii5f")
         poses.append((name, index, status, translation))
     return poses
+
+
+def images_of(data):
+    """{image type: bytes} of an encoded images_t."""
+    wire = Wire(data)
+    wire.read("q")
+    count = wire.read("i")
+    types = [wire.read("h") for _ in range(count)]
+    images = {}
+    for image_type in types:
+        wire.read("q4i")
+        size = wire.read("i")
+        images[image_type] = wire.data[wire.position : wire.position + size]
+        wire.position += size
+        for _ in range(wire.read("i")):
+            wire.text()
+            value_size = wire.read("i")
+            wire.position += value_size
+    return images
+
+
+@dataclass
+class Status:
+    utime: int
+    process: str
+    processed: int
+    lost: int
+    last_error: str
+
+
+def status_of(data):
+    wire = Wire(data)
+    utime, process = wire.read("q"), wire.text()
+    wire.read("if")
+    _, processed, _, lost, _ = wire.read("5q")
+    wire.read("3f")
+    return Status(utime, process, processed, lost, wire.text())

@@ -43,7 +43,8 @@ class CaptureLog : public testing::Test {
     std::int64_t sequence = 0;
   };
   std::vector<Line> capture(int frames_in_source, const CaptureSettings& settings) const {
-    capture_to_log([&] { return std::make_unique<FakeSource>(frames_in_source); }, settings, file_.string());
+    capture_to_log([&](const CameraListener&) { return std::make_unique<FakeSource>(frames_in_source); }, settings,
+                   file_.string());
     std::vector<Line> lines;
     LogReader reader(file_);
     while (const std::optional<LogEvent> event = reader.next()) {
@@ -105,7 +106,8 @@ TEST(Capture, KeepsTheRateOnTheNetwork) {
   catch_stop_signals();
   CaptureSettings settings;
   settings.rate_hz = 50.0;
-  const CaptureResult result = capture_to_network([] { return std::make_unique<FakeSource>(11); }, settings, "memq://");
+  const CaptureResult result =
+      capture_to_network([](const CameraListener&) { return std::make_unique<FakeSource>(11); }, settings, "memq://");
   EXPECT_EQ(result.frames, 11);
   EXPECT_GE(result.seconds, 0.19);
   EXPECT_GT(result.bytes, 11 * 1000);

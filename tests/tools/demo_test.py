@@ -12,6 +12,7 @@ sys.path[:0] = [str(tools / "demo.d"), str(tools / "report_kit")]
 
 import charts
 import count_events
+import live_report
 import page
 import report
 
@@ -49,6 +50,26 @@ class Account(unittest.TestCase):
         ):
             with self.assertRaises(SystemExit):
                 report.account(10, wrong)
+
+
+class LiveReport(unittest.TestCase):
+    SHUTTERS = [1_000_000, 1_033_333, 1_066_667]
+
+    def test_a_frame_belongs_to_the_nearest_shutter(self):
+        self.assertEqual(live_report.nearest(self.SHUTTERS, 1_034_000), 1_033_333)
+        self.assertEqual(live_report.nearest(self.SHUTTERS, 1_066_667), 1_066_667)
+        self.assertIsNone(live_report.nearest(self.SHUTTERS, 1_200_000))
+        self.assertIsNone(live_report.nearest([], 1_000_000))
+
+    def test_latency_is_from_the_shutter(self):
+        rows = [{"utime": "1000500", "t_poses": "0.080"}, {"utime": "1033400", "t_poses": ""}]
+        self.assertEqual(live_report.latencies_ms(rows, "t_poses", self.SHUTTERS, 1_020_000), [100.0])
+        with self.assertRaises(SystemExit):
+            live_report.latencies_ms([{"utime": "5", "t_poses": "1"}], "t_poses", self.SHUTTERS, 0)
+
+    def test_percentiles_of_a_hundred(self):
+        self.assertEqual(live_report.percentiles(range(1, 101)), {"p50": 51, "p95": 96, "p99": 100})
+        self.assertEqual(live_report.percentiles([])["p99"], None)
 
 
 class Charts(unittest.TestCase):

@@ -2,21 +2,24 @@
 
 #include "pipeline/checks.hpp"
 #include "pipeline/stop_signal.hpp"
+#include "tools/capture/capture_options.hpp"
 #include "tools/capture/publish_frames.hpp"
 #include "tools/common/tool_main.hpp"
 
 int main(int argc, char** argv) {
   using namespace houghstream;
   CLI::App app("Publishes RGB-D frames as images_t, or writes them to an LCM log", "hs-capture");
-  std::string source;
+  SourceOptions source;
+  bool list = false;
   std::string log;
   std::string url;
   bool raw_colour = false;
   bool raw_depth = false;
   CaptureSettings settings;
-  app.add_option("--source", source, "bop:DIR, uw:DIR, tum:DIR or render:NAME")->required();
+  add_source_options(app, source);
+  app.add_flag("--list-devices", list, "print the cameras that OpenNI2 finds, and end");
   app.add_option("--log", log, "write this LCM log instead of publishing");
-  app.add_option("--rate", settings.rate_hz, "frames per second; default: the source's");
+  app.add_option("--rate", settings.rate_hz, "frames per second; default: the source's; a camera keeps its own");
   app.add_option("--frames", settings.frames, "end after this many frames")->check(CLI::PositiveNumber);
   app.add_flag("--loop", settings.loop, "start again at the end");
   app.add_flag("--raw-colour", raw_colour, "colour as raw RGB instead of JPEG");
@@ -27,11 +30,16 @@ int main(int argc, char** argv) {
   add_lcm_url_option(app, url);
 
   return run_tool(app, argc, argv, [&] {
+    if (list) {
+      std::puts(devices_text().c_str());
+      return;
+    }
+    require(!source.source.empty(), "--source is missing: for instance openni2, oni:FILE or bop:DIR");
     settings.format.jpeg = !raw_colour;
     settings.format.zip_depth = !raw_depth;
     require(log.empty() || !settings.loop || settings.frames, "--loop into a log never ends; give --frames");
     catch_stop_signals();
-    const OpenSource open = [&] { return open_frame_source(source); };
+    const OpenSource open = [&](const CameraListener& listener) { return open_source(source, listener); };
     const CaptureResult result =
         log.empty() ? capture_to_network(open, settings, url) : capture_to_log(open, settings, log);
     spdlog::info(

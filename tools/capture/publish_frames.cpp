@@ -1,5 +1,6 @@
 #include "tools/capture/publish_frames.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -19,8 +20,11 @@ using Clock = std::chrono::steady_clock;
 /// The source's frames, again and again where wanted, with utimes that never repeat: a frame is known by its utime.
 class FrameFeed {
  public:
-  FrameFeed(const OpenSource& open, const CaptureSettings& settings) : open_(open), settings_(settings) {
-    source_ = open_();
+  FrameFeed(const OpenSource& open, const CaptureSettings& settings, CameraListener listener)
+      : open_(open), settings_(settings), listener_(std::move(listener)) {
+    source_ = open_(listener_);
+    require(!source_->is_live() || !settings.rate_hz,
+            "--rate is for recordings; a camera's rate belongs to its --mode");
     rate_hz_ = settings.rate_hz.value_or(source_->rate_hz());
     require(std::isfinite(rate_hz_) && rate_hz_ > 0.0 && rate_hz_ <= 1000.0, "rate of {} Hz, expected above 0 to 1000",
             rate_hz_);
@@ -30,6 +34,7 @@ class FrameFeed {
     if (stop_requested() || (settings_.frames && count_ >= *settings_.frames)) return std::nullopt;
     std::optional<RgbdFrame> frame = source_->next();
     if (!frame && settings_.loop && count_ > 0) frame = start_again();
+    if (!frame && stop_requested()) return std::nullopt;
     require(frame.has_value() || count_ > 0, "the source has no frames");
     if (!frame) return std::nullopt;
     frame->utime += offset_us_;
@@ -41,17 +46,20 @@ class FrameFeed {
 
   std::int64_t count() const { return count_; }
   std::int64_t first_utime() const { return first_utime_; }
+  bool is_live() const { return source_->is_live(); }
   double period_us() const { return 1e6 / rate_hz_; }
 
  private:
   std::optional<RgbdFrame> start_again() {
-    source_ = open_();
+    source_.reset();
+    source_ = open_(listener_);
     offset_us_ = last_utime_ - first_utime_ + std::llround(1e6 / source_->rate_hz());
     return source_->next();
   }
 
   const OpenSource& open_;
   const CaptureSettings& settings_;
+  CameraListener listener_;
   std::unique_ptr<FrameSource> source_;
   double rate_hz_ = 0.0;
   std::int64_t count_ = 0;
@@ -78,6 +86,35 @@ class Pace {
   Clock::time_point due_ = Clock::now();
 };
 
+/// Sends the status once a second while it lives: a camera that is gone keeps the publishing thread waiting.
+class StatusTicker {
+ public:
+  StatusTicker(StatusReporter& status, LcmBus& bus) {
+    const BlockStopSignals block;
+    thread_ = std::thread([this, &status, &bus] {
+      while (running_) {
+        status.publish_if_due(bus);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      }
+    });
+  }
+  ~StatusTicker() {
+    running_ = false;
+    thread_.join();
+  }
+  StatusTicker(const StatusTicker&) = delete;
+  StatusTicker& operator=(const StatusTicker&) = delete;
+
+ private:
+  std::atomic<bool> running_{true};
+  std::thread thread_;
+};
+
+CameraListener listener_of(StatusReporter& status) {
+  return {stop_requested, [&](const std::string& reason) { status.remember_error(reason); },
+          [&](std::int64_t number) { status.note_sequence(number); }};
+}
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -88,7 +125,8 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
   LcmBus bus(url);
   require(!bus.is_log(), "{}: frames go to a network; to write a log give --log", url);
   StatusReporter status("hs-capture");
-  FrameFeed feed(open, settings);
+  FrameFeed feed(open, settings, listener_of(status));
+  const StatusTicker ticker(status, bus);
   Pace pace(feed.period_us());
   CaptureResult result;
   const Clock::time_point start = Clock::now();
@@ -96,10 +134,9 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
     const Clock::time_point read = Clock::now();
     status.count_received();
     const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
-    pace.wait();
+    if (!feed.is_live()) pace.wait();
     bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->utime);
     status.count_processed(Clock::now() - read);
-    status.publish_if_due(bus);
     ++result.frames;
     result.bytes += static_cast<std::int64_t>(bytes.size());
   }
@@ -109,14 +146,15 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
 }
 
 CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file) {
+  FrameFeed feed(open, settings, {stop_requested, {}, {}});
   LogWriter log(file);
-  FrameFeed feed(open, settings);
   CaptureResult result;
   const Clock::time_point start = Clock::now();
   while (const std::optional<RgbdFrame> frame = feed.next()) {
     const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
     const std::int64_t since_first = std::llround(static_cast<double>(result.frames) * feed.period_us());
-    log.write(feed.first_utime() + since_first, settings.channel, {bytes.data(), bytes.size()});
+    log.write(feed.is_live() ? frame->utime : feed.first_utime() + since_first, settings.channel,
+              {bytes.data(), bytes.size()});
     ++result.frames;
     result.bytes += static_cast<std::int64_t>(bytes.size());
   }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "drivers/frame_source.hpp"
+#include "drivers/openni/camera_options.hpp"
 #include "pipeline/messages.hpp"
 
 namespace houghstream {
@@ -26,15 +27,16 @@ struct CaptureResult {
   double seconds = 0.0;
 };
 
-/// Opens the source; called again at its end where the settings say so.
-using OpenSource = std::function<std::unique_ptr<FrameSource>()>;
+/// Opens the source; called again at its end where the settings say so. A camera tells the listener how it is.
+using OpenSource = std::function<std::unique_ptr<FrameSource>(const CameraListener&)>;
 
-/// Publishes the source's frames on the network at their rate, until its end or a stop signal.
+/// Publishes the source's frames on the network at their rate, those of a camera as they come, until its end or a stop
+/// signal. The status goes out once a second whether frames come or not.
 /// Throws InputError where a frame cannot be read or the source is empty.
 CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& settings, const std::string& url);
 
 /// Writes the same messages to an LCM log as fast as they come, stamped at the rate with which they are to be
-/// replayed.
+/// replayed; a camera's with their utimes.
 CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file);
 
 }  // namespace houghstream

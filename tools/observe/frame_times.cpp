@@ -39,6 +39,14 @@ json to_json(const status_t& status) {
           {"last_error", status.last_error}};
 }
 
+/// The same moment on the clock that counts since the epoch, microseconds.
+json utime_of(const std::optional<FrameTimes::Time>& time) {
+  if (!time) return nullptr;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto then = now - (FrameTimes::Time::clock::now() - *time);
+  return std::chrono::duration_cast<std::chrono::microseconds>(then).count();
+}
+
 }  // namespace
 
 void FrameTimes::note_frame(std::int64_t utime, Time time) {
@@ -61,15 +69,20 @@ std::size_t FrameTimes::frames() const {
   return static_cast<std::size_t>(count(&Row::frame));
 }
 
-std::string FrameTimes::csv() const {
-  std::optional<Time> start;
+std::optional<FrameTimes::Time> FrameTimes::start() const {
+  std::optional<Time> first;
   for (const auto& [utime, row] : rows_) {
     for (const auto& time : {row.frame, row.detections, row.poses}) {
-      if (time) start = std::min(start.value_or(*time), *time);
+      if (time) first = std::min(first.value_or(*time), *time);
     }
   }
+  return first;
+}
+
+std::string FrameTimes::csv() const {
+  const std::optional<Time> zero = start();
   const auto cell = [&](const std::optional<Time>& time) {
-    return time ? fmt::format("{:.6f}", seconds(*time - *start)) : std::string();
+    return time ? fmt::format("{:.6f}", seconds(*time - *zero)) : std::string();
   };
   std::string text = "utime,t_frame,t_detections,t_poses\n";
   for (const auto& [utime, row] : rows_) {
@@ -119,7 +132,8 @@ json FrameTimes::account(std::int64_t sent) const {
 json FrameTimes::summary(const std::optional<std::int64_t>& sent) const {
   json processes = json::object();
   for (const auto& [name, status] : processes_) processes[name] = to_json(status);
-  return {{"frames_sent", sent ? json(*sent) : json(nullptr)},
+  return {{"start_utime", utime_of(start())},
+          {"frames_sent", sent ? json(*sent) : json(nullptr)},
           {"frames_received", count(&Row::frame)},
           {"frames_detected", count(&Row::detections)},
           {"frames_with_poses", count(&Row::poses)},

@@ -28,7 +28,8 @@ class FrameTimes {
   /// arrival, empty where it has not come.
   std::string csv() const;
 
-  /// `sent`: how many frames were published, where it is known. Counts, rate, latency percentiles in milliseconds
+  /// `sent`: how many frames were published, where it is known. `start_utime`: the csv's zero, microseconds since the
+  /// epoch. Counts, rate, latency percentiles in milliseconds
   /// (detect: frame to detections; pose: detections to poses; total: frame to poses), the last status of each
   /// process, and the account sent = detected + skipped + refused + lost of the process that detects.
   nlohmann::json summary(const std::optional<std::int64_t>& sent) const;
@@ -43,6 +44,7 @@ class FrameTimes {
   std::vector<double> latencies_ms(std::optional<Time> Row::*from, std::optional<Time> Row::*to) const;
   std::int64_t count(std::optional<Time> Row::*what) const;
   double rate_hz(std::optional<Time> Row::*what) const;
+  std::optional<Time> start() const;
   nlohmann::json account(std::int64_t sent) const;
 
   std::map<std::int64_t, Row> rows_;

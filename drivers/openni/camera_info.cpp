@@ -1,0 +1,66 @@
+#include "drivers/openni/camera_info.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+/// OpenCV reads YAML that starts with its own header; ROS writes none.
+cv::FileStorage parse_yaml(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  require(in.good(), "{}: cannot be read, expected a camera calibration file", file.string());
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (text.rfind("%YAML", 0) != 0) text = "%YAML:1.0\n---\n" + text;
+  try {
+    return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
+  } catch (const cv::Exception&) {
+    fail("{}: no YAML, expected a camera calibration file", file.string());
+  }
+}
+
+std::vector<double> numbers_of(const cv::FileNode& list) {
+  std::vector<double> numbers;
+  for (const cv::FileNode& number : list) {
+    if (number.isReal() || number.isInt()) numbers.push_back(number.real());
+  }
+  return numbers;
+}
+
+int size_of(const cv::FileStorage& yaml, const char* key, const std::filesystem::path& file) {
+  require(yaml[key].isInt(), "{}: no {}, expected pixels", file.string(), key);
+  return static_cast<int>(yaml[key].real());
+}
+
+}  // namespace
+
+Camera read_camera_info(const std::filesystem::path& file) {
+  const cv::FileStorage yaml = parse_yaml(file);
+  const std::vector<double> K = numbers_of(yaml["camera_matrix"]["data"]);
+  require(K.size() == 9, "{}: camera_matrix has {} numbers in its data, expected 9", file.string(), K.size());
+  const Camera camera{size_of(yaml, "image_width", file), size_of(yaml, "image_height", file), K[0], K[4], K[2], K[5]};
+  check_camera(camera, file.string());
+  for (const double coefficient : numbers_of(yaml["distortion_coefficients"]["data"])) {
+    if (std::abs(coefficient) < 1e-9) continue;
+    spdlog::warn("{}: its distortion is not corrected; boxes and poses near the image's edge may be a little off",
+                 file.string());
+    break;
+  }
+  return camera;
+}
+
+Camera camera_of_option(const std::string& text) {
+  if (std::filesystem::exists(text)) return read_camera_info(text);
+  const bool looks_like_file = text.find(',') == std::string::npos;
+  require(!looks_like_file, "--camera {}: no such file; expected a calibration file or WIDTHxHEIGHT,fx,fy,cx,cy", text);
+  return parse_camera(text);
+}
+
+}  // namespace houghstream

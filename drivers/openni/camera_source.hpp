@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "drivers/frame_source.hpp"
+#include "drivers/openni/camera_options.hpp"
+
+namespace houghstream {
+
+/// Frames of an OpenNI2 camera as they come. `selector` is a URI, "#1", a serial number, or "" for the first one.
+/// A frame is a depth image with the colour image that was taken nearest to it; its utime is the depth image's capture
+/// time on the host's clock. A camera that disappears is waited for and opened again; next() returns nothing only when
+/// the listener asks to stop. Throws InputError where the camera is not there at the start, or cannot do what is asked.
+std::unique_ptr<FrameSource> open_camera_source(const std::string& selector, const CameraOptions& options,
+                                                const CameraListener& listener);
+
+/// Frames of a .oni file, every one, stamped from dataset_utime(0) on at the intervals of the recording; of the options
+/// only `camera` counts. Throws InputError where the file cannot be read to its end.
+std::unique_ptr<FrameSource> open_oni_source(const std::string& file, const CameraOptions& options);
+
+}  // namespace houghstream

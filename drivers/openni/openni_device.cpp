@@ -1,0 +1,272 @@
+#include "drivers/openni/openni_device.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "drivers/openni/openni_parts.hpp"
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+using std::chrono::milliseconds;
+using Sensor = SensorImage::Sensor;
+
+constexpr std::size_t kQueueCapacity = 60;  // a second of both sensors at 30 Hz
+
+/// Images as they arrive, from OpenNI2's threads, in a queue.
+class Inbox {
+ public:
+  void put(SensorImage image) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    images_.push_back(std::move(image));
+    if (images_.size() > kQueueCapacity) images_.pop_front();
+    arrived_.notify_one();
+  }
+  std::optional<SensorImage> take(milliseconds patience) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (!arrived_.wait_for(lock, patience, [&] { return !images_.empty(); })) return std::nullopt;
+    SensorImage image = std::move(images_.front());
+    images_.pop_front();
+    return image;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::deque<SensorImage> images_;
+};
+
+/// Every image counts, so it is taken the moment it arrives: a stream keeps its newest one only.
+struct Listener : openni::VideoStream::NewFrameListener {
+  Listener(Inbox& to, Sensor of) : inbox(to), sensor(of) {}
+  void onNewFrame(openni::VideoStream& stream) override {
+    std::optional<SensorImage> image = read_image(stream, sensor);
+    if (image) inbox.put(std::move(*image));
+  }
+  Inbox& inbox;
+  Sensor sensor;
+};
+
+/// Hears that a camera was unplugged or has failed.
+class Departure : public openni::OpenNI::DeviceDisconnectedListener, public openni::OpenNI::DeviceStateChangedListener {
+ public:
+  explicit Departure(std::string uri) : uri_(std::move(uri)) {
+    openni::OpenNI::addDeviceDisconnectedListener(this);
+    openni::OpenNI::addDeviceStateChangedListener(this);
+  }
+  ~Departure() override {
+    openni::OpenNI::removeDeviceDisconnectedListener(this);
+    openni::OpenNI::removeDeviceStateChangedListener(this);
+  }
+  void onDeviceDisconnected(const openni::DeviceInfo* info) override {
+    if (uri_ == info->getUri()) gone = true;
+  }
+  void onDeviceStateChanged(const openni::DeviceInfo* info, openni::DeviceState state) override {
+    if (uri_ == info->getUri() && state == openni::DEVICE_STATE_ERROR) gone = true;
+  }
+  std::atomic<bool> gone{false};
+
+ private:
+  std::string uri_;
+};
+
+}  // namespace
+
+std::vector<CameraDescription> list_cameras(bool closely) {
+  const OpenniLibrary library;
+  openni::Array<openni::DeviceInfo> found;
+  openni::OpenNI::enumerateDevices(&found);
+  std::vector<CameraDescription> cameras;
+  for (int i = 0; i < found.getSize(); ++i) {
+    cameras.push_back({found[i].getUri(), found[i].getVendor(), found[i].getName(), "", {}});
+    openni::Device device;
+    if (!closely || device.open(found[i].getUri()) != openni::STATUS_OK) continue;
+    cameras.back().serial = serial_of(device);
+    cameras.back().modes = common_modes(device);
+  }
+  return cameras;
+}
+
+std::shared_ptr<const void> keep_openni_running() {
+  return std::make_shared<OpenniLibrary>();
+}
+
+// Destroyed from the last member up: recorder and listeners end before the streams, these before the device.
+struct OpenniDevice::State {
+  explicit State(const std::string& name) : uri(name), departure(name) {}
+
+  std::string uri;
+  OpenniLibrary library;
+  Departure departure;
+  openni::Device device;
+  openni::VideoStream depth;
+  openni::VideoStream colour;
+  CameraMode mode;
+  bool is_file = false;
+  int images_left = 0;  // of a file
+  Inbox inbox;
+  Listener depth_listener{inbox, Sensor::kDepth};
+  Listener colour_listener{inbox, Sensor::kColour};
+  openni::Recorder recorder;
+
+  ~State() {
+    recorder.destroy();
+    depth.removeNewFrameListener(&depth_listener);
+    colour.removeNewFrameListener(&colour_listener);
+    depth.stop();
+    colour.stop();
+    // The thread that plays a file looks through its streams without a lock; once they stand still, every 10 ms.
+    if (is_file) std::this_thread::sleep_for(milliseconds(5));
+    depth.destroy();
+    colour.destroy();
+    device.close();
+  }
+
+  void open() {
+    check_openni(device.open(uri.c_str()), uri + (is_file ? ": no whole .oni recording" : ": cannot be opened"));
+  }
+
+  void create_streams() {
+    for (const Sensor sensor : {Sensor::kDepth, Sensor::kColour}) {
+      const char* name = sensor == Sensor::kDepth ? "depth" : "colour";
+      require(device.getSensorInfo(openni_type(sensor)) != nullptr, "{}: has no {} sensor", uri, name);
+      openni::VideoStream& stream = sensor == Sensor::kDepth ? depth : colour;
+      check_openni(stream.create(device, openni_type(sensor)), fmt::format("{}: {} stream", uri, name));
+    }
+  }
+
+  void set_mode(const CameraMode& wanted) {
+    const auto depth_mode = find_mode(device, Sensor::kDepth, wanted);
+    const auto colour_mode = find_mode(device, Sensor::kColour, wanted);
+    require(depth_mode && colour_mode, "{}: no mode {} of depth and colour; it has {}", uri, mode_text(wanted),
+            modes_text(common_modes(device)));
+    check_openni(depth.setVideoMode(*depth_mode), uri + ": depth mode " + mode_text(wanted));
+    check_openni(colour.setVideoMode(*colour_mode), uri + ": colour mode " + mode_text(wanted));
+    mode = wanted;
+  }
+
+  void set_features(const CameraOptions& options) {
+    for (openni::VideoStream* stream : {&depth, &colour}) {
+      if (stream->getMirroringEnabled()) check_openni(stream->setMirroringEnabled(false), uri + ": mirroring off");
+    }
+    device.setDepthColorSyncEnabled(
+        true);  // its status is ok whether the driver can or not: the images' times will tell
+    openni::CameraSettings* settings = colour.getCameraSettings();
+    const bool set = settings != nullptr &&
+                     settings->setAutoExposureEnabled(options.auto_exposure) == openni::STATUS_OK &&
+                     settings->setAutoWhiteBalanceEnabled(options.auto_white_balance) == openni::STATUS_OK;
+    const bool asked = !options.auto_exposure || !options.auto_white_balance;
+    if (asked && !set) spdlog::warn("{}: exposure and white balance cannot be set", uri);
+  }
+
+  /// Some drivers take it before the streams run, some only afterwards.
+  bool registered() {
+    constexpr auto kWanted = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
+    if (!device.isImageRegistrationModeSupported(kWanted)) return false;
+    if (device.getImageRegistrationMode() == kWanted) return true;
+    return device.setImageRegistrationMode(kWanted) == openni::STATUS_OK &&
+           device.getImageRegistrationMode() == kWanted;
+  }
+
+  void start() {
+    check_openni(depth.start(), uri + ": depth does not start");
+    check_openni(colour.start(), uri + ": colour does not start");
+  }
+
+  void record(const std::string& file, bool jpeg) {
+    // OpenNI2 would crash later.
+    require(std::ofstream(file).good(), "{}: cannot be written, expected a place for a recording", file);
+    check_openni(recorder.create(file.c_str()), file + ": cannot be recorded to");
+    check_openni(recorder.attach(depth, false), file + ": depth");
+    check_openni(recorder.attach(colour, jpeg), file + ": colour");
+    check_openni(recorder.start(), file + ": recording");
+  }
+
+  /// A file waits until it is asked, so nothing is lost; what cannot be read is not waited for a second time.
+  std::optional<SensorImage> read_file(milliseconds patience) {
+    if (images_left == 0) return std::nullopt;
+    openni::VideoStream* streams[] = {&depth, &colour};
+    int ready = 0;
+    const openni::Status status =
+        openni::OpenNI::waitForAnyStream(streams, 2, &ready, static_cast<int>(patience.count()));
+    require(status == openni::STATUS_OK, "{}: no further image, but {} are still to come: {}", uri, images_left,
+            "the file is cut or damaged");
+    --images_left;
+    return read_image(*streams[ready], ready == 0 ? Sensor::kDepth : Sensor::kColour);
+  }
+};
+
+std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, const CameraOptions& options) {
+  auto state = std::make_unique<State>(uri);
+  state->open();
+  state->create_streams();
+  state->set_mode(options.mode);
+  state->set_features(options);
+  const bool at_once = options.assume_registered || state->registered();
+  state->depth.addNewFrameListener(&state->depth_listener);
+  state->colour.addNewFrameListener(&state->colour_listener);
+  if (!options.record.empty()) state->record(options.record, options.record_jpeg);
+  state->start();
+  require(at_once || state->registered(),
+          "{}: cannot register depth to colour; give --assume-registered if its depth comes registered anyhow", uri);
+  return std::unique_ptr<OpenniDevice>(new OpenniDevice(std::move(state)));
+}
+
+std::unique_ptr<OpenniDevice> OpenniDevice::open_file(const std::string& file) {
+  auto state = std::make_unique<State>(file);
+  state->is_file = true;
+  state->open();
+  require(state->device.isFile(), "{}: no recording, expected a .oni file", file);
+  state->create_streams();
+  state->mode = camera_mode_of(state->depth.getVideoMode());
+  openni::PlaybackControl* control = state->device.getPlaybackControl();
+  check_openni(control->setRepeatEnabled(false), file + ": playing once");
+  check_openni(control->setSpeed(-1.0F), file + ": playing at our pace");
+  state->images_left = control->getNumberOfFrames(state->depth) + control->getNumberOfFrames(state->colour);
+  state->start();
+  return std::unique_ptr<OpenniDevice>(new OpenniDevice(std::move(state)));
+}
+
+OpenniDevice::OpenniDevice(std::unique_ptr<State> state) : state_(std::move(state)) {}
+OpenniDevice::~OpenniDevice() = default;
+
+std::optional<SensorImage> OpenniDevice::wait(milliseconds patience) {
+  std::optional<SensorImage> image = state_->is_file ? state_->read_file(patience) : state_->inbox.take(patience);
+  if (!image) return std::nullopt;
+  const bool whole = image->image.cols == state_->mode.width && image->image.rows == state_->mode.height;
+  if (whole) return image;
+  require(!state_->is_file, "{}: an image of {}x{}, expected {}", state_->uri, image->image.cols, image->image.rows,
+          mode_text(state_->mode));
+  return std::nullopt;
+}
+
+bool OpenniDevice::ended() const {
+  return state_->is_file ? state_->images_left == 0 : state_->departure.gone.load();
+}
+
+const CameraMode& OpenniDevice::mode() const {
+  return state_->mode;
+}
+
+Camera OpenniDevice::nominal_camera() const {
+  const CameraMode& mode = state_->mode;
+  const double horizontal = state_->colour.getHorizontalFieldOfView();
+  const double vertical = state_->colour.getVerticalFieldOfView();
+  require(horizontal > 0.0 && vertical > 0.0 && horizontal < M_PI && vertical < M_PI,
+          "{}: fields of view {} and {} radians; give --camera", state_->uri, horizontal, vertical);
+  Camera camera{mode.width, mode.height, 0.0, 0.0, 0.5 * (mode.width - 1), 0.5 * (mode.height - 1)};
+  camera.fx = 0.5 * mode.width / std::tan(0.5 * horizontal);
+  camera.fy = 0.5 * mode.height / std::tan(0.5 * vertical);
+  check_camera(camera, state_->uri);
+  return camera;
+}
+
+}  // namespace houghstream

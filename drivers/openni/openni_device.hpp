@@ -1,0 +1,57 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/openni/camera_choice.hpp"
+#include "drivers/openni/camera_options.hpp"
+#include "drivers/openni/sensor_image.hpp"
+
+namespace houghstream {
+
+/// The cameras that OpenNI2's drivers have found. `closely` also opens each for its serial number and modes, which
+/// stay empty where it cannot be opened, for instance because another process uses it. Throws InputError where
+/// OpenNI2 finds no driver.
+std::vector<CameraDescription> list_cameras(bool closely);
+
+/// Keeps OpenNI2 running, so that it notices cameras that come and go, until the last holder lets go of it. Throws
+/// InputError where it finds no driver.
+std::shared_ptr<const void> keep_openni_running();
+
+/// A camera or a .oni file through OpenNI2, running from construction to destruction. Everything that knows OpenNI2
+/// is behind it.
+class OpenniDevice {
+ public:
+  /// Opens a camera: registered, synchronised where it can, not mirrored. Throws InputError where it lacks the mode
+  /// (listing those it has) or the registration.
+  static std::unique_ptr<OpenniDevice> open_camera(const std::string& uri, const CameraOptions& options);
+
+  /// Opens a .oni file, which gives each image as soon as it is asked for. Throws InputError.
+  static std::unique_ptr<OpenniDevice> open_file(const std::string& file);
+
+  ~OpenniDevice();
+
+  /// The next image in the order of arrival; nothing after `patience`. A camera's image that is not as the mode says,
+  /// for instance cut short on the way, is left out; in a file it makes this throw InputError, as does a file's end
+  /// before all its images have come.
+  std::optional<SensorImage> wait(std::chrono::milliseconds patience);
+
+  /// The camera has been unplugged, or all images of the file have been given.
+  bool ended() const;
+
+  const CameraMode& mode() const;
+
+  /// Intrinsics from the colour sensor's field of view: the principal point in the middle. Throws InputError where
+  /// the device does not tell.
+  Camera nominal_camera() const;
+
+ private:
+  struct State;
+  explicit OpenniDevice(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,119 @@
+#include "drivers/openni/openni_parts.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+using Sensor = SensorImage::Sensor;
+
+std::string openni_error() {
+  std::string text = openni::OpenNI::getExtendedError();
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "OpenNI2 says no reason"
+                                    : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+std::int64_t host_now_us() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+}
+
+bool is_usable(const openni::VideoMode& mode, Sensor sensor) {
+  const openni::PixelFormat format = mode.getPixelFormat();
+  if (sensor == Sensor::kColour) return format == openni::PIXEL_FORMAT_RGB888;
+  return format == openni::PIXEL_FORMAT_DEPTH_1_MM || format == openni::PIXEL_FORMAT_DEPTH_100_UM;
+}
+
+cv::Mat picture_of(const openni::VideoFrameRef& frame, Sensor sensor) {
+  const int type = sensor == Sensor::kDepth ? CV_16UC1 : CV_8UC3;
+  const std::size_t row = frame.getWidth() * CV_ELEM_SIZE(type);
+  const auto stride = static_cast<std::size_t>(frame.getStrideInBytes());
+  const auto bytes = static_cast<std::size_t>(frame.getDataSize());
+  if (stride < row || bytes < stride * (frame.getHeight() - 1) + row) return {};
+  const cv::Mat given(frame.getHeight(), frame.getWidth(), type, const_cast<void*>(frame.getData()), stride);
+  cv::Mat picture;
+  if (sensor == Sensor::kColour) {
+    cv::cvtColor(given, picture, cv::COLOR_RGB2BGR);
+  } else if (frame.getVideoMode().getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_100_UM) {
+    given.convertTo(picture, CV_16UC1, 0.1);
+  } else {
+    picture = given.clone();
+  }
+  return picture;
+}
+
+}  // namespace
+
+OpenniLibrary::OpenniLibrary() {
+  const openni::Status status = openni::OpenNI::initialize();
+  if (status == openni::STATUS_OK) return;
+  const std::string reason = openni_error();
+  openni::OpenNI::shutdown();
+  fail(
+      "OpenNI2 does not start ({}): it looks for drivers, lib*.so.0, in the folder OpenNI2/Drivers beside "
+      "libOpenNI2.so.0",
+      reason);
+}
+
+OpenniLibrary::~OpenniLibrary() {
+  openni::OpenNI::shutdown();
+}
+
+void check_openni(openni::Status status, const std::string& what) {
+  require(status == openni::STATUS_OK, "{}: {}", what, openni_error());
+}
+
+openni::SensorType openni_type(Sensor sensor) {
+  return sensor == Sensor::kDepth ? openni::SENSOR_DEPTH : openni::SENSOR_COLOR;
+}
+
+CameraMode camera_mode_of(const openni::VideoMode& mode) {
+  return {mode.getResolutionX(), mode.getResolutionY(), mode.getFps()};
+}
+
+std::optional<openni::VideoMode> find_mode(openni::Device& device, Sensor sensor, const CameraMode& wanted) {
+  const openni::SensorInfo* info = device.getSensorInfo(openni_type(sensor));
+  if (info == nullptr) return std::nullopt;
+  const auto& modes = info->getSupportedVideoModes();
+  for (int i = 0; i < modes.getSize(); ++i) {
+    if (is_usable(modes[i], sensor) && camera_mode_of(modes[i]) == wanted) return modes[i];
+  }
+  return std::nullopt;
+}
+
+std::vector<CameraMode> common_modes(openni::Device& device) {
+  std::vector<CameraMode> common;
+  const openni::SensorInfo* info = device.getSensorInfo(openni::SENSOR_DEPTH);
+  if (info == nullptr) return common;
+  const auto& modes = info->getSupportedVideoModes();
+  for (int i = 0; i < modes.getSize(); ++i) {
+    const CameraMode mode = camera_mode_of(modes[i]);
+    const bool known = std::find(common.begin(), common.end(), mode) != common.end();
+    const bool both = find_mode(device, Sensor::kDepth, mode) && find_mode(device, Sensor::kColour, mode);
+    if (both && !known) common.push_back(mode);
+  }
+  return common;
+}
+
+std::string serial_of(const openni::Device& device) {
+  char serial[ONI_MAX_STR] = {};
+  int size = sizeof(serial);
+  const bool told = device.getProperty(ONI_DEVICE_PROPERTY_SERIAL_NUMBER, serial, &size) == openni::STATUS_OK;
+  serial[ONI_MAX_STR - 1] = '\0';
+  return told ? serial : "";
+}
+
+std::optional<SensorImage> read_image(openni::VideoStream& stream, Sensor sensor) {
+  openni::VideoFrameRef frame;
+  if (stream.readFrame(&frame) != openni::STATUS_OK || !frame.isValid()) return std::nullopt;
+  return SensorImage{sensor, frame.getTimestamp(), host_now_us(), frame.getFrameIndex(), picture_of(frame, sensor)};
+}
+
+}  // namespace houghstream

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <OpenNI.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/openni/camera_choice.hpp"
+#include "drivers/openni/sensor_image.hpp"
+
+// OpenNI2 in this project's words. Included by the .cpp files of this folder only.
+
+namespace houghstream {
+
+/// OpenNI2 runs while somebody holds one: it watches for cameras that come and go. Throws InputError where it finds no
+/// driver.
+class OpenniLibrary {
+ public:
+  OpenniLibrary();
+  ~OpenniLibrary();
+  OpenniLibrary(const OpenniLibrary&) = delete;
+  OpenniLibrary& operator=(const OpenniLibrary&) = delete;
+};
+
+/// Throws InputError with OpenNI2's reason unless the status is ok.
+void check_openni(openni::Status status, const std::string& what);
+
+openni::SensorType openni_type(SensorImage::Sensor sensor);
+CameraMode camera_mode_of(const openni::VideoMode& mode);
+
+/// A sensor's mode with a pixel format that is understood here: RGB, or depth in millimetres or their tenths.
+std::optional<openni::VideoMode> find_mode(openni::Device& device, SensorImage::Sensor sensor,
+                                           const CameraMode& wanted);
+
+/// The modes that depth and colour have in common.
+std::vector<CameraMode> common_modes(openni::Device& device);
+
+/// The serial number, or nothing where the driver does not tell.
+std::string serial_of(const openni::Device& device);
+
+/// Reads the stream's newest image. Its picture is empty where the device gave less than the frame should hold.
+std::optional<SensorImage> read_image(openni::VideoStream& stream, SensorImage::Sensor sensor);
+
+}  // namespace houghstream

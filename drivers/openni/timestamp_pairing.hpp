@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "drivers/openni/sensor_image.hpp"
+
+namespace houghstream {
+
+/// A depth image and the colour image that was taken nearest to it.
+struct ImagePair {
+  SensorImage depth;
+  SensorImage colour;
+};
+
+/// Brings depth and colour together by their capture times, whichever arrives first and however late. The last colour
+/// that has arrived would often be another moment's: where something moves, its colour would lie beside its depth.
+class TimestampPairing {
+ public:
+  /// Images further apart never make a pair. Half the time between two images of a sensor pairs whatever the phase
+  /// between the sensors is; a little more allows for jitter.
+  explicit TimestampPairing(std::int64_t tolerance_us) : tolerance_us_(tolerance_us) {}
+
+  /// The pair that this image completes. Each image is used once; those older than a pair's are given up. A sensor's
+  /// time that falls is a clock that has jumped: what waits of that sensor is given up.
+  std::optional<ImagePair> put(SensorImage image);
+
+  /// Depth images given up so far because no colour image was taken near them.
+  std::int64_t unpaired() const { return unpaired_; }
+
+  /// Gives up all that waits.
+  void clear();
+
+  /// Images of a sensor that wait for the other; more are given up, the oldest first. Half a second at 30 Hz.
+  static constexpr std::size_t kPatience = 16;
+
+ private:
+  using Queue = std::deque<SensorImage>;
+
+  std::int64_t distance_us(const SensorImage& a, const SensorImage& b) const;
+  void give_up_front(Queue& queue, std::size_t count);
+  void give_up_older(Queue& queue, const SensorImage& image);
+
+  std::int64_t tolerance_us_;
+  std::int64_t unpaired_ = 0;
+  Queue depth_;
+  Queue colour_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/camera.hpp"
+
+namespace houghstream {
+
+/// How the virtual camera behaves, read from a text file with one "key value" a line; # starts a comment. The file may
+/// be rewritten while the camera runs: what concerns only new images takes effect with the next one.
+struct CameraScript {
+  std::string scene;                   ///< BOP scene folder that is played, again and again; empty: the test pattern
+  std::vector<std::string> serials;    ///< one for each camera; default: VC0001
+  std::vector<Camera> sizes;           ///< modes: sizes; of the test pattern only, a scene has its own
+  int rate_hz = 30;                    ///< of all modes
+  bool plugged = true;                 ///< whether the cameras are there
+  bool can_sync = true;                ///< depth and colour can be taken at the same time
+  bool can_register = true;            ///< depth can be registered to colour
+  double colour_phase_ms = 0.0;        ///< unless synchronised, colour is taken so long after depth
+  double colour_late_ms = 0.0;         ///< colour arrives so long after it was taken
+  int drop_depth_every = 0;            ///< each so-many-th depth image is lost; 0: none
+  int drop_colour_every = 0;           ///< the same for colour
+  double clock_ahead_ms = 0.0;         ///< a change makes the device's clock jump by the difference
+  double clock_drift_ppm = 0.0;        ///< the device's clock runs faster by so much
+  std::filesystem::path shutter_file;  ///< for each depth image its number, device time and host utime are added to it
+};
+
+/// Throws InputError naming file and line. Without a file everything is at its default.
+CameraScript read_camera_script(const std::filesystem::path& file);
+
+}  // namespace houghstream

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <mutex>
+
+#include "drivers/virtual_camera/camera_pictures.hpp"
+#include "drivers/virtual_camera/driver_api.hpp"
+
+namespace houghstream {
+
+/// The modes that a sensor offers, and the fields of view they share.
+struct VirtualSensor {
+  OniSensorType type = ONI_SENSOR_DEPTH;
+  std::vector<OniVideoMode> modes;
+  Camera camera;  ///< of the first mode
+};
+
+class VirtualDevice;
+
+/// One sensor's stream: answers OpenNI2's questions, and sends the pictures that the device hands it.
+class VirtualStream : public oni::driver::StreamBase {
+ public:
+  VirtualStream(VirtualDevice& device, const VirtualSensor& sensor);
+
+  OniBool isPropertySupported(int property) override;
+  OniStatus getProperty(int property, void* data, int* size) override;
+  OniStatus setProperty(int property, const void* data, int size) override;
+  OniStatus start() override;
+  void stop() override;
+
+  VirtualDevice& device() const { return device_; }
+  OniSensorType type() const { return sensor_.type; }
+  OniVideoMode mode() const;
+
+  /// Sends a picture (CV_8UC3 RGB or CV_16UC1) if the stream is running; `number` and `device_us` go with it.
+  void send(const cv::Mat& picture, int number, std::uint64_t device_us);
+
+ private:
+  OniStatus set_mode(const OniVideoMode& mode);
+
+  VirtualDevice& device_;
+  VirtualSensor sensor_;
+  mutable std::mutex mutex_;
+  OniVideoMode mode_;
+  OniBool mirrored_ = TRUE;  // as cameras come: whoever wants it otherwise has to say so
+  OniBool auto_exposure_ = TRUE;
+  OniBool auto_white_balance_ = TRUE;
+  int exposure_ = 10;
+  int gain_ = 100;
+  std::mutex sending_;  // held while a picture is on its way, so that none comes after stop()
+  bool running_ = false;
+};
+
+}  // namespace houghstream

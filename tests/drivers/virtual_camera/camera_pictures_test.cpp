@@ -1,0 +1,43 @@
+#include "drivers/virtual_camera/camera_pictures.hpp"
+
+#include <gtest/gtest.h>
+
+#include "drivers/bop_writer.hpp"
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+TEST(CameraPictures, TheDiscOfThePatternMoves) {
+  const Camera camera{320, 240, 262.5, 262.5, 159.5, 119.5};
+  const CameraPictures pattern = make_test_pattern(camera);
+  ASSERT_EQ(pattern.pictures.size(), static_cast<std::size_t>(kPatternPictures));
+  for (int k = 0; k < kPatternPictures; ++k) {
+    const cv::Point2d disc = pattern_disc(camera, k);
+    EXPECT_EQ(pattern.pictures[k].depth_mm.at<std::uint16_t>(disc), kPatternDiscMm);
+    EXPECT_EQ(pattern.pictures[k].colour.at<cv::Vec3b>(disc), kPatternDiscColour);
+    EXPECT_GT(cv::norm(disc - pattern_disc(camera, k + 1)), 5.0) << "pixels: a neighbour's colour would lie beside it";
+  }
+}
+
+TEST(CameraPictures, ASceneIsPlayedForwardsAndBackwards) {
+  const auto folder = fresh_folder("camera_scene");
+  BopWriter writer(folder);
+  for (const int blue : {10, 20, 30}) {
+    RgbdFrame frame = plain_frame();
+    frame.colour = cv::Scalar(blue, 100, 200);
+    writer.add(frame, {}, {});
+  }
+  writer.finish();
+  const CameraPictures scene = load_scene_pictures(folder);
+  std::vector<int> blue;
+  for (const CameraPicture& picture : scene.pictures) blue.push_back(picture.colour.at<cv::Vec3b>(5, 5)[2]);
+  EXPECT_EQ(blue, (std::vector<int>{10, 20, 30, 30, 20, 10})) << "RGB";
+  EXPECT_EQ(scene.pictures[0].depth_mm.at<std::uint16_t>(5, 5), 1000);
+  EXPECT_EQ(scene.pictures[0].depth_mm.at<std::uint16_t>(0, 0), 0) << "none";
+  EXPECT_THROW(load_scene_pictures(folder / "none"), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

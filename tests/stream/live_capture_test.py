@@ -1,0 +1,156 @@
+"""Virtual camera -> stock OpenNI2 -> hs-capture -> LCM: what a user with a camera starts, unplugs, records and replays."""
+
+import argparse
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+from bus import Process, enter_private_network
+from lcm_messages import images_of, read_log, status_of, utime_of
+
+LIVE_FRAMES = 90
+LEFT, DEPTH_MM_ZIPPED = 0, 6
+
+
+class Camera:
+    """The virtual camera's script, which may be changed while it runs."""
+
+    def __init__(self, folder):
+        self.file = folder / "camera_script"
+        self.write("")
+        os.environ["HOUGHSTREAM_VIRTUAL_CAMERA"] = str(self.file)
+
+    def write(self, text):
+        fresh = self.file.with_suffix(".new")
+        fresh.write_text(text)
+        fresh.replace(self.file)
+
+
+def run(*command, **options):
+    return subprocess.run([str(part) for part in command], check=False, text=True, capture_output=True, timeout=60, **options)
+
+
+def wait_for(file, text, seconds=15):
+    end = time.monotonic() + seconds
+    while text not in file.read_text():
+        assert time.monotonic() < end, f"no '{text}' in {file}: {file.read_text()}"
+        time.sleep(0.01)
+
+
+def check_listing(tools, camera):
+    camera.write("serial AA01\nserial AA02\nsize 320x240\nsize 640x480\n")
+    listed = run(tools / "hs-capture", "--list-devices")
+    assert listed.returncode == 0 and "#2 Houghstream virtual camera" in listed.stdout, listed
+    assert "serial AA02, modes 640x480@30, 320x240@30" in listed.stdout, listed
+    for source, mode, words in (("openni2:#3", "640x480", "#3"), ("openni2:AA02", "1280x1024@30", "it has 640x480@30, 320x240@30")):
+        refused = run(tools / "hs-capture", "--source", source, "--mode", mode, "--log", camera.file.parent / "none.log")
+        assert refused.returncode == 1 and words in refused.stderr, refused
+    camera.write("plugged no\n")
+    absent = run(tools / "hs-capture", "--source", "openni2")
+    assert absent.returncode == 1 and "no camera found" in absent.stderr, absent
+
+
+def check_unplugging(tools, camera, folder):
+    """Frames come at the camera's rate; while it is away the status says so; then they come again, soon."""
+    camera.write("can_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n")
+    recorded = folder / "status.log"
+    logger = subprocess.Popen(["lcm-logger", "-f", "-q", "-c", "HOUGHSTREAM_STATUS", str(recorded)], stderr=subprocess.DEVNULL)
+    observe = Process(folder, tools / "hs-observe", "--out", folder / "observed.json", "--csv", folder / "times.csv")
+    processes = [observe]
+    try:
+        observe.wait_until_ready()
+        capture = Process(folder, tools / "hs-capture", "--source", "openni2")
+        processes.append(capture)
+        wait_for(capture.log, "colour is taken 8.0 ms after depth")
+        time.sleep(2.5)
+        camera.write("plugged no\n")
+        wait_for(capture.log, "the camera is gone; waiting for it")
+        time.sleep(1.6)
+        camera.write("can_sync no\n")
+        replugged = time.time()
+        wait_for(capture.log, "back, was away for")
+        time.sleep(2.5)
+        camera.write("plugged no\n")
+        wait_for(capture.log, "was away for")
+        time.sleep(0.3)
+        capture.stop()  # also while there is no camera
+        observe.stop()
+    finally:
+        logger.terminate()
+        logger.wait()
+        for process in processes:
+            process.kill()
+    check_gap(folder, replugged)
+    errors = [status.last_error for status in (status_of(data) for _, _, data in read_log(recorded)) if status.process == "hs-capture"]
+    assert errors[0] == "" and any("the camera is gone" in e for e in errors) and any("was away for" in e for e in errors), errors
+
+
+def check_gap(folder, replugged):
+    start_us = json.loads((folder / "observed.json").read_text())["start_utime"]
+    rows = [row for row in csv.DictReader((folder / "times.csv").open()) if row["t_frame"]]
+    arrivals = [start_us * 1e-6 + float(row["t_frame"]) for row in rows]
+    gaps = [b - a for a, b in zip(arrivals, arrivals[1:])]
+    longest = max(range(len(gaps)), key=gaps.__getitem__)
+    back_after = arrivals[longest + 1] - replugged
+    print(f"{len(rows)} frames; a gap of {gaps[longest]:.2f} s while unplugged; frames are back {1e3 * back_after:.0f} ms after the camera")
+    assert gaps[longest] > 1.5 and 0 <= back_after < 2.0, (gaps[longest], back_after)
+    assert len(rows) > 100, "two and a half seconds twice"
+    late = [arrival - int(row["utime"]) * 1e-6 for arrival, row in zip(arrivals, rows)]
+    assert min(late) > -0.01 and sorted(late)[len(late) // 2] < 0.3, "utimes are capture times on this machine's clock"
+
+
+def places_of(sent, replayed):
+    """Where each live frame is in the replay, in rising order; the first few were sent before recording began."""
+    places = []
+    for images in sent:
+        start = places[-1] + 1 if places else 0
+        if images in replayed[start:]:
+            places.append(replayed.index(images, start))
+    return places
+
+
+def check_recording(tools, camera, folder):
+    """What is replayed from a .oni file is, message by message, what went out live."""
+    camera.write("")
+    live = run(tools / "hs-capture", "--source", "openni2", "--frames", LIVE_FRAMES, "--log", folder / "live.log", "--record", folder / "live.oni")
+    assert live.returncode == 0, live
+    replay = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--log", folder / "replay.log")
+    assert replay.returncode == 0, replay
+    sent = [images_of(data) for _, _, data in read_log(folder / "live.log")]
+    events = [(timestamp, utime_of(data), images_of(data)) for timestamp, _, data in read_log(folder / "replay.log")]
+    replayed = [images for _, _, images in events]
+    places = places_of(sent, replayed)
+    print(f"{len(sent)} frames sent live, {len(replayed)} replayed, {len(places)} of the live ones byte by byte among them")
+    assert len(sent) == LIVE_FRAMES and set(sent[0]) == {LEFT, DEPTH_MM_ZIPPED}
+    assert len(places) >= LIVE_FRAMES - 10, "recording starts a moment after the camera"
+    assert places[-1] - places[0] < LIVE_FRAMES + 10, "one after the other"
+    for (_, before, _), (_, after, _) in zip(events, events[1:]):
+        assert abs(after - before - 33333) < 200, "no frame is missing, times are those of the recording"
+    slow = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--frames", 10, "--rate", 10, "--log", folder / "slow.log")
+    times = [timestamp for timestamp, _, _ in read_log(folder / "slow.log")]
+    assert slow.returncode == 0 and times[-1] - times[0] == 900000, (slow, times)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for what the test makes")
+    arguments = parser.parse_args()
+    enter_private_network()
+    shutil.rmtree(arguments.out, ignore_errors=True)
+    arguments.out.mkdir(parents=True)
+    tools, folder = arguments.tools.resolve(), arguments.out.resolve()
+    camera = Camera(folder)
+    check_listing(tools, camera)
+    check_unplugging(tools, camera, folder)
+    check_recording(tools, camera, folder)
+    print("live capture: frames, gap and recording are as they should be")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "drivers/frame_source.hpp"
+#include "drivers/openni/camera_options.hpp"
+
+namespace houghstream {
+
+/// What the command line says of the source and of a camera. `live` is for openni2 and oni only.
+struct SourceOptions {
+  std::string source;
+  CameraOptions live;
+  std::string mode = "640x480@30";
+  std::string camera;
+  bool fixed_exposure = false;
+  bool fixed_white_balance = false;
+};
+
+void add_source_options(CLI::App& app, SourceOptions& options);
+
+/// Opens openni2[:CAMERA], oni:FILE, or what open_frame_source() knows. Throws InputError, also for an option that the
+/// source cannot heed.
+std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const CameraListener& listener);
+
+/// What --list-devices prints: the cameras that are there. Throws InputError where OpenNI2 finds no driver.
+std::string devices_text();
+
+}  // namespace houghstream
