@@ -1,6 +1,7 @@
 #include "detector/beliefs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace houghstream {
 namespace {
@@ -82,11 +83,17 @@ void PatchBeliefs::note(const RunLeaves& seen) {
   }
 }
 
+float least_share(const DetectionSettings& settings, std::size_t classes) {
+  constexpr std::size_t kUsual = 4;
+  return settings.min_class_share *
+         std::sqrt(static_cast<float>(kUsual) / static_cast<float>(std::max(classes, kUsual)));
+}
+
 void classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
               const DetectionSettings& settings, PatchBeliefs& beliefs) {
   const std::vector<PatchRun> runs = patch_runs(patches);
   const EarlyEnd early_end{settings.first_trees, settings.min_first_share};
-  beliefs.reset(forest, runs.size(), settings.min_class_share);
+  beliefs.reset(forest, runs.size(), least_share(settings, forest.classes.size()));
   const auto note = [&](const RunLeaves& seen) { beliefs.note(seen); };
   if (settings.readable) {
     find_leaves_readably(forest, features, patches, runs, early_end, note);

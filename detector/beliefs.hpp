@@ -33,7 +33,8 @@ class PatchBeliefs {
   /// Calls visit(patch, entries, count) for every patch that believes in the class, in the grid's order.
   template <typename Visit>
   void for_believers(int class_index, const Visit& visit) const {
-    const std::size_t classes = forest_ != nullptr ? forest_->classes.size() : 0;
+    if (forest_ == nullptr) return;
+    const std::size_t classes = forest_->classes.size();
     for (std::size_t b = static_cast<std::size_t>(class_index); b < believers_.size(); b += classes) {
       const Believers& believers = believers_[b];
       std::uint32_t begin = 0;
@@ -49,6 +50,10 @@ class PatchBeliefs {
   float least_share_ = 0.0F;
   std::vector<Believers> believers_;  // [run * classes + class]
 };
+
+/// Of a patch's leaves, from which it votes for a class: min_class_share, and less where more classes than four are
+/// taught, of which each has a thinner share.
+float least_share(const DetectionSettings& settings, std::size_t classes);
 
 /// What the patches believe, by the engine that the settings name. `features`: one image per level. What `beliefs` held
 /// is overwritten and its memory used again.

@@ -83,7 +83,7 @@ struct DetectionSettings {
   float threshold = 0.5F;          ///< smallest score that is reported
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
-  float min_class_share = 0.1F;    ///< a patch votes for a class from this share of its leaves on
+  float min_class_share = 0.1F;    ///< of its leaves, from which a patch votes for a class, see least_share
   int candidates_per_class = 24;   ///< maxima of the Hough image that are looked at in 3-D
   float min_relative_peak = 0.1F;  ///< of the Hough image's highest value, for a maximum to be looked at
   float hough_sigma_px = 3.0F;     ///< smoothing of the Hough image, working pixels

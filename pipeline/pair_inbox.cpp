@@ -11,6 +11,7 @@ void PairInbox::put_frame(std::int64_t utime, std::vector<std::uint8_t> bytes) {
     frames_.push_back({utime, std::move(bytes)});
     if (frames_.size() > kHistory) frames_.pop_front();
     ++frames_seen_;
+    fresh_ = newest_first_;
     drop_hopeless();
   }
   changed_.notify_one();
@@ -30,10 +31,16 @@ std::optional<FramePair> PairInbox::take(std::chrono::milliseconds timeout) {
   std::optional<std::size_t> found;
   changed_.wait_for(lock, timeout, [&] {
     found = next_complete();
-    return found.has_value();
+    return found.has_value() || fresh_;
   });
   if (!found) return std::nullopt;
   return take_pair(*found);
+}
+
+std::optional<ArrivedFrame> PairInbox::take_fresh() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!std::exchange(fresh_, false)) return std::nullopt;
+  return frames_.back();
 }
 
 PairInbox::Dropped PairInbox::take_dropped() {
@@ -53,8 +60,9 @@ void PairInbox::give_up_waiting() {
   waiting_.clear();
 }
 
-const PairInbox::Frame* PairInbox::find_frame(std::int64_t utime) const {
-  const auto found = std::find_if(frames_.begin(), frames_.end(), [&](const Frame& f) { return f.utime == utime; });
+const ArrivedFrame* PairInbox::find_frame(std::int64_t utime) const {
+  const auto found =
+      std::find_if(frames_.begin(), frames_.end(), [&](const ArrivedFrame& f) { return f.utime == utime; });
   return found == frames_.end() ? nullptr : &*found;
 }
 
@@ -77,6 +85,7 @@ void PairInbox::drop_hopeless() {
 
 FramePair PairInbox::take_pair(std::size_t index) {
   const auto chosen = waiting_.begin() + static_cast<std::ptrdiff_t>(index);
+  if (chosen->utime == frames_.back().utime) fresh_ = false;
   FramePair pair{find_frame(chosen->utime)->bytes, std::move(chosen->bytes), chosen->arrival};
   if (newest_first_) {
     dropped_.skipped += static_cast<std::int64_t>(index);

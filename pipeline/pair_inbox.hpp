@@ -17,6 +17,12 @@ struct FramePair {
   std::chrono::steady_clock::time_point arrival;  ///< of the detections
 };
 
+/// An encoded frame.
+struct ArrivedFrame {
+  std::int64_t utime = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
 /// Brings detections together with their own frame, whichever comes first. Nothing is decoded. Ages are counted in
 /// frames, not in seconds, so that a log gives the same pairs at any speed.
 class PairInbox {
@@ -32,8 +38,12 @@ class PairInbox {
   void put_frame(std::int64_t utime, std::vector<std::uint8_t> bytes);
   void put_detections(std::int64_t utime, std::vector<std::uint8_t> bytes);
 
-  /// The next pair, waiting for one up to `timeout`.
+  /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
   std::optional<FramePair> take(std::chrono::milliseconds timeout);
+
+  /// The newest frame, where `newest_first`, and where neither it nor its pair has been taken: there is time to decode
+  /// it while its detections are on the way. It stays here for them.
+  std::optional<ArrivedFrame> take_fresh();
 
   /// What was dropped since the last call.
   struct Dropped {
@@ -46,10 +56,6 @@ class PairInbox {
   void give_up_waiting();
 
  private:
-  struct Frame {
-    std::int64_t utime = 0;
-    std::vector<std::uint8_t> bytes;
-  };
   struct Waiting {
     std::int64_t utime = 0;
     std::vector<std::uint8_t> bytes;
@@ -57,7 +63,7 @@ class PairInbox {
     std::int64_t frames_before = 0;  // frames that had arrived when it did
   };
 
-  const Frame* find_frame(std::int64_t utime) const;
+  const ArrivedFrame* find_frame(std::int64_t utime) const;
   std::optional<std::size_t> next_complete() const;
   void drop_hopeless();
   FramePair take_pair(std::size_t index);
@@ -65,7 +71,8 @@ class PairInbox {
   bool newest_first_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Frame> frames_;
+  std::deque<ArrivedFrame> frames_;
+  bool fresh_ = false;  // the last of them
   std::deque<Waiting> waiting_;
   std::int64_t frames_seen_ = 0;
   Dropped dropped_;

@@ -40,14 +40,38 @@ void receive_detections(const Arrival& arrival, StatusReporter& status, PairInbo
   }
 }
 
-ObjectPoses estimate_pair(const FramePair& pair, const std::optional<Camera>& camera, const Estimate& estimate) {
+/// A frame, and how long it took to decode.
+struct DecodedFrame {
+  RgbdFrame frame;
+  StageTime decoding;
+};
+
+DecodedFrame decode(const std::vector<std::uint8_t>& bytes, const std::optional<Camera>& camera) {
+  StageClock clock;
+  RgbdFrame frame = frame_from_message(decode_message<images_t>(view(bytes)), camera);
+  clock.mark("pose.decode");
+  return {std::move(frame), clock.times().front()};
+}
+
+/// The newest frame, decoded while its detections are on the way. What cannot be understood is told when they come.
+std::optional<DecodedFrame> decode_ahead(PairInbox& inbox, const std::optional<Camera>& camera) {
+  const std::optional<ArrivedFrame> fresh = inbox.take_fresh();
+  if (!fresh) return std::nullopt;
+  try {
+    return decode(fresh->bytes, camera);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+ObjectPoses estimate_pair(const FramePair& pair, const std::optional<DecodedFrame>& ahead,
+                          const std::optional<Camera>& camera, const Estimate& estimate) {
   Detections detections = detections_from_message(decode_message<detections_t>(view(pair.detections)));
   if (detections.detections.empty()) return {detections.utime, detections.source_channel, {}, detections.stages};
-  StageClock clock;
-  const RgbdFrame frame = frame_from_message(decode_message<images_t>(view(pair.frame)), camera);
-  clock.mark("pose.decode");
-  detections.stages.push_back(clock.times().front());
-  ObjectPoses poses = estimate(frame, detections);
+  const bool is_ahead = ahead && ahead->frame.utime == detections.utime;
+  const DecodedFrame decoded = is_ahead ? *ahead : decode(pair.frame, camera);
+  detections.stages.push_back(decoded.decoding);
+  ObjectPoses poses = estimate(decoded.frame, detections);
   poses.source_channel = detections.source_channel;
   return poses;
 }
@@ -77,12 +101,16 @@ void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const Esti
   bus.subscribe(channel::kDetections, [&](const Arrival& arrival) { receive_detections(arrival, status, inbox); });
   spdlog::info("ready: frames from {}, detections from {} at {}", options.frame_channel, channel::kDetections,
                bus.url());
+  std::optional<DecodedFrame> ahead;
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
     const std::optional<FramePair> pair = inbox.take(timeout);
     count_dropped(inbox, status);
-    if (!pair) return false;
+    if (!pair) {
+      if (std::optional<DecodedFrame> newer = decode_ahead(inbox, options.camera)) ahead = std::move(newer);
+      return false;
+    }
     try {
-      publish(bus, estimate_pair(*pair, options.camera, estimate));
+      publish(bus, estimate_pair(*pair, ahead, options.camera, estimate));
       status.count_processed(std::chrono::steady_clock::now() - pair->arrival);
     } catch (const std::exception& error) {
       status.count_refused(error.what());

@@ -50,6 +50,26 @@ TEST(PairInbox, NewestFirstPassesOverOlderOnes) {
   EXPECT_EQ(inbox.take_dropped().skipped, 0);
 }
 
+TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
+  PairInbox inbox(true);
+  EXPECT_FALSE(inbox.take_fresh().has_value());
+  inbox.put_frame(1, bytes(11));
+  inbox.put_frame(2, bytes(12));
+  EXPECT_FALSE(inbox.take(std::chrono::minutes(1)).has_value()) << "does not wait: a frame has come";
+  const std::optional<ArrivedFrame> fresh = inbox.take_fresh();
+  ASSERT_TRUE(fresh.has_value());
+  EXPECT_EQ(fresh->utime, 2);
+  EXPECT_EQ(fresh->bytes, bytes(12));
+  EXPECT_FALSE(inbox.take_fresh().has_value());
+  inbox.put_detections(2, bytes(22));
+  EXPECT_EQ(inbox.take(kNow)->frame, bytes(12)) << "it stays for its detections";
+
+  inbox.put_frame(3, bytes(13));
+  inbox.put_detections(3, bytes(23));
+  EXPECT_TRUE(inbox.take(kNow).has_value());
+  EXPECT_FALSE(inbox.take_fresh().has_value()) << "its pair has been taken";
+}
+
 TEST(PairInbox, ALogIsWorkedOnInTurn) {
   PairInbox inbox(false);
   for (int i = 1; i <= 3; ++i) {

@@ -35,6 +35,8 @@ def measured(out):
     write(out / "speed" / "times.json", {name: contender(ms) for name, ms in names.items()})
     write(out / "speed" / "realtime" / "summary.json", {"auc": {"mean": 0.9}})
     write(out / "speed" / "linemod" / "table" / "summary.json", {"auc": {"mean": 0.6}})
+    runs = [{"run_name": "jpeg", "aggregate_name": name, "cpu_time": ms} for name, ms in (("mean", 9.0), ("median", 1.25))]
+    write(out / "speed" / "kernels.json", {"benchmarks": runs})
     growth = {"objects_4": 10, "objects_20": 14, "trees_5": 5, "trees_10": 10, "scale_0.5": 3, "scale_1": 12}
     write(out / "growth" / "times.json", {name: contender(ms) for name, ms in growth.items()})
     latency = {"p50": 18.0, "p95": 25.0, "p99": 30.0}
@@ -55,6 +57,7 @@ class Summary(unittest.TestCase):
         self.assertLessEqual(PROMISED, set(summary))
         self.assertEqual(summary["detect_ms"], {"realtime": 10, "paper": 40, "gall": 60000, "serial": 900})
         self.assertAlmostEqual(summary["speedup_over_gall"], 60000 / 19, places=2)  # one thread each
+        self.assertEqual(summary["kernel_ms"], {"jpeg": 1.25})
         self.assertEqual(summary["auc_over_linemod"], 1.5)
         self.assertEqual(summary["threads"], [[1, 19], [2, 10]])
         self.assertEqual(summary["simd"], {"sse4": 30, "avx2": 22, "avx512": 19})

@@ -97,6 +97,8 @@ def render(summary, history):
         f" {show(summary['auc']['serial_few'])}, the fast one {show(summary['auc']['realtime_few'])}.</p>",
         "<h2>Stages</h2>",
         table(("ms, median", *(stage.removeprefix("detect.") for stage in STAGES)), stage_rows(summary)),
+        "<h2>Kernels, one thread</h2>",
+        table(("", "ms"), [(name, milliseconds(ms)) for name, ms in summary["kernel_ms"].items()]),
         "<h2>Instruction sets, one thread</h2>",
         table(("", "ms a frame"), simd_rows(summary)),
         "<h2>Stream: frame message to pose message</h2>",

@@ -48,4 +48,8 @@ bench_speed() {
     --detector "gall=$data/gall_forest,threads=1,readable,frames=1" \
     --detector "gall_engine=$data/gall_forest,threads=1,frames=2" "${detectors[@]}" \
     --linemod-views "bop:$data/training" "${scene_distances[@]}" --linemod-threads "$(nproc)"
+  step "speed: kernels"
+  "$bin/hs-bench-kernels" --scene "$data/scene/$speed_scene" --forest "$data/forest" --benchmark_repetitions=5 \
+    --benchmark_report_aggregates_only=true --benchmark_out="$out/speed/kernels.json" --benchmark_out_format=json \
+    >"$out/speed/kernels.txt"
 }

@@ -45,6 +45,13 @@ def linemod_auc(out):
     return read_json(found[0])["auc"]["mean"] if found else None
 
 
+def kernels(out):
+    """Median CPU milliseconds on one thread, by kernel."""
+    measured = read(out / "speed" / "kernels.json")
+    runs = measured["benchmarks"] if measured else []
+    return {run["run_name"]: round(run["cpu_time"], 3) for run in runs if run.get("aggregate_name") == "median"}
+
+
 def detection(out):
     times = read(out / "speed" / "times.json")
     detect = {name: median_ms(times, name) for name in ("realtime", "paper", "gall", "serial")}
@@ -61,6 +68,7 @@ def detection(out):
         "auc": auc,
         "auc_over_linemod": quotient(auc["realtime"], auc["linemod"]),
         "stage_ms": {name: times[name]["stage_ms"] for name in ("realtime", "paper") if times and name in times},
+        "kernel_ms": kernels(out),
         "threads": threads,
         "speedup_of_two_threads": quotient(one, two),
         "simd": {key: median_ms(times, f"set_{name}") for name, key in SETS.items()},
