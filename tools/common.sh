@@ -65,10 +65,10 @@ in_network() {
   local setup='ip link set lo up && ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo && exec "$@"'
   if [ $shared_bus = yes ]; then
     "$@"
+  elif unshare -n true 2>/dev/null; then # as root, who keeps the right to raise a priority
+    unshare -n bash -c "$setup" private "$@"
   elif unshare -rn true 2>/dev/null; then
     unshare -rn bash -c "$setup" private "$@"
-  elif unshare -n true 2>/dev/null; then
-    unshare -n bash -c "$setup" private "$@"
   else
     step "a private network is refused (user namespaces are off): using this machine's own, as --shared-bus does"
     "$@"

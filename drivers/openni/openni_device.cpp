@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <opencv2/imgproc.hpp>
 #include <thread>
 
 #include "drivers/openni/openni_listeners.hpp"
@@ -201,6 +202,7 @@ std::optional<SensorImage> OpenniDevice::wait(milliseconds patience) {
   std::optional<SensorImage> image = state_->is_file ? state_->read_file(patience) : state_->read_camera(patience);
   if (!image) return std::nullopt;
   const bool whole = image->image.cols == state_->mode.width && image->image.rows == state_->mode.height;
+  if (whole && image->sensor == Sensor::kColour) cv::cvtColor(image->image, image->image, cv::COLOR_RGB2BGR);
   if (whole) return image;
   require(!state_->is_file, "{}: an image of {}x{}, expected {}", state_->uri, image->image.cols, image->image.rows,
           mode_text(state_->mode));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <OpenNI.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <chrono>
@@ -9,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "drivers/openni/openni_parts.hpp"
 
@@ -45,15 +47,19 @@ class Inbox {
   std::deque<SensorImage> images_;
 };
 
-/// Every image counts, so it is taken the moment it arrives: a stream keeps its newest one only.
+/// Every image counts, so it is taken the moment it arrives: a stream keeps its newest one only. OpenNI2 calls from one
+/// thread a stream, which does little but must not wait for its turn, and goes before others where the rights allow.
 struct Listener : openni::VideoStream::NewFrameListener {
   Listener(Inbox& to, SensorImage::Sensor of) : inbox(to), sensor(of) {}
   void onNewFrame(openni::VideoStream& stream) override {
+    if (!std::exchange(hurries, true)) setpriority(PRIO_PROCESS, 0, kHurry);  // on Linux: of the calling thread
     std::optional<SensorImage> image = read_image(stream, sensor);
     if (image) inbox.put(std::move(*image));
   }
   Inbox& inbox;
   SensorImage::Sensor sensor;
+  bool hurries = false;
+  static constexpr int kHurry = -10;
 };
 
 /// Hears that a camera was unplugged or has failed.

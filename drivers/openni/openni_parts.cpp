@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <opencv2/imgproc.hpp>
 
 #include "pipeline/checks.hpp"
 
@@ -38,15 +37,10 @@ cv::Mat picture_of(const openni::VideoFrameRef& frame, Sensor sensor) {
   const auto bytes = static_cast<std::size_t>(frame.getDataSize());
   if (stride < row || bytes < stride * (frame.getHeight() - 1) + row) return {};
   const cv::Mat given(frame.getHeight(), frame.getWidth(), type, const_cast<void*>(frame.getData()), stride);
-  cv::Mat picture;
-  if (sensor == Sensor::kColour) {
-    cv::cvtColor(given, picture, cv::COLOR_RGB2BGR);
-  } else if (frame.getVideoMode().getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_100_UM) {
-    given.convertTo(picture, CV_16UC1, 0.1);
-  } else {
-    picture = given.clone();
-  }
-  return picture;
+  if (frame.getVideoMode().getPixelFormat() != openni::PIXEL_FORMAT_DEPTH_100_UM) return given.clone();
+  cv::Mat millimetres;
+  given.convertTo(millimetres, CV_16UC1, 0.1);
+  return millimetres;
 }
 
 }  // namespace

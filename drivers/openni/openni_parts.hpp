@@ -39,7 +39,8 @@ std::vector<CameraMode> common_modes(openni::Device& device);
 /// The serial number, or nothing where the driver does not tell.
 std::string serial_of(const openni::Device& device);
 
-/// Reads the stream's newest image. Its picture is empty where the device gave less than the frame should hold.
+/// Reads the stream's newest image, colour still as RGB: OpenCV would convert it with the help of other threads, for
+/// which OpenNI2's must not wait. Its picture is empty where the device gave less than the frame should hold.
 std::optional<SensorImage> read_image(openni::VideoStream& stream, SensorImage::Sensor sensor);
 
 }  // namespace houghstream
