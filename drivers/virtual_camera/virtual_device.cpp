@@ -156,7 +156,7 @@ void VirtualDevice::run() {
     if (now >= shutter && now >= cable_free) {
       open_shutters(number++, shutter);
       const double period_ms = 1e3 / script_.current()->rate_hz;
-      cable_free = now + milliseconds_of(kTransfer * period_ms);
+      cable_free = Clock::now() + milliseconds_of(kTransfer * period_ms);
       shutter += milliseconds_of(period_ms);
     }
     lock.lock();
@@ -172,7 +172,6 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
   const double phase_ms = synchronised_ ? 0.0 : script->colour_phase_ms;
   const Clock::time_point colour_time = now + milliseconds_of(phase_ms);
   const std::uint64_t device_us = device_time_us(now, *script);
-  note_shutter(*script, number, device_us, now);
   for (const auto& stream : streams()) {
     const std::vector<CameraPicture>& pictures = pictures_.at(stream->mode().resolutionX).pictures;
     const CameraPicture& picture = pictures[static_cast<std::size_t>(number) % pictures.size()];
@@ -187,6 +186,7 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
     }
   }
   send_late_colour(Clock::now());
+  note_shutter(*script, number, device_us, now);  // last: the disk may keep it waiting
 }
 
 /// A copy: OpenNI2 may destroy a stream while another thread of it waits for a picture to be taken in.
