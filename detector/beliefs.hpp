@@ -33,7 +33,8 @@ class PatchBeliefs {
   /// Calls visit(patch, entries, count) for every patch that believes in the class, in the grid's order.
   template <typename Visit>
   void for_believers(int class_index, const Visit& visit) const {
-    const std::size_t classes = forest_ != nullptr ? forest_->classes.size() : 0;
+    if (forest_ == nullptr) return;
+    const std::size_t classes = forest_->classes.size();
     for (std::size_t b = static_cast<std::size_t>(class_index); b < believers_.size(); b += classes) {
       const Believers& believers = believers_[b];
       std::uint32_t begin = 0;

@@ -4,6 +4,7 @@
 
 #include "detector/features/features.hpp"
 #include "detector/features/working_frame.hpp"
+#include "pipeline/parallel.hpp"
 
 namespace houghstream {
 namespace {
@@ -28,12 +29,14 @@ void see_features(const Forest& forest, const WorkingFrame& frame, const PatchGr
 void classify_patches(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
                       StageClock& clock, SeenPatches& seen) {
   const auto levels = feature_levels(forest.features);
-  static thread_local std::vector<WorkingFrame> working;  // kept from frame to frame, as are the features
+  static thread_local std::vector<WorkingFrame> kept;  // from frame to frame, as are the features
+  std::vector<WorkingFrame>& working = kept;           // this thread's, for the others too
   working.resize(levels.size());
-  seen.colour.release();                             // it is the last frame's, whose memory the next one takes
-  for (std::size_t l = 0; l < levels.size(); ++l) {  // Section 5.1.1
-    make_working_frame(frame, levels[l].scale, forest.features, working[l]);
-  }
+  seen.colour.release();  // it is the last frame's, whose memory the next one takes
+  parallel_for(settings.threads, static_cast<int>(levels.size()), [&](int l) {  // Section 5.1.1
+    const auto index = static_cast<std::size_t>(l);
+    make_working_frame(frame, levels[index].scale, forest.features, working[index]);
+  });
   clock.mark("detect.resize");
   seen.grid.clear();
   seen.hough_camera = working[0].camera;

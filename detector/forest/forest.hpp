@@ -69,6 +69,19 @@ struct TrainedView {
   Appearance appearance;
 };
 
+/// A node or leaf as walk_wide reads it, see packed_trees.hpp.
+struct PackedNode {
+  std::uint32_t test = 0;
+  std::int32_t way = 0;
+};
+
+/// The trees once more, node for node in eight bytes each; the right child follows the left one.
+struct PackedTrees {
+  std::vector<PackedNode> nodes;      ///< and leaves, each of which leads to itself; empty = see pack_trees
+  std::vector<std::int32_t> roots;    ///< per tree, into nodes
+  std::vector<std::int32_t> leaf_of;  ///< per node: its leaf's number; -1 for inner ones
+};
+
 /// A trained forest: flat arrays, trees one after another. Read-only once built.
 struct Forest {
   std::string profile;  ///< that it was trained by, see profiles.hpp
@@ -86,6 +99,7 @@ struct Forest {
   std::vector<LeafVote> votes;
   std::vector<LeafView> leaf_views;
   std::vector<float> leaf_certainty;  ///< per leaf: its largest p(class | leaf); not in files, see note_certainty
+  PackedTrees packed;                 ///< not in files, see pack_trees
 };
 
 /// Fills leaf_certainty from the leaves; to be called whenever they have changed, before a frame is searched.

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "detector/features/features.hpp"
+#include "detector/forest/packed_trees.hpp"
 #include "detector/profiles.hpp"
 #include "pipeline/checks.hpp"
 
@@ -246,6 +247,7 @@ Forest load_forest(const std::filesystem::path& file) {
   check_settings(forest, source);
   check_indices(forest, source);
   note_certainty(forest);
+  pack_trees(forest);
   return forest;
 }
 

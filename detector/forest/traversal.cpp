@@ -1,7 +1,5 @@
 #include "detector/forest/traversal.hpp"
 
-#include <algorithm>
-#include <array>
 #include <numeric>
 #include <optional>
 
@@ -14,34 +12,6 @@
 namespace houghstream {
 namespace {
 
-constexpr int kLanes = 8;  // patches in flight
-
-/// Walks the patches down one tree, kLanes of them in step. Lanes that have arrived wait.
-void walk_in_lanes(const Forest& forest, std::int32_t root, const WalkingPatches& patches, std::int32_t* leaves) {
-  const TreeNode* nodes = forest.nodes.data();
-  for (int begin = 0; begin < patches.count; begin += kLanes) {
-    const auto lanes = static_cast<std::size_t>(std::min(kLanes, patches.count - begin));
-    std::array<PatchView, kLanes> views{};
-    std::array<std::int32_t, kLanes> at{};
-    for (std::size_t l = 0; l < lanes; ++l) {
-      const std::size_t p = static_cast<std::size_t>(begin) + l;
-      views[l] = patches.image->patch(patches.x[p], patches.y[p], patches.scale[p]);
-      at[l] = root;
-    }
-    bool walking = root >= 0;
-    while (walking) {
-      walking = false;
-      for (std::size_t l = 0; l < lanes; ++l) {
-        if (at[l] < 0) continue;
-        const TreeNode& node = nodes[at[l]];
-        at[l] = test_value(node.test, views[l]) >= node.test.threshold ? node.right : node.left;
-        walking = walking || at[l] >= 0;
-      }
-    }
-    for (std::size_t l = 0; l < lanes; ++l) leaves[static_cast<std::size_t>(begin) + l] = -1 - at[l];
-  }
-}
-
 /// What a thread needs for a run, kept from run to run.
 struct Scratch {
   std::vector<std::int32_t> leaves;    // tree by tree, of the patches that are left
@@ -53,13 +23,18 @@ struct Scratch {
   std::vector<std::uint8_t> planes;  // of a square
 };
 
+void walk_one_by_one(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
+  for (int p = 0; p < patches.count; ++p) {
+    leaves[p] = find_leaf(forest, tree, patches.image->patch(patches.x[p], patches.y[p], patches.scale[p]));
+  }
+}
+
 /// Leaves of patches of one level in the trees [first, last).
 void walk_trees(const Forest& forest, const WalkingPatches& walking, std::size_t first, std::size_t last,
                 std::int32_t* leaves) {
   for (std::size_t tree = first; tree < last; ++tree, leaves += walking.count) {
-    if (!walk_wide(forest, static_cast<int>(tree), walking, leaves)) {
-      walk_in_lanes(forest, forest.roots[tree], walking, leaves);
-    }
+    const auto number = static_cast<int>(tree);
+    if (!walk_wide(forest, number, walking, leaves)) walk_one_by_one(forest, number, walking, leaves);
   }
 }
 

@@ -6,115 +6,109 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include <algorithm>
+
+#include "detector/forest/packed_trees.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A node as four 32-bit words is what the gathers below rely on.
-static_assert(sizeof(TreeNode) == 16 && sizeof(PixelTest) == 8 && offsetof(TreeNode, left) == 8 &&
-              offsetof(TreeNode, right) == 12);
-
-using Int = hn::ScalableTag<std::int32_t>;
+constexpr std::size_t kMost = 256;  // patches that walk together
+using Int = hn::CappedTag<std::int32_t, 64>;
 using Ints = hn::Vec<Int>;
 
-/// The pixels that one image offers to gathers.
-struct Pixels {
-  const std::int32_t* origin;  // of pixel (0,0); byte offsets from here
-  Ints row_stride;
-  Ints pixel_stride;
-};
-
-/// Where one vector of patches stands.
+/// Patches on their way, and what they see at each step.
 struct Walkers {
-  Ints centre;  // byte offset of each patch's pixel
-  Ints scale;
-  Ints at;  // node, or -1 - leaf
+  HWY_ALIGN std::int32_t at[kMost];      // PackedNode
+  HWY_ALIGN std::int32_t centre[kMost];  // byte offset of the patch's pixel
+  HWY_ALIGN std::int32_t scale[kMost];
+  HWY_ALIGN PackedNode nodes[kMost];
+  HWY_ALIGN std::int32_t first[kMost];  // byte offsets of what is looked at
+  HWY_ALIGN std::int32_t second[kMost];
+  HWY_ALIGN std::uint8_t first_values[kMost];
+  HWY_ALIGN std::uint8_t second_values[kMost];
+  std::size_t count = 0;  // whole vectors
 };
 
-template <int kShift>
-HWY_INLINE Ints signed_byte(Ints word) {
-  return hn::ShiftRight<24>(hn::ShiftLeft<24 - kShift>(word));
-}
-
-HWY_INLINE Ints offset_of(Ints dx, Ints dy, const Walkers& w, const Pixels& pixels) {
+/// Which pixels the nodes ask for; as patch_offset.
+void find_pixels(const FeatureImage& image, Walkers& w) {
   const Int d;
+  const Ints row_stride = hn::Set(d, image.row_stride());
+  const Ints pixel_stride = hn::Set(d, image.pixel_stride());
   const Ints half = hn::Set(d, 128);
-  const Ints x_px = hn::ShiftRight<8>(hn::Add(hn::Mul(dx, w.scale), half));
-  const Ints y_px = hn::ShiftRight<8>(hn::Add(hn::Mul(dy, w.scale), half));
-  return hn::Add(hn::Mul(y_px, pixels.row_stride), hn::Mul(x_px, pixels.pixel_stride));
-}
-
-/// One test for every walker that has not arrived; as test_value and find_leaf.
-HWY_INLINE void take_step(const TreeNode* nodes, const Pixels& pixels, Walkers& w) {
-  const Int d;
-  const auto arrived = hn::Lt(w.at, hn::Zero(d));
-  const Ints node = hn::ShiftLeft<4>(hn::IfThenZeroElse(arrived, w.at));
-  const auto* words = reinterpret_cast<const std::int32_t*>(nodes);
-  const Ints places = hn::GatherOffset(d, words, node);
-  const Ints rule = hn::GatherOffset(d, words + 1, node);
-  const Ints byte = hn::Set(d, 255);
-  const Ints plane = hn::Add(hn::And(rule, byte), w.centre);
-  const Ints first = hn::Add(plane, offset_of(signed_byte<0>(places), signed_byte<8>(places), w, pixels));
-  const Ints second = hn::Add(plane, offset_of(signed_byte<16>(places), hn::ShiftRight<24>(places), w, pixels));
-  const Ints kind = hn::And(hn::ShiftRight<8>(rule), byte);
-  const auto alone = hn::Eq(kind, hn::Set(d, PixelTest::kAlone));
-  const auto wraps = hn::Eq(kind, hn::Set(d, PixelTest::kWrapping));
-  const Ints p1 = hn::And(hn::GatherOffset(d, pixels.origin, first), byte);
-  const Ints p2 = hn::And(hn::GatherOffset(d, pixels.origin, second), byte);
-  const Ints difference = hn::Sub(p1, hn::IfThenZeroElse(alone, p2));
-  const Ints value = hn::IfThenElse(wraps, signed_byte<0>(difference), difference);
-  const auto left = hn::Lt(value, hn::ShiftRight<16>(rule));
-  const Ints child = hn::IfThenElse(left, hn::Set(d, offsetof(TreeNode, left)), hn::Set(d, offsetof(TreeNode, right)));
-  const Ints next = hn::GatherOffset(d, words, hn::Add(node, child));
-  w.at = hn::IfThenElse(arrived, w.at, next);
-}
-
-HWY_INLINE bool all_arrived(const Walkers& w) {
-  const Int d;
-  return hn::AllTrue(d, hn::Lt(w.at, hn::Zero(d)));
-}
-
-constexpr std::size_t kMaxLanes = 64;
-
-bool walk(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2  // better targets have lower numbers
-  const Int d;
-  const std::size_t lanes = hn::Lanes(d);
-  constexpr std::size_t kVectors = 4;  // in flight, so that their cache misses overlap
-  const Pixels pixels{reinterpret_cast<const std::int32_t*>(patches.image->at(0, 0)),
-                      hn::Set(d, patches.image->row_stride()), hn::Set(d, patches.image->pixel_stride())};
-  const auto count = static_cast<std::size_t>(patches.count);
-  for (std::size_t begin = 0; begin < count; begin += kVectors * lanes) {
-    HWY_ALIGN std::int32_t centre[kVectors * kMaxLanes];
-    HWY_ALIGN std::int32_t scale[kVectors * kMaxLanes];
-    for (std::size_t i = 0; i < kVectors * lanes; ++i) {
-      const std::size_t p = begin + i < count ? begin + i : count - 1;  // the last one again where there are no more
-      centre[i] = patches.y[p] * patches.image->row_stride() + patches.x[p] * patches.image->pixel_stride();
-      scale[i] = patches.scale[p];
-    }
-    const Ints root = hn::Set(d, forest.roots[static_cast<std::size_t>(tree)]);
-    Walkers a{hn::Load(d, centre), hn::Load(d, scale), root};
-    Walkers b{hn::Load(d, centre + lanes), hn::Load(d, scale + lanes), root};
-    Walkers c{hn::Load(d, centre + 2 * lanes), hn::Load(d, scale + 2 * lanes), root};
-    Walkers e{hn::Load(d, centre + 3 * lanes), hn::Load(d, scale + 3 * lanes), root};
-    while (!(all_arrived(a) && all_arrived(b) && all_arrived(c) && all_arrived(e))) {
-      take_step(forest.nodes.data(), pixels, a);
-      take_step(forest.nodes.data(), pixels, b);
-      take_step(forest.nodes.data(), pixels, c);
-      take_step(forest.nodes.data(), pixels, e);
-    }
-    hn::Store(a.at, d, centre);
-    hn::Store(b.at, d, centre + lanes);
-    hn::Store(c.at, d, centre + 2 * lanes);
-    hn::Store(e.at, d, centre + 3 * lanes);
-    for (std::size_t i = 0; i < kVectors * lanes && begin + i < count; ++i) leaves[begin + i] = -1 - centre[i];
+  for (std::size_t i = 0; i < w.count; i += hn::Lanes(d)) {
+    Ints test;
+    Ints way;
+    hn::LoadInterleaved2(d, reinterpret_cast<const std::int32_t*>(w.nodes + i), test, way);
+    const Ints scale = hn::Load(d, w.scale + i);
+    const auto to_px = [&](Ints high) {  // of the step in the highest bits
+      return hn::ShiftRight<8>(hn::Add(hn::Mul(hn::ShiftRight<32 - packed::kStepBits>(high), scale), half));
+    };
+    const Ints x1 = to_px(hn::ShiftLeft<27>(test));
+    const Ints y1 = to_px(hn::ShiftLeft<22>(test));
+    const Ints x2 = to_px(hn::ShiftLeft<17>(test));
+    const Ints y2 = to_px(hn::ShiftLeft<12>(test));
+    const Ints plane = hn::And(hn::ShiftRight<packed::kPlaneShift>(test), hn::Set(d, 255));
+    const Ints start = hn::Add(hn::Load(d, w.centre + i), plane);
+    hn::Store(hn::Add(start, hn::Add(hn::Mul(y1, row_stride), hn::Mul(x1, pixel_stride))), d, w.first + i);
+    hn::Store(hn::Add(start, hn::Add(hn::Mul(y2, row_stride), hn::Mul(x2, pixel_stride))), d, w.second + i);
   }
-  return true;
-#else
-  (void)forest, (void)tree, (void)patches, (void)leaves;
-  return false;
-#endif
+}
+
+/// Goes left or right, as find_leaf; those who have arrived stay. Returns whether anyone has moved.
+bool take_step(Walkers& w) {
+  const Int d;
+  const hn::Rebind<std::uint8_t, Int> bytes;
+  const Ints alone = hn::Set(d, packed::kAlone);
+  const Ints wraps = hn::Set(d, packed::kWraps);
+  const Ints child_mask = hn::Set(d, (1 << packed::kLimitShift) - 1);
+  Ints moved = hn::Zero(d);
+  for (std::size_t i = 0; i < w.count; i += hn::Lanes(d)) {
+    Ints test;
+    Ints way;
+    hn::LoadInterleaved2(d, reinterpret_cast<const std::int32_t*>(w.nodes + i), test, way);
+    const Ints p1 = hn::PromoteTo(d, hn::Load(bytes, w.first_values + i));
+    const Ints p2 = hn::PromoteTo(d, hn::Load(bytes, w.second_values + i));
+    const Ints difference = hn::Sub(p1, hn::IfThenZeroElse(hn::TestBit(test, alone), p2));
+    const Ints wrapped = hn::ShiftRight<24>(hn::ShiftLeft<24>(difference));
+    const Ints value = hn::IfThenElse(hn::TestBit(test, wraps), wrapped, difference);
+    const Ints right = hn::VecFromMask(d, hn::Gt(value, hn::ShiftRight<packed::kLimitShift>(way)));  // -1 or 0
+    const Ints next = hn::Sub(hn::And(way, child_mask), right);
+    moved = hn::Or(moved, hn::Xor(next, hn::Load(d, w.at + i)));
+    hn::Store(next, d, w.at + i);
+  }
+  return !hn::AllTrue(d, hn::Eq(moved, hn::Zero(d)));
+}
+
+/// Puts the patches from `first` on at the root; the last vector is filled with the last patch.
+void set_out(const WalkingPatches& patches, std::size_t first, std::int32_t root, Walkers& w) {
+  const std::size_t lanes = hn::Lanes(Int());
+  const std::size_t last = static_cast<std::size_t>(patches.count) - 1;
+  w.count = (std::min(kMost, last + 1 - first) + lanes - 1) / lanes * lanes;
+  for (std::size_t i = 0; i < w.count; ++i) {
+    const std::size_t p = std::min(first + i, last);
+    w.at[i] = root;
+    w.centre[i] = patches.y[p] * patches.image->row_stride() + patches.x[p] * patches.image->pixel_stride();
+    w.scale[i] = patches.scale[p];
+  }
+}
+
+void walk(const PackedTrees& trees, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
+  const auto count = static_cast<std::size_t>(patches.count);
+  const std::uint8_t* origin = patches.image->at(0, 0);
+  Walkers w;
+  for (std::size_t first = 0; first < count; first += kMost) {
+    set_out(patches, first, trees.roots[static_cast<std::size_t>(tree)], w);
+    do {
+      fetch_nodes(trees.nodes.data(), w.at, w.count, w.nodes);
+      find_pixels(*patches.image, w);
+      fetch_pixels(origin, w.first, w.second, w.count, w.first_values, w.second_values);
+    } while (take_step(w));
+    const std::size_t arrived = std::min(kMost, count - first);
+    for (std::size_t i = 0; i < arrived; ++i) leaves[first + i] = trees.leaf_of[static_cast<std::size_t>(w.at[i])];
+  }
 }
 
 }  // namespace houghstream::HWY_NAMESPACE
@@ -127,9 +121,9 @@ HWY_EXPORT(walk);
 
 bool walk_wide(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
   const auto rows = static_cast<std::int64_t>(patches.image->height()) + 2 * FeatureImage::kPad;
-  if (rows * patches.image->row_stride() > INT32_MAX || forest.nodes.empty()) return false;
-  if (forest.nodes.size() > static_cast<std::size_t>(INT32_MAX) / sizeof(TreeNode)) return false;
-  return HWY_DYNAMIC_DISPATCH(walk)(forest, tree, patches, leaves);
+  if (rows * patches.image->row_stride() > INT32_MAX || forest.packed.nodes.empty()) return false;
+  HWY_DYNAMIC_DISPATCH(walk)(forest.packed, tree, patches, leaves);
+  return true;
 }
 
 }  // namespace houghstream

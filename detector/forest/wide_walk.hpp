@@ -16,9 +16,8 @@ struct WalkingPatches {
   int count = 0;
 };
 
-/// Leaf of each patch, by gathering vector instructions. Returns false, having done nothing, where
-/// the processor has none (before AVX2) or the image is too large for 32-bit offsets. The leaves are those of
-/// find_leaf.
+/// Leaf of each patch, many patches a step. Returns false, having done nothing, where the forest is not packed or the
+/// image is too large for 32-bit offsets. The leaves are those of find_leaf.
 bool walk_wide(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves);
 
 }  // namespace houghstream

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "detector/forest/packed_trees.hpp"
 #include "detector/training/calibration.hpp"
 #include "detector/training/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
@@ -127,6 +128,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   forest.views = set.views;
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
   note_certainty(forest);
+  pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.vote_sigma, forest);
   if (settings.scoring == Scoring::kVotes) return forest;
   train_score_model(rooms.objects, rooms.for_score, profile, forest);
@@ -157,6 +159,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   }
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
   note_certainty(forest);
+  pack_trees(forest);
   calibrate_masses(set, profile.training, profile.detection.vote_sigma, forest);
   if (forest.scoring == Scoring::kEvidence) train_score_model(rooms.objects, rooms.for_score, profile, forest);
   return forest;

@@ -2,14 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include <atomic>
 #include <cmath>
-#include <condition_variable>
-#include <deque>
 #include <fstream>
-#include <mutex>
 #include <thread>
 
+#include "drivers/openni/openni_listeners.hpp"
 #include "drivers/openni/openni_parts.hpp"
 #include "pipeline/checks.hpp"
 
@@ -19,64 +16,8 @@ namespace {
 using std::chrono::milliseconds;
 using Sensor = SensorImage::Sensor;
 
-constexpr std::size_t kQueueCapacity = 60;  // a second of both sensors at 30 Hz
-
-/// Images as they arrive, from OpenNI2's threads, in a queue.
-class Inbox {
- public:
-  void put(SensorImage image) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    images_.push_back(std::move(image));
-    if (images_.size() > kQueueCapacity) images_.pop_front();
-    arrived_.notify_one();
-  }
-  std::optional<SensorImage> take(milliseconds patience) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    if (!arrived_.wait_for(lock, patience, [&] { return !images_.empty(); })) return std::nullopt;
-    SensorImage image = std::move(images_.front());
-    images_.pop_front();
-    return image;
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable arrived_;
-  std::deque<SensorImage> images_;
-};
-
-/// Every image counts, so it is taken the moment it arrives: a stream keeps its newest one only.
-struct Listener : openni::VideoStream::NewFrameListener {
-  Listener(Inbox& to, Sensor of) : inbox(to), sensor(of) {}
-  void onNewFrame(openni::VideoStream& stream) override {
-    std::optional<SensorImage> image = read_image(stream, sensor);
-    if (image) inbox.put(std::move(*image));
-  }
-  Inbox& inbox;
-  Sensor sensor;
-};
-
-/// Hears that a camera was unplugged or has failed.
-class Departure : public openni::OpenNI::DeviceDisconnectedListener, public openni::OpenNI::DeviceStateChangedListener {
- public:
-  explicit Departure(std::string uri) : uri_(std::move(uri)) {
-    openni::OpenNI::addDeviceDisconnectedListener(this);
-    openni::OpenNI::addDeviceStateChangedListener(this);
-  }
-  ~Departure() override {
-    openni::OpenNI::removeDeviceDisconnectedListener(this);
-    openni::OpenNI::removeDeviceStateChangedListener(this);
-  }
-  void onDeviceDisconnected(const openni::DeviceInfo* info) override {
-    if (uri_ == info->getUri()) gone = true;
-  }
-  void onDeviceStateChanged(const openni::DeviceInfo* info, openni::DeviceState state) override {
-    if (uri_ == info->getUri() && state == openni::DEVICE_STATE_ERROR) gone = true;
-  }
-  std::atomic<bool> gone{false};
-
- private:
-  std::string uri_;
-};
+// The images that a driver may hold when its modes are set, computed as they were before; drivers have three buffers.
+constexpr int kDepthBeforeModes = 3;
 
 }  // namespace
 
@@ -111,7 +52,8 @@ struct OpenniDevice::State {
   openni::VideoStream colour;
   CameraMode mode;
   bool is_file = false;
-  int images_left = 0;  // of a file
+  int images_left = 0;    // of a file
+  int depth_to_skip = 0;  // before a camera's images are as its modes say
   Inbox inbox;
   Listener depth_listener{inbox, Sensor::kDepth};
   Listener colour_listener{inbox, Sensor::kColour};
@@ -187,7 +129,23 @@ struct OpenniDevice::State {
     check_openni(recorder.create(file.c_str()), file + ": cannot be recorded to");
     check_openni(recorder.attach(depth, false), file + ": depth");
     check_openni(recorder.attach(colour, jpeg), file + ": colour");
-    check_openni(recorder.start(), file + ": recording");
+  }
+
+  /// Depth from before registration is of the same size and looks like any other, so it is told by its turn. A
+  /// recording starts behind it.
+  void await_modes() {
+    inbox.clear();
+    depth_to_skip = kDepthBeforeModes;
+  }
+  std::optional<SensorImage> read_camera(milliseconds patience) {
+    std::optional<SensorImage> image = inbox.take(patience);
+    while (image && depth_to_skip > 0) {
+      if (image->sensor == Sensor::kDepth && --depth_to_skip == 0 && recorder.isValid()) {
+        check_openni(recorder.start(), uri + ": recording");
+      }
+      image = inbox.take(patience);
+    }
+    return image;
   }
 
   /// A file waits until it is asked, so nothing is lost; what cannot be read is not waited for a second time.
@@ -213,10 +171,11 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, 
   const bool at_once = options.assume_registered || state->registered();
   state->depth.addNewFrameListener(&state->depth_listener);
   state->colour.addNewFrameListener(&state->colour_listener);
-  if (!options.record.empty()) state->record(options.record, options.record_jpeg);
   state->start();
   require(at_once || state->registered(),
           "{}: cannot register depth to colour; give --assume-registered if its depth comes registered anyhow", uri);
+  if (!options.record.empty()) state->record(options.record, options.record_jpeg);
+  state->await_modes();
   return std::unique_ptr<OpenniDevice>(new OpenniDevice(std::move(state)));
 }
 
@@ -239,7 +198,7 @@ OpenniDevice::OpenniDevice(std::unique_ptr<State> state) : state_(std::move(stat
 OpenniDevice::~OpenniDevice() = default;
 
 std::optional<SensorImage> OpenniDevice::wait(milliseconds patience) {
-  std::optional<SensorImage> image = state_->is_file ? state_->read_file(patience) : state_->inbox.take(patience);
+  std::optional<SensorImage> image = state_->is_file ? state_->read_file(patience) : state_->read_camera(patience);
   if (!image) return std::nullopt;
   const bool whole = image->image.cols == state_->mode.width && image->image.rows == state_->mode.height;
   if (whole) return image;

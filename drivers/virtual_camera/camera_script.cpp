@@ -51,6 +51,8 @@ const std::map<std::string, Setter>& setters() {
       {"plugged", [](CameraScript& s, const std::string& v) { s.plugged = flag_of(v); }},
       {"can_sync", [](CameraScript& s, const std::string& v) { s.can_sync = flag_of(v); }},
       {"can_register", [](CameraScript& s, const std::string& v) { s.can_register = flag_of(v); }},
+      {"registers_running", [](CameraScript& s, const std::string& v) { s.registers_running = flag_of(v); }},
+      {"register_late", [](CameraScript& s, const std::string& v) { s.register_late = count_of(v); }},
       {"colour_phase_ms", [](CameraScript& s, const std::string& v) { s.colour_phase_ms = number_of(v); }},
       {"colour_late_ms", [](CameraScript& s, const std::string& v) { s.colour_late_ms = number_of(v); }},
       {"drop_depth_every", [](CameraScript& s, const std::string& v) { s.drop_depth_every = count_of(v); }},

@@ -18,7 +18,9 @@ struct CameraScript {
   int rate_hz = 30;                    ///< of all modes
   bool plugged = true;                 ///< whether the cameras are there
   bool can_sync = true;                ///< depth and colour can be taken at the same time
-  bool can_register = true;            ///< depth can be registered to colour
+  bool can_register = true;            ///< depth can be registered to colour,
+  bool registers_running = false;      ///< but only while a stream runs,
+  int register_late = 0;               ///< and so many depth images follow that are not registered yet
   double colour_phase_ms = 0.0;        ///< unless synchronised, colour is taken so long after depth
   double colour_late_ms = 0.0;         ///< colour arrives so long after it was taken
   int drop_depth_every = 0;            ///< each so-many-th depth image is lost; 0: none

@@ -14,9 +14,9 @@ using std::chrono::microseconds;
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-constexpr std::chrono::milliseconds kTransfer(8);  // a picture is on the cable for so long: late ones come no closer
-constexpr double kClockAtOpeningUs = 5e6;          // a device's clock does not start when it is opened
-constexpr int kColourAhead = 7;                    // unsynchronised, a sensor counts its own images
+constexpr double kTransfer = 0.75;  // of a period: VGA depth and colour fill a USB 2 cable; late ones come no closer
+constexpr double kClockAtOpeningUs = 5e6;  // a device's clock does not start when it is opened
+constexpr int kColourAhead = 7;            // unsynchronised, a sensor counts its own images
 
 bool is_dropped(int number, int every) {
   return every > 0 && number % every == every - 1;
@@ -108,9 +108,25 @@ OniStatus VirtualDevice::setProperty(int property, const void* data, int size) {
   if (property != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) return ONI_STATUS_NOT_SUPPORTED;
   if (size != sizeof(mode)) return ONI_STATUS_BAD_PARAMETER;
   std::memcpy(&mode, data, sizeof(mode));
+  return set_registration(mode);
+}
+
+OniStatus VirtualDevice::set_registration(OniImageRegistrationMode mode) {
   if (!isImageRegistrationModeSupported(mode)) return ONI_STATUS_NOT_SUPPORTED;
+  const ScriptWatch::Script script = script_.current();
+  const auto known = streams();
+  const bool running = std::any_of(known.begin(), known.end(), [](const auto& stream) { return stream->is_running(); });
+  if (script->registers_running && !running) return ONI_STATUS_OUT_OF_FLOW;
+  unregistered_left_ = script->register_late;
   registered_ = mode == ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR;
   return ONI_STATUS_OK;
+}
+
+bool VirtualDevice::is_registered_by_now() {
+  if (!registered_) return false;
+  if (unregistered_left_ == 0) return true;
+  --unregistered_left_;
+  return false;
 }
 
 OniBool VirtualDevice::isImageRegistrationModeSupported(OniImageRegistrationMode mode) {
@@ -135,8 +151,9 @@ void VirtualDevice::run() {
     send_late_colour(now);
     if (now >= shutter && now >= cable_free) {
       open_shutters(number++, shutter);
-      cable_free = now + kTransfer;
-      shutter += milliseconds_of(1e3 / script_.current()->rate_hz);
+      const double period_ms = 1e3 / script_.current()->rate_hz;
+      cable_free = now + milliseconds_of(kTransfer * period_ms);
+      shutter += milliseconds_of(period_ms);
     }
     lock.lock();
   }
@@ -161,7 +178,8 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
                        number + (synchronised_ ? 0 : kColourAhead), device_time_us(colour_time, *script),
                        picture.colour});
     } else if (!is_dropped(number, script->drop_depth_every)) {
-      stream->send(registered_ ? picture.depth_mm : unregistered(picture.depth_mm), number, device_us);
+      if (!stream->is_running()) continue;
+      stream->send(is_registered_by_now() ? picture.depth_mm : unregistered(picture.depth_mm), number, device_us);
     }
   }
   send_late_colour(Clock::now());

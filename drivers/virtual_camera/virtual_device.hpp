@@ -51,6 +51,8 @@ class VirtualDevice : public oni::driver::DeviceBase {
   };
 
   void run();
+  OniStatus set_registration(OniImageRegistrationMode mode);
+  bool is_registered_by_now();
   void open_shutters(int number, Clock::time_point now);
   std::vector<std::shared_ptr<VirtualStream>> streams();
   void send_late_colour(Clock::time_point now);
@@ -63,6 +65,7 @@ class VirtualDevice : public oni::driver::DeviceBase {
   std::array<VirtualSensor, 2> sensors_;
   std::array<OniSensorInfo, 2> infos_{};
   std::atomic<bool> registered_{false};
+  std::atomic<int> unregistered_left_{0};
   std::atomic<bool> synchronised_{false};
   std::mutex streams_mutex_;
   std::vector<std::shared_ptr<VirtualStream>> streams_;

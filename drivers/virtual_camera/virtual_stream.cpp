@@ -117,6 +117,11 @@ void VirtualStream::stop() {
   running_ = false;
 }
 
+bool VirtualStream::is_running() const {
+  const std::lock_guard<std::mutex> lock(sending_);
+  return running_;
+}
+
 void VirtualStream::send(const cv::Mat& picture, int number, std::uint64_t device_us) {
   const std::lock_guard<std::mutex> lock(sending_);
   if (!running_) return;

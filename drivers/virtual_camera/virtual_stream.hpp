@@ -30,6 +30,7 @@ class VirtualStream : public oni::driver::StreamBase {
   VirtualDevice& device() const { return device_; }
   OniSensorType type() const { return sensor_.type; }
   OniVideoMode mode() const;
+  bool is_running() const;
 
   /// Sends a picture (CV_8UC3 RGB or CV_16UC1) if the stream is running; `number` and `device_us` go with it.
   void send(const cv::Mat& picture, int number, std::uint64_t device_us);
@@ -46,7 +47,7 @@ class VirtualStream : public oni::driver::StreamBase {
   OniBool auto_white_balance_ = TRUE;
   int exposure_ = 10;
   int gain_ = 100;
-  std::mutex sending_;  // held while a picture is on its way, so that none comes after stop()
+  mutable std::mutex sending_;  // held while a picture is on its way, so that none comes after stop()
   bool running_ = false;
 };
 

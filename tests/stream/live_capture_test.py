@@ -71,8 +71,8 @@ def check_unplugging(tools, camera, folder):
         camera.write("plugged no\n")
         wait_for(capture.log, "the camera is gone; waiting for it")
         time.sleep(1.6)
+        replugged = time.time()  # before: a rename may keep its caller waiting for the disk
         camera.write("can_sync no\n")
-        replugged = time.time()
         wait_for(capture.log, "back, was away for")
         time.sleep(2.5)
         camera.write("plugged no\n")

@@ -57,8 +57,8 @@ def run_unplugged(tools, folder, start_stream, script):
         write_script(script, "plugged no\n")
         wait_for_words(capture, "the camera is gone; waiting for it")
         time.sleep(1.0)
-        write_script(script, f"scene {folder / 'scene'}\n")
         replugged = time.time()
+        write_script(script, f"scene {folder / 'scene'}\n")
         wait_for_words(capture, "back, was away for")
         wait_for_results(results, 5)
         for process in processes[::-1]:

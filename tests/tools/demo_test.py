@@ -67,6 +67,14 @@ class LiveReport(unittest.TestCase):
         with self.assertRaises(SystemExit):
             live_report.latencies_ms([{"utime": "5", "t_poses": "1"}], "t_poses", self.SHUTTERS, 0)
 
+    def test_an_unplugged_camera_leaves_a_gap(self):
+        rows = [{"t_frame": "1.0", "t_poses": "1.1"}, {"t_frame": "4.5", "t_poses": ""}, {"t_frame": "4.6", "t_poses": "4.7"}]
+        gap = live_report.unplugging(rows, 1_000_000, 5_000_000)
+        self.assertEqual(gap, {"gap_s": 3.5, "frames_back_ms": 500, "poses_back_ms": 700})
+        for replugged in (1_500_000, 5_650_000):
+            with self.assertRaises(SystemExit):
+                live_report.unplugging(rows, 1_000_000, replugged)
+
     def test_percentiles_of_a_hundred(self):
         self.assertEqual(live_report.percentiles(range(1, 101)), {"p50": 51, "p95": 96, "p99": 100})
         self.assertEqual(live_report.percentiles([])["p99"], None)

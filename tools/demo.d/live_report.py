@@ -43,6 +43,19 @@ def latencies_ms(rows, key, shutters, start_us):
     return [1e-3 * (start_us + 1e6 * float(arrival) - shutter) for shutter, arrival in taken]
 
 
+def unplugging(rows, start_us, replugged_us):
+    """How long no frame came, and how soon after the camera frames and poses were back."""
+    frames, poses = (sorted(start_us + 1e6 * float(row[key]) for row in rows if row[key]) for key in ("t_frame", "t_poses"))
+    frame, pose = bisect.bisect_left(frames, replugged_us), bisect.bisect_left(poses, replugged_us)
+    if frame in (0, len(frames)) or pose == len(poses):
+        sys.exit("live_report.py: the camera was unplugged, expected frames before and frames with poses afterwards")
+    return {
+        "gap_s": round(1e-6 * (frames[frame] - frames[frame - 1]), 2),
+        "frames_back_ms": round(1e-3 * (frames[frame] - replugged_us)),
+        "poses_back_ms": round(1e-3 * (poses[pose] - replugged_us)),
+    }
+
+
 def summarise(rows, observed, shutters):
     capture, detector = observed["processes"]["hs-capture"], observed["processes"]["hs-detect"]
     start_us = observed["start_utime"]
@@ -73,6 +86,11 @@ def print_summary(summary):
         " {frames_lost_on_bus} on the bus; {frames_detected} detected, {frames_skipped} passed over for newer ones".format(**summary)
     )
     print("frames are stamped {median} ms after the shutter (median), at worst {worst} ms".format(**summary["utime_error_ms"]))
+    if "unplugged" in summary:
+        print(
+            "unplugged on the way: no frame for {gap_s} s; plugged in again, frames were back after {frames_back_ms} ms, poses"
+            " after {poses_back_ms} ms; hs-capture says: {words}".format(**summary["unplugged"])
+        )
 
 
 def main():
@@ -83,6 +101,10 @@ def main():
     out = arguments.out
     observed, rows = read_json(out / "stream" / "observe.json"), read_csv(out / "stream" / "frame_times.csv")
     summary = summarise(rows, observed, shutter_times(out / "shutter.txt"))
+    replugged = out / "replugged.txt"
+    if replugged.exists():
+        summary["unplugged"] = unplugging(rows, observed["start_utime"], int(replugged.read_text()))
+        summary["unplugged"]["words"] = observed["processes"]["hs-capture"]["last_error"]
     summary.update(cpu=cpu_name(), commit=arguments.commit)
     (out / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     print_summary(summary)

@@ -4,6 +4,7 @@
 
 #include "detector/features/feature_image.hpp"
 #include "detector/forest/forest.hpp"
+#include "detector/forest/packed_trees.hpp"
 #include "pipeline/random.hpp"
 
 namespace houghstream::chance {
@@ -49,6 +50,7 @@ inline Forest random_forest(int planes, Random& random) {
       forest.nodes.push_back(node);
     }
   }
+  pack_trees(forest);
   return forest;
 }
 

@@ -83,6 +83,14 @@ TEST(CameraSource, UnregisteredDepthIsRefusedUnlessToldOtherwise) {
   EXPECT_NEAR(error_px(frame), 20.0, 1.0) << "the virtual camera's parallax: what registration takes away";
 }
 
+TEST(CameraSource, DepthFromBeforeItsRegistrationIsNotUsed) {
+  for (const char* script : {"register_late 2\n", "register_late 2\nregisters_running yes\n"}) {
+    const VirtualCamera camera("before", script);
+    const auto source = open_camera_source("", CameraOptions{}, patient_listener(20));
+    for (int i = 0; i < 10; ++i) EXPECT_LT(error_px(source->next().value()), 0.5) << script << i;
+  }
+}
+
 TEST(CameraSource, ACalibrationMustBeOfTheMode) {
   const VirtualCamera camera("calibration", "");
   CameraOptions options;
@@ -151,8 +159,8 @@ TEST(CameraSource, AnUnpluggedCameraIsWaitedFor) {
   std::thread hand([&] {
     camera.change("serial AA01\nserial AA02\nplugged no\n");
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    camera.change("serial AA01\nserial AA02\n");
     replugged = Clock::now();
+    camera.change("serial AA01\nserial AA02\n");
   });
   std::int64_t gap = 0;
   while (words.size() < 2) {
@@ -161,8 +169,9 @@ TEST(CameraSource, AnUnpluggedCameraIsWaitedFor) {
     gap = std::max(gap, frame->utime - last);
     last = frame->utime;
   }
-  const double took = std::chrono::duration<double>(Clock::now() - replugged).count();
+  const Clock::time_point back = Clock::now();
   hand.join();
+  const double took = std::chrono::duration<double>(back - replugged).count();
   RecordProperty("reconnect_ms", static_cast<int>(1e3 * took));
   std::printf("frames are back %.0f ms after the camera\n", 1e3 * took);
   EXPECT_LT(took, 2.0);

@@ -21,13 +21,16 @@ TEST(CameraScript, EveryLineSetsOneThing) {
   const auto file = fresh_folder("camera_script") / "script";
   write_text(file,
              "# a camera\nserial A1\nserial A2   # two of them\n\nplugged no\nsize 320x240\ncolour_late_ms 12.5\n"
-             "drop_colour_every 7\nclock_ahead_ms -3\nrate_hz 15\n");
+             "drop_colour_every 7\nclock_ahead_ms -3\nrate_hz 15\nregisters_running yes\n"
+             "register_late 2\n");
   const CameraScript script = read_camera_script(file);
   EXPECT_EQ(script.serials, (std::vector<std::string>{"A1", "A2"}));
   EXPECT_FALSE(script.plugged);
   EXPECT_EQ(script.sizes[0].height, 240);
   EXPECT_EQ(script.colour_late_ms, 12.5);
   EXPECT_EQ(script.drop_colour_every, 7);
+  EXPECT_TRUE(script.registers_running);
+  EXPECT_EQ(script.register_late, 2);
   EXPECT_EQ(script.clock_ahead_ms, -3.0);
   EXPECT_EQ(script.rate_hz, 15);
 }

@@ -1,0 +1,88 @@
+#include "detector/forest/packed_trees.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+constexpr std::size_t kMostNodes = std::size_t{1} << packed::kLimitShift;
+constexpr int kHighestLimit = 255;  // differences of bytes do not exceed it
+
+std::uint32_t step_bits(int step, int place) {
+  constexpr std::uint32_t kMask = (1U << packed::kStepBits) - 1;
+  return (static_cast<std::uint32_t>(step) & kMask) << (place * packed::kStepBits);
+}
+
+bool fits(const PixelTest& test) {
+  constexpr int kFarthest = (1 << (packed::kStepBits - 1)) - 1;
+  return std::max({std::abs(test.dx1), std::abs(test.dy1), std::abs(test.dx2), std::abs(test.dy2)}) <= kFarthest;
+}
+
+std::int32_t pack_way(std::size_t left, int limit) {
+  const auto bits = static_cast<std::uint32_t>(limit) << packed::kLimitShift | static_cast<std::uint32_t>(left);
+  return static_cast<std::int32_t>(bits);
+}
+
+/// A pixel that is looked at alone is looked at twice: a second one would have to come into the cache for nothing.
+PackedNode pack_node(const PixelTest& test, std::size_t left) {
+  const bool alone = test.kind == PixelTest::kAlone;
+  std::uint32_t bits = step_bits(test.dx1, 0) | step_bits(test.dy1, 1);
+  bits |= step_bits(alone ? test.dx1 : test.dx2, 2) | step_bits(alone ? test.dy1 : test.dy2, 3);
+  bits |= static_cast<std::uint32_t>(test.plane) << packed::kPlaneShift;
+  if (alone) bits |= packed::kAlone;
+  if (test.kind == PixelTest::kWrapping) bits |= packed::kWraps;
+  return {bits, pack_way(left, std::clamp(test.threshold - 1, -kHighestLimit - 1, kHighestLimit))};
+}
+
+/// One tree, breadth first, behind the others. False where it does not fit.
+bool append_packed(const Forest& forest, std::int32_t root, PackedTrees& trees) {
+  const std::size_t most = std::min(kMostNodes, forest.roots.size() + 2 * forest.nodes.size());
+  std::vector<std::int32_t> sources = {root};
+  const std::size_t first = trees.nodes.size();
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::int32_t source = sources[i];
+    if (source < 0) {  // a leaf leads to itself
+      trees.nodes.push_back({0, pack_way(first + i, kHighestLimit)});
+      trees.leaf_of.push_back(-1 - source);
+      continue;
+    }
+    const TreeNode& node = forest.nodes[static_cast<std::size_t>(source)];
+    if (!fits(node.test) || first + sources.size() + 2 > most) return false;
+    trees.nodes.push_back(pack_node(node.test, first + sources.size()));
+    trees.leaf_of.push_back(-1);
+    sources.push_back(node.left);
+    sources.push_back(node.right);
+  }
+  return true;
+}
+
+}  // namespace
+
+void pack_trees(Forest& forest) {
+  PackedTrees trees;
+  for (const std::int32_t root : forest.roots) {
+    trees.roots.push_back(static_cast<std::int32_t>(trees.nodes.size()));
+    if (!append_packed(forest, root, trees)) {
+      forest.packed = {};
+      return;
+    }
+  }
+  forest.packed = std::move(trees);
+}
+
+void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t count, PackedNode* fetched) {
+  for (std::size_t i = 0; i < count; ++i) fetched[i] = nodes[at[i]];
+}
+
+void fetch_pixels(const std::uint8_t* origin, const std::int32_t* first, const std::int32_t* second, std::size_t count,
+                  std::uint8_t* first_values, std::uint8_t* second_values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    first_values[i] = origin[first[i]];
+    second_values[i] = origin[second[i]];
+  }
+}
+
+}  // namespace houghstream

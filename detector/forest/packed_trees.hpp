@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "detector/forest/forest.hpp"
+
+namespace houghstream {
+
+/// How a PackedNode is read, from the lowest bits on.
+namespace packed {
+constexpr int kStepBits = 5;  ///< of dx1, dy1, dx2 and dy2 each, with sign
+constexpr int kPlaneShift = 20;
+constexpr std::uint32_t kAlone = 1U << 28;
+constexpr std::uint32_t kWraps = 1U << 29;
+constexpr int kLimitShift = 23;  ///< of the way: below lies the left child, above it the limit, with sign
+}  // namespace packed
+
+/// Fills Forest::packed from roots and nodes; to be called whenever they have changed, before a frame is searched.
+/// Leaves it empty where the trees do not fit: patches with a radius above 15 steps, more than 2^23 nodes and leaves,
+/// or nodes with several parents.
+void pack_trees(Forest& forest);
+
+/// Copies the nodes that patches stand at, and the values of the pixels that they look at, side by side. Apart from the
+/// walk, whose instruction set has gathers: dozens of plain loads overlap where a cache misses, but few gathers do.
+void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t count, PackedNode* fetched);
+void fetch_pixels(const std::uint8_t* origin, const std::int32_t* first, const std::int32_t* second, std::size_t count,
+                  std::uint8_t* first_values, std::uint8_t* second_values);
+
+}  // namespace houghstream

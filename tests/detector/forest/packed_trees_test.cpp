@@ -1,0 +1,84 @@
+#include "detector/forest/packed_trees.hpp"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "random_forest.hpp"
+
+namespace houghstream {
+namespace {
+
+/// A node, and the two leaves below it.
+Forest one_node(const PixelTest& test) {
+  Forest forest;
+  forest.roots = {0};
+  forest.nodes.push_back({test, -1, -2});
+  pack_trees(forest);
+  return forest;
+}
+
+TEST(PackedTrees, HoldEveryNodeAndLeafOnce) {
+  Random random(21);
+  const Forest forest = chance::random_forest(32, random);
+  EXPECT_EQ(forest.packed.nodes.size(), forest.roots.size() + 2 * forest.nodes.size());
+  EXPECT_EQ(forest.packed.leaf_of.size(), forest.packed.nodes.size());
+  std::vector<int> seen(forest.packed.nodes.size() - forest.nodes.size());
+  for (const std::int32_t leaf : forest.packed.leaf_of) {
+    if (leaf >= 0) ++seen.at(static_cast<std::size_t>(leaf));
+  }
+  EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
+}
+
+TEST(PackedTrees, StepsThatAreTooLongDoNotFit) {
+  const auto is_packed = [](std::int8_t step) {
+    return !one_node({step, 0, 0, 0, 0, 0, 0}).packed.nodes.empty() &&
+           !one_node({0, 0, 0, step, 0, 0, 0}).packed.nodes.empty();
+  };
+  EXPECT_TRUE(is_packed(15));
+  EXPECT_TRUE(is_packed(-15));
+  EXPECT_FALSE(is_packed(16));
+  EXPECT_FALSE(is_packed(-16));
+  EXPECT_FALSE(is_packed(-128));
+}
+
+TEST(PackedTrees, NodesWithSeveralParentsDoNotFit) {
+  Forest forest;
+  forest.roots = {0};
+  constexpr std::int32_t kNodes = 60;  // 2^60 paths
+  for (std::int32_t n = 1; n < kNodes; ++n) forest.nodes.push_back({{}, n, n});
+  forest.nodes.push_back({{}, -1, -2});
+  pack_trees(forest);
+  EXPECT_TRUE(forest.packed.nodes.empty());
+}
+
+TEST(PackedTrees, AreMadeAnew) {
+  Random random(22);
+  Forest forest = chance::random_forest(32, random);
+  const std::size_t before = forest.packed.nodes.size();
+  pack_trees(forest);
+  EXPECT_EQ(forest.packed.nodes.size(), before);
+  forest.nodes[0].test.dx1 = 100;
+  pack_trees(forest);
+  EXPECT_TRUE(forest.packed.nodes.empty());
+}
+
+TEST(PackedTrees, NodesAndPixelsAreFetched) {
+  const std::vector<PackedNode> nodes = {{1, 2}, {3, 4}, {5, 6}};
+  const std::vector<std::uint8_t> pixels = {10, 20, 30};
+  const std::vector<std::int32_t> places = {2, 0, 2};
+  std::vector<PackedNode> fetched(3);
+  fetch_nodes(nodes.data(), places.data(), places.size(), fetched.data());
+  EXPECT_EQ(fetched[0].test, 5U);
+  EXPECT_EQ(fetched[1].way, 2);
+  const std::vector<std::int32_t> first = {1, -1, 0};
+  const std::vector<std::int32_t> second = {0, 0, 1};
+  std::vector<std::uint8_t> first_values(3);
+  std::vector<std::uint8_t> second_values(3);
+  fetch_pixels(pixels.data() + 1, first.data(), second.data(), 3, first_values.data(), second_values.data());
+  EXPECT_EQ(first_values, (std::vector<std::uint8_t>{30, 10, 20}));
+  EXPECT_EQ(second_values, (std::vector<std::uint8_t>{20, 20, 30}));
+}
+
+}  // namespace
+}  // namespace houghstream
