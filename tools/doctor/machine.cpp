@@ -43,8 +43,9 @@ bool runs(const fs::path& program, const std::string& argument) {
 }  // namespace
 
 std::string Machine::read(const std::string& path) const {
-  std::ifstream in(root / path);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::ostringstream text;
+  text << std::ifstream(root / path).rdbuf();  // what fails while it is read, as files of /sys may, does not throw
+  return text.str();
 }
 
 std::optional<fs::path> Machine::find_program(const std::string& name) const {

@@ -48,8 +48,8 @@ Picture noise(cv::Size size, std::uint32_t families, Random& random) {
     picture.base.emplace_back();
     if (block.family < kHonv) continue;
     for (int i = 0; i < block.count; ++i) {
-      cv::Mat plane(size, CV_8UC1);
-      for (auto it = plane.begin<std::uint8_t>(); it != plane.end<std::uint8_t>(); ++it) *it = byte(random);
+      cv::Mat_<std::uint8_t> plane(size);
+      for (std::uint8_t& value : plane) value = byte(random);
       picture.base.back().push_back(plane);
     }
   }

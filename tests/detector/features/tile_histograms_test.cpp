@@ -87,11 +87,11 @@ TEST(TileHistograms, TheWindowReachesTwoPixelsAndKeepsTheMean) {
 TEST(TileHistograms, AreThoseOfTheReadableFeatures) {
   Random random(3);
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(45, 7), cv::Size(kLongestPart, 4)}) {
-    cv::Mat dx(size, CV_32FC1);
-    cv::Mat dy(size, CV_32FC1);
-    for (cv::Mat* plane : {&dx, &dy}) {
-      for (auto it = plane->begin<float>(); it != plane->end<float>(); ++it) {
-        *it =
+    cv::Mat_<float> dx(size);
+    cv::Mat_<float> dy(size);
+    for (cv::Mat_<float>* plane : {&dx, &dy}) {
+      for (float& value : *plane) {
+        value =
             random.uniform() < 0.2 ? 0.0F : static_cast<float>(random.uniform(-1.0, 1.0) * random.uniform(0.0, 120.0));
       }
     }

@@ -40,16 +40,6 @@ double error_px(const RgbdFrame& frame) {
   return disc_error_px(frame.colour, depth_to_millimetres(frame.depth));
 }
 
-TEST(ListCameras, NamesSerialNumbersAndModes) {
-  const VirtualCamera camera("list", "serial AA01\nserial AA02\nsize 640x480\nsize 320x240\n");
-  const std::vector<CameraDescription> cameras = list_cameras(true);
-  ASSERT_EQ(cameras.size(), 2U) << "is LD_LIBRARY_PATH the build folder's virtual_camera?";
-  EXPECT_EQ(cameras[1].uri, "houghstream-virtual://2");
-  EXPECT_EQ(cameras[1].serial, "AA02");
-  EXPECT_EQ(modes_text(cameras[1].modes), "640x480@30, 320x240@30");
-  EXPECT_EQ(list_cameras(false)[1].serial, "") << "not opened";
-}
-
 TEST(CameraSource, ACameraThatIsNotThereOrLacksTheModeIsAnError) {
   const VirtualCamera camera("mode", "serial AA01\nsize 640x480\nsize 320x240\n");
   CameraOptions options;

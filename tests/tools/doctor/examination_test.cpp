@@ -173,19 +173,5 @@ TEST(Examination, ABusWithoutDatagramsNeedsNoRouteAndNoBuffers) {
   EXPECT_EQ(count_wrong(examine(machine.machine, machine.settings)), 1);
 }
 
-TEST(Examination, TheWholeBusIsTested) {
-  // On a bus of its own in this process, with the probes of this machine.
-  Machine machine = this_machine();
-  const SelfTest test = machine.self_test("memq://", 1'536'000);
-  EXPECT_EQ(test.sent, 5);
-  EXPECT_EQ(test.received, 5);
-  EXPECT_EQ(test.error, "");
-  EXPECT_NE(machine.self_test("file:///nowhere", 10).error, "");
-  EXPECT_TRUE(machine.runs("/bin/true", "-version"));
-  EXPECT_FALSE(machine.runs("/bin/false", "-version"));
-  EXPECT_FALSE(machine.runs("/nowhere/java", "-version"));
-  EXPECT_NE(machine.load_error("/etc/hostname"), "");
-}
-
 }  // namespace
 }  // namespace houghstream

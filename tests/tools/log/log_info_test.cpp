@@ -61,14 +61,5 @@ TEST(LogInfo, AFrameThatIsDamagedIsCounted) {
       << to_text(info);
 }
 
-TEST(MessageTypes, AreKnownByFingerprint) {
-  EXPECT_EQ(type_name(status_t::getHash()), "status_t");
-  EXPECT_EQ(type_name(0), "no message");
-  EXPECT_EQ(type_name(0x1234), "?? 0000000000001234");
-  EXPECT_TRUE(is_frame_type(drake_image_array_t::getHash()));
-  EXPECT_FALSE(is_frame_type(status_t::getHash()));
-  EXPECT_EQ(fingerprint_of({nullptr, 0}), 0);
-}
-
 }  // namespace
 }  // namespace houghstream

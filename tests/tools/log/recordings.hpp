@@ -145,4 +145,18 @@ inline images_t foreign_images(const RgbdFrame& frame) {
   return message;
 }
 
+/// A log with the first frames as messages on the channel, and after each of them one that is none on another channel.
+template <typename Message>
+std::string log_of(const std::filesystem::path& folder, int frames, const std::string& channel,
+                   Message (*make)(const RgbdFrame&)) {
+  const std::filesystem::path file = folder / "original.lcmlog";
+  TestLog log(file);
+  for (int i = 0; i < frames; ++i) {
+    log.add(channel, make(numbered_frame(i)));
+    log.add_bytes("OTHER", {1, 2, 3});
+  }
+  log.close();
+  return file.string();
+}
+
 }  // namespace houghstream

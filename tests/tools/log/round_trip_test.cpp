@@ -48,34 +48,22 @@ void expect_round_trip(const std::string& source, const fs::path& folder, bool l
   }
 }
 
-template <typename Message>
-std::string log_of(const fs::path& folder, const std::string& channel, Message (*make)(const RgbdFrame&)) {
-  const fs::path file = folder / "original.lcmlog";
-  TestLog log(file);
-  for (int i = 0; i < kFrames; ++i) {
-    log.add(channel, make(numbered_frame(i)));
-    log.add_bytes("OTHER", {1, 2, 3});
-  }
-  log.close();
-  return file.string();
-}
-
 TEST(RoundTrip, BotCoreLog) {
   const fs::path folder = fresh_folder("trip_bot_core");
-  expect_round_trip(log_of(folder, "OPENNI_FRAME", foreign_images), folder, true);
+  expect_round_trip(log_of(folder, kFrames, "OPENNI_FRAME", foreign_images), folder, true);
 }
 
 TEST(RoundTrip, KinectLog) {
   const fs::path folder = fresh_folder("trip_kinect");
   const auto raw = +[](const RgbdFrame& frame) { return kinect_message(frame, false); };
-  expect_round_trip(log_of(folder, "KINECT_FRAME", raw), folder, true);
+  expect_round_trip(log_of(folder, kFrames, "KINECT_FRAME", raw), folder, true);
   const auto compressed = +[](const RgbdFrame& frame) { return kinect_message(frame, true); };
-  expect_round_trip(log_of(folder, "KINECT_FRAME", compressed), folder, false);
+  expect_round_trip(log_of(folder, kFrames, "KINECT_FRAME", compressed), folder, false);
 }
 
 TEST(RoundTrip, DrakeLog) {
   const fs::path folder = fresh_folder("trip_drake");
-  expect_round_trip(log_of(folder, "DRAKE_RGBD_CAMERA_IMAGES", drake_message), folder, true);
+  expect_round_trip(log_of(folder, kFrames, "DRAKE_RGBD_CAMERA_IMAGES", drake_message), folder, true);
 }
 
 TEST(RoundTrip, Klg) {
@@ -98,67 +86,9 @@ TEST(RoundTrip, BopFolder) {
 
 TEST(RoundTrip, UwFolderIsWhatPngExportWrites) {
   const fs::path folder = fresh_folder("trip_uw");
-  expect_round_trip(log_of(folder, "OPENNI_FRAME", foreign_images), folder, true);
+  expect_round_trip(log_of(folder, kFrames, "OPENNI_FRAME", foreign_images), folder, true);
   fs::rename(folder / "png", folder / "original");
   expect_round_trip("uw:" + (folder / "original").string() + ",64x48,57.6,57.6,32,24", folder, true);
-}
-
-TEST(Import, KeepsTimesAndAddsWhatIsMissing) {
-  const fs::path folder = fresh_folder("import_keeps");
-  LossAccount losses;
-  RecordingSettings settings;
-  settings.source = log_of(folder, "OPENNI_FRAME", foreign_images);
-  settings.camera = kCamera;
-  import_log(settings, "MINE", folder / "out", losses);
-  LogReader log(folder / "out");
-  for (int i = 0; i < kFrames; ++i) {
-    const auto event = log.next();
-    ASSERT_TRUE(event.has_value());
-    EXPECT_EQ(event->channel, "MINE");
-    EXPECT_EQ(event->timestamp, 1'500'000'000'000'000 + 33'000 * 2 * i);
-    const auto message = decode_message<images_t>({event->data.data(), event->data.size()});
-    EXPECT_EQ(message.utime, numbered_frame(i).utime);
-    EXPECT_EQ(camera_of(message), kCamera);
-    EXPECT_EQ(sequence_of(message), i);
-  }
-}
-
-TEST(Import, KeepsWhatIsGoodAndSaysWhatIsLost) {
-  const fs::path folder = fresh_folder("import_damaged");
-  TestLog log(folder / "log");
-  for (int i = 0; i < 4; ++i) {
-    images_t message = foreign_images(numbered_frame(i));
-    if (i == 1) message.image_types[1] = images_t::DISPARITY;
-    log.add("OPENNI_FRAME", message);
-  }
-  log.close();
-  fs::resize_file(folder / "log", fs::file_size(folder / "log") - 100);
-  LossAccount losses;
-  RecordingSettings settings;
-  settings.source = (folder / "log").string();
-  EXPECT_EQ(import_log(settings, "FRAMES", folder / "out", losses), 2);
-  EXPECT_EQ(losses.damaged_places(), 1);
-  EXPECT_EQ(losses.refused(), 1);
-  EXPECT_NE(losses.line().find("no DEPTH_MM image"), std::string::npos) << losses.line();
-  // Without a camera such frames are no BOP scene, but they are pictures.
-  EXPECT_THROW(export_bop(settings, folder / "bop", losses), InputError);
-  EXPECT_EQ(export_pngs(settings, folder / "png", losses), 2);
-}
-
-TEST(Import, RefusesWhatMakesNoSense) {
-  const fs::path folder = fresh_folder("import_refused");
-  LossAccount losses;
-  RecordingSettings settings;
-  settings.source = log_of(folder, "OPENNI_FRAME", foreign_images);
-  EXPECT_THROW(import_log(settings, "FRAMES", settings.source, losses), InputError) << "the log itself";
-  settings.channel = "NOTHING";
-  EXPECT_THROW(import_log(settings, "FRAMES", folder / "out", losses), InputError);
-  EXPECT_FALSE(fs::exists(folder / "out")) << "nothing is written where there are no frames";
-  settings.channel.clear();
-  settings.camera = Camera{640, 480, 525, 525, 319.5, 239.5};
-  EXPECT_THROW(import_log(settings, "FRAMES", folder / "out", losses), InputError) << "a camera of another size";
-  settings.source = "fax:" + folder.string();
-  EXPECT_THROW(import_log(settings, "FRAMES", folder / "out", losses), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,96 @@
+#include "drivers/virtual_camera/virtual_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "tests/drivers/virtual_camera/taken_images.hpp"
+
+namespace houghstream {
+namespace {
+
+const OniVideoMode kLarge{ONI_PIXEL_FORMAT_DEPTH_1_MM, 64, 48, 30};
+const OniVideoMode kSmall{ONI_PIXEL_FORMAT_DEPTH_1_MM, 32, 24, 30};
+
+/// A stream of a device that has none itself.
+class VirtualStreamTest : public ::testing::Test {
+ protected:
+  template <typename T>
+  OniStatus set(int property, const T& value) {
+    return stream.setProperty(property, &value, sizeof(value));
+  }
+  template <typename T>
+  T get(int property) {
+    T value{};
+    int size = sizeof(value);
+    EXPECT_EQ(stream.getProperty(property, &value, &size), ONI_STATUS_OK) << property;
+    return value;
+  }
+
+  const Camera camera{64, 48, 50.0, 60.0, 31.5, 23.5};
+  const PicturesBySize pictures{{64, make_test_pattern(camera)}};
+  const ScriptWatch script{std::filesystem::path()};
+  VirtualDevice device{script, pictures, "TEST"};
+  VirtualStream stream{device, {ONI_SENSOR_DEPTH, {kLarge, kSmall}, camera}};
+  TakenImages taken{stream};
+  const cv::Mat picture = pictures.at(64).pictures[3].depth_mm;
+};
+
+TEST_F(VirtualStreamTest, PicturesAreSentWhileItRunsMirroredUnlessAskedOtherwise) {
+  stream.send(picture, 1, 100);
+  stream.start();
+  stream.send(picture, 2, 200);
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_MIRRORING, OniBool{FALSE}), ONI_STATUS_OK);
+  stream.send(picture, 3, 300);
+  stream.stop();
+  stream.send(picture, 4, 400);
+  const auto images = taken.wait(2);
+  ASSERT_EQ(images.size(), 2U);
+  cv::Mat mirrored;
+  cv::flip(picture, mirrored, 1);
+  ASSERT_GT(cv::norm(mirrored, picture, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(images[0].picture, mirrored, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(images[1].picture, picture, cv::NORM_INF), 0.0);
+  EXPECT_EQ(images[1].frame.frameIndex, 3);
+  EXPECT_EQ(images[1].frame.timestamp, 300U);
+  EXPECT_EQ(images[1].frame.dataSize, 64 * 48 * 2);
+  EXPECT_EQ(images[1].frame.stride, 64 * 2);
+  EXPECT_EQ(images[1].frame.sensorType, ONI_SENSOR_DEPTH);
+}
+
+TEST_F(VirtualStreamTest, OnlyItsModesCanBeSetAndOtherSizesAreNotSent) {
+  OniVideoMode unknown = kSmall;
+  unknown.fps = 60;
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, unknown), ONI_STATUS_BAD_PARAMETER);
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, 7), ONI_STATUS_BAD_PARAMETER);
+  EXPECT_EQ(stream.mode().resolutionX, 64);
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, kSmall), ONI_STATUS_OK);
+  EXPECT_EQ(get<OniVideoMode>(ONI_STREAM_PROPERTY_VIDEO_MODE).resolutionX, 32);
+  EXPECT_EQ(get<int>(ONI_STREAM_PROPERTY_STRIDE), 64);
+  stream.start();
+  stream.send(picture, 1, 100);
+  stream.send(cv::Mat(24, 32, CV_16UC1, cv::Scalar(5)), 2, 200);
+  const auto images = taken.wait(1);
+  ASSERT_EQ(images.size(), 1U);
+  EXPECT_EQ(images[0].frame.frameIndex, 2);
+}
+
+TEST_F(VirtualStreamTest, FieldsOfViewAreThoseOfTheFirstModeAndColoursSettingsAreNotDepths) {
+  EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_HORIZONTAL_FOV), 2.0 * std::atan(32.0 / 50.0), 1e-6);
+  EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_VERTICAL_FOV), 2.0 * std::atan(24.0 / 60.0), 1e-6);
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_GAIN, 50), ONI_STATUS_NOT_SUPPORTED);
+  EXPECT_FALSE(stream.isPropertySupported(ONI_STREAM_PROPERTY_AUTO_EXPOSURE));
+  EXPECT_GT(get<int>(ONI_STREAM_PROPERTY_MAX_VALUE), kPatternWallMm);
+  VirtualStream colour(device, {ONI_SENSOR_COLOR, {{ONI_PIXEL_FORMAT_RGB888, 64, 48, 30}}, camera});
+  const int gain = 50;
+  EXPECT_EQ(colour.setProperty(ONI_STREAM_PROPERTY_GAIN, &gain, sizeof(gain)), ONI_STATUS_OK);
+  int told = 0;
+  int size = sizeof(told);
+  EXPECT_EQ(colour.getProperty(ONI_STREAM_PROPERTY_GAIN, &told, &size), ONI_STATUS_OK);
+  EXPECT_EQ(told, gain);
+  EXPECT_FALSE(colour.isPropertySupported(ONI_STREAM_PROPERTY_MAX_VALUE));
+}
+
+}  // namespace
+}  // namespace houghstream

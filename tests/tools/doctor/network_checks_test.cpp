@@ -1,0 +1,80 @@
+#include "tools/doctor/network_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/receive_buffer.hpp"
+#include "tests/tools/doctor/healthy_machine.hpp"
+
+namespace houghstream {
+namespace {
+
+using Level = Finding::Level;
+
+const BusSettings kBus{"udpm://239.255.76.67:7667?ttl=0", "FRAMES", 1'500'000};
+const std::string kColumns = "Iface\tDestination\tGateway\tFlags\tRefCnt\tUse\tMetric\tMask\tMTU\tWindow\tIRTT\n";
+
+/// A line of /proc/net/route.
+std::string route(const std::string& name, const std::string& destination, int metric, const std::string& mask) {
+  return name + "\t" + destination + "\t00000000\t0001\t0\t0\t" + std::to_string(metric) + "\t" + mask + "\t0\t0\t0\n";
+}
+
+std::string way_with(const std::string& routes) {
+  const HealthyMachine healthy("network_routes");
+  plant(healthy.machine.root / "proc/net/route", kColumns + routes);
+  return check_network(healthy.machine, kBus).front().what;
+}
+
+TEST(NetworkChecks, TheNarrowestRouteCountsThenTheSmallestMetric) {
+  const std::string anywhere = route("any", "00000000", 0, "00000000");
+  const std::string wide = route("wide", "000000E0", 5, "000000F0");
+  const std::string narrow = route("narrow", "434CFFEF", 900, "FFFFFFFF");
+  EXPECT_EQ(way_with(anywhere + route("away", "000200C0", 0, "00FFFFFF")), "239.255.76.67 goes through any");
+  EXPECT_EQ(way_with(wide + anywhere), "239.255.76.67 goes through wide");
+  EXPECT_EQ(way_with(narrow + wide + anywhere), "239.255.76.67 goes through narrow");
+  EXPECT_EQ(way_with(wide + route("near", "000000E0", 4, "000000F0")), "239.255.76.67 goes through near");
+  EXPECT_EQ(way_with("damaged\n"), "no route to 239.255.76.67: LCM cannot send");
+}
+
+TEST(NetworkChecks, WithoutARouteTheBusIsLeftAlone) {
+  HealthyMachine healthy("network_no_route");
+  plant(healthy.machine.root / "proc/net/route", kColumns);
+  int uses = 0;
+  healthy.machine.heard_bytes = [&](const std::string&, const std::string&) {
+    return static_cast<std::size_t>(++uses);
+  };
+  healthy.machine.self_test = [&](const std::string&, std::size_t) { return SelfTest{++uses, 0, ""}; };
+  const Findings findings = check_network(healthy.machine, kBus);
+  EXPECT_EQ(uses, 0);
+  ASSERT_EQ(findings.size(), 4U);
+  EXPECT_EQ(findings.front().level, Level::kWrong);
+  EXPECT_EQ(findings.back().level, Level::kNote);
+}
+
+TEST(NetworkChecks, BuffersThatAreJustLargeEnoughForTheFramesHeardAreFine) {
+  HealthyMachine healthy("network_buffers");
+  constexpr std::size_t kHeard = 2'000'000;
+  const std::int64_t needed = needed_receive_buffer(kHeard);
+  std::string channel;
+  healthy.machine.heard_bytes = [&](const std::string&, const std::string& name) {
+    channel = name;
+    return kHeard;
+  };
+  std::size_t tested = 0;
+  healthy.machine.self_test = [&](const std::string&, std::size_t bytes) {
+    tested = bytes;
+    return SelfTest{5, 5, ""};
+  };
+  for (const std::int64_t missing : {0, 1}) {
+    healthy.machine.granted_receive_buffer = [&](std::int64_t) { return needed - missing; };
+    plant(healthy.machine.root / "proc/sys/net/core/rmem_default", std::to_string(needed - missing));
+    const Findings findings = check_network(healthy.machine, kBus);
+    ASSERT_EQ(findings.size(), 4U);
+    EXPECT_EQ(findings[1].level, missing == 0 ? Level::kOk : Level::kWrong) << findings[1].what;
+    EXPECT_EQ(findings[2].level, missing == 0 ? Level::kOk : Level::kNote) << findings[2].what;
+  }
+  EXPECT_EQ(channel, "FRAMES");
+  EXPECT_EQ(tested, kHeard);
+}
+
+}  // namespace
+}  // namespace houghstream

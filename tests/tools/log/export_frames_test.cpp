@@ -1,0 +1,56 @@
+#include "tools/log/export_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include "drivers/bop_dataset.hpp"
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+#include "tests/tools/log/recordings.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+RecordingSettings two_frames(const fs::path& folder) {
+  RecordingSettings settings;
+  settings.source = log_of(folder, 2, "FRAMES", foreign_images);
+  return settings;
+}
+
+TEST(ExportFrames, PngsHaveAListOfTheirTimesAndNeedNoCamera) {
+  const fs::path folder = fresh_folder("export_list");
+  LossAccount losses;
+  EXPECT_EQ(export_pngs(two_frames(folder), folder / "deep/png", losses), 2);
+  EXPECT_EQ(read_text(folder / "deep/png/frames.csv"),
+            "frame,utime,timestamp\n"
+            "000000,1500000000000000,1500000000000000\n"
+            "000001,1500000000033000,1500000000066000\n");
+  EXPECT_EQ(losses.line(), "");
+}
+
+TEST(ExportFrames, ASceneNeedsACameraForEachFrame) {
+  const fs::path folder = fresh_folder("export_camera");
+  RecordingSettings settings = two_frames(folder);
+  LossAccount without;
+  EXPECT_THROW(export_bop(settings, folder / "none", without), InputError);
+  EXPECT_EQ(without.refused(), 2);
+  settings.camera = make_test_frame(0).camera;
+  LossAccount with;
+  EXPECT_EQ(export_bop(settings, folder / "bop", with), 2);
+  EXPECT_EQ(with.refused(), 0);
+  const BopScene scene(folder / "bop");
+  ASSERT_EQ(scene.images().size(), 2U);
+  EXPECT_EQ(scene.read_frame(1).camera, *settings.camera);
+}
+
+TEST(ExportFrames, AFolderThatCannotBeWrittenIsAnError) {
+  const fs::path folder = fresh_folder("export_refused");
+  write_text(folder / "file", "");
+  LossAccount losses;
+  EXPECT_THROW(export_pngs(two_frames(folder), folder / "file/png", losses), InputError);
+  EXPECT_THROW(export_bop(two_frames(folder), folder / "file/bop", losses), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,43 @@
+#include "tools/log/message_types.hpp"
+
+#include <gtest/gtest.h>
+
+#include <houghstream/status_t.hpp>
+
+#include "tests/tools/log/recordings.hpp"
+
+namespace houghstream {
+namespace {
+
+TEST(MessageTypes, AreKnownByFingerprint) {
+  EXPECT_EQ(type_name(status_t::getHash()), "status_t");
+  EXPECT_EQ(type_name(images_t::getHash()), "images_t (bot_core)");
+  EXPECT_EQ(type_name(0), "no message");
+  EXPECT_EQ(type_name(0x1234), "?? 0000000000001234");
+  EXPECT_EQ(type_name(-1), "?? ffffffffffffffff");
+}
+
+TEST(MessageTypes, FramesAreThreeOfThem) {
+  EXPECT_TRUE(is_frame_type(images_t::getHash()));
+  EXPECT_TRUE(is_frame_type(kinect_frame_msg_t::getHash()));
+  EXPECT_TRUE(is_frame_type(drake_image_array_t::getHash()));
+  EXPECT_FALSE(is_frame_type(status_t::getHash()));
+  EXPECT_FALSE(is_frame_type(0));
+}
+
+TEST(MessageTypes, AFingerprintIsTheFirstEightBytes) {
+  std::vector<std::uint8_t> bytes = encode_message(foreign_images(numbered_frame(0)));
+  EXPECT_EQ(fingerprint_of({bytes.data(), bytes.size()}), images_t::getHash());
+  EXPECT_EQ(fingerprint_of({bytes.data(), 8}), images_t::getHash());
+  EXPECT_EQ(fingerprint_of({bytes.data(), 7}), 0);
+  EXPECT_EQ(fingerprint_of({nullptr, 0}), 0);
+}
+
+// Package, struct name and constants do not enter a fingerprint; these are the ones of bot_core.
+TEST(MessageTypes, BotCoreHasOurFingerprints) {
+  EXPECT_EQ(static_cast<std::uint64_t>(images_t::getHash()), 0x20ba4f05e8f5e33aU);
+  EXPECT_EQ(static_cast<std::uint64_t>(image_t::getHash()), 0x14739ffe13d5f5f0U);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,100 @@
+#include "tools/log/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/checks.hpp"
+#include "tests/drivers/test_files.hpp"
+#include "tests/tools/log/recordings.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The pixel by which numbered frames differ, frame by frame.
+std::vector<int> numbers_in(const RecordingSettings& settings, LossAccount& losses) {
+  std::vector<int> numbers;
+  const NextFrame next = open_recording(settings, losses);
+  while (const std::optional<RecordedFrame> frame = next()) {
+    numbers.push_back(images_from_message(frame->message).colour.at<cv::Vec3b>(7, 9)[0]);
+  }
+  EXPECT_FALSE(next().has_value()) << "the end stays the end";
+  return numbers;
+}
+
+TEST(Recording, TheFirstChannelWithFramesIsReadUnlessOneIsNamed) {
+  const fs::path folder = fresh_folder("recording_channels");
+  TestLog log(folder / "log");
+  log.add_bytes("OTHER", {1, 2, 3});
+  for (int i = 0; i < 4; ++i) log.add(i % 2 == 0 ? "LEFT" : "RIGHT", foreign_images(numbered_frame(i)));
+  log.close();
+  LossAccount losses;
+  RecordingSettings settings;
+  settings.source = (folder / "log").string();
+  EXPECT_EQ(numbers_in(settings, losses), (std::vector<int>{0, 2}));
+  settings.channel = "RIGHT";
+  EXPECT_EQ(numbers_in(settings, losses), (std::vector<int>{1, 3}));
+  EXPECT_EQ(losses.line(), "");
+  settings.channel = "NOTHING";
+  EXPECT_THROW(numbers_in(settings, losses), InputError);
+}
+
+TEST(Recording, FramesKeepTheirOwnCameraAndTimeAndAreCounted) {
+  const fs::path folder = fresh_folder("recording_camera");
+  TestLog log(folder / "log");
+  WireFormat raw;
+  raw.jpeg = false;
+  log.add("FRAMES", to_message(numbered_frame(0), raw, 70));
+  log.add("FRAMES", foreign_images(numbered_frame(1)));
+  log.close();
+  RecordingSettings settings;
+  settings.source = (folder / "log").string();
+  settings.camera = Camera{64, 48, 99.0, 99.0, 31.0, 23.0};
+  LossAccount losses;
+  const NextFrame next = open_recording(settings, losses);
+  const std::optional<RecordedFrame> own = next();
+  const std::optional<RecordedFrame> given = next();
+  ASSERT_TRUE(own && given);
+  EXPECT_EQ(camera_of(own->message), numbered_frame(0).camera);
+  EXPECT_EQ(sequence_of(own->message), 70);
+  EXPECT_EQ(camera_of(given->message), settings.camera);
+  EXPECT_EQ(sequence_of(given->message), 1);
+  EXPECT_EQ(given->timestamp, 1'500'000'000'033'000);
+}
+
+TEST(Recording, AKlgFileIsKnownByItsNameOrByItsKindAndEndsWhereItIsCut) {
+  const fs::path folder = fresh_folder("recording_klg");
+  KlgWriter writer(3);
+  for (int i = 0; i < 3; ++i) writer.add(numbered_frame(i), false);
+  writer.save(folder / "a.klg");
+  fs::copy_file(folder / "a.klg", folder / "plain");
+  RecordingSettings settings;
+  settings.camera = make_test_frame(0).camera;
+  for (const std::string& source : {(folder / "a.klg").string(), "klg:" + (folder / "plain").string()}) {
+    settings.source = source;
+    LossAccount losses;
+    EXPECT_EQ(numbers_in(settings, losses), (std::vector<int>{0, 1, 2})) << source;
+    EXPECT_EQ(losses.line(), "") << source;
+  }
+  fs::resize_file(folder / "a.klg", fs::file_size(folder / "a.klg") - 1);
+  settings.source = (folder / "a.klg").string();
+  LossAccount losses;
+  EXPECT_EQ(numbers_in(settings, losses), (std::vector<int>{0, 1}));
+  EXPECT_EQ(losses.damaged_places(), 1);
+}
+
+TEST(Recording, WhatCannotBeOpenedOrMakesNoSenseIsRefused) {
+  const fs::path folder = fresh_folder("recording_refused");
+  LossAccount losses;
+  RecordingSettings settings;
+  for (const std::string source : {"nothing", "nothing.klg", "klg:nothing", "bop:nothing"}) {
+    settings.source = source;
+    EXPECT_THROW(numbers_in(settings, losses), InputError) << source;
+  }
+  settings.source = log_of(folder, 1, "FRAMES", foreign_images);
+  settings.camera = Camera{64, 48, -1.0, 99.0, 31.0, 23.0};
+  EXPECT_THROW(open_recording(settings, losses), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream
