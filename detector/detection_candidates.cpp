@@ -35,13 +35,26 @@ std::vector<ComparedView> compare_views(const Forest& forest, const Hypothesis& 
   return compared;
 }
 
-/// The view that agrees best with the frame; ties go to the first.
-ViewFit best_fit(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame,
+/// A hypothesis and whose it is.
+struct ClassHypothesis {
+  std::size_t class_index = 0;
+  float spread = 1.0F;  // attitude_spread of the class
+  Hypothesis hypothesis;
+};
+
+/// The view that agrees best with the frame, aligned with it; ties go to the first. What is hopeless where it stands is
+/// left there: most maxima are of that kind, and aligning takes longer than all else about them.
+ViewFit best_fit(const Forest& forest, const ClassHypothesis& found, const LabFrame& frame, float mass_share,
                  const std::vector<ComparedView>& compared) {
+  constexpr float kHopeless = 0.05F;  // score
   if (compared.empty()) return {};
   const auto worse = [](const ComparedView& a, const ComparedView& b) { return agreement(a.fit) < agreement(b.fit); };
   const ComparedView& best = *std::max_element(compared.begin(), compared.end(), worse);
-  return align_view(forest.views[best.view], hypothesis.centre_camera, best.fit, frame);
+  Evidence evidence;
+  evidence.mass_share = mass_share;
+  evidence.fit = best.fit;
+  if (score(forest.classes[found.class_index].score_model, evidence) < kHopeless) return best.fit;
+  return align_view(forest.views[best.view], found.hypothesis.centre_camera, best.fit, frame);
 }
 
 /// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was
@@ -67,13 +80,6 @@ cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const 
           0.5F * (voted.height + inside.height)};
 }
 
-/// A hypothesis and whose it is.
-struct ClassHypothesis {
-  std::size_t class_index = 0;
-  float spread = 1.0F;  // attitude_spread of the class
-  Hypothesis hypothesis;
-};
-
 Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const SeenPatches& seen,
                        const LabFrame& frame, int max_rotations, const std::vector<std::uint32_t>& forgotten) {
   const ObjectClass& object = forest.classes[found.class_index];
@@ -88,7 +94,7 @@ Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const
   if (forest.scoring == Scoring::kEvidence) {
     ViewFit& fit = candidate.evidence.fit;
     compared = compare_views(forest, hypothesis, frame, spread, forgotten);
-    fit = best_fit(forest, hypothesis, frame, compared);
+    fit = best_fit(forest, found, frame, candidate.evidence.mass_share, compared);
     detection.score = score(object.score_model, candidate.evidence);
     detection.box_px = visible_box(detection.box_px, fit.visible_box_px, frame.frame.camera);
   }
