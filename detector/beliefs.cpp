@@ -85,8 +85,10 @@ void PatchBeliefs::note(const RunLeaves& seen) {
 
 float least_share(const DetectionSettings& settings, std::size_t classes) {
   constexpr std::size_t kUsual = 4;
+  // The fourth root gains twenty objects 0.032 AUC and takes 1.45 times as long as four objects do; the square root
+  // would gain 0.045 and take 1.75 times as long (development scenes).
   return settings.min_class_share *
-         std::sqrt(static_cast<float>(kUsual) / static_cast<float>(std::max(classes, kUsual)));
+         std::sqrt(std::sqrt(static_cast<float>(kUsual) / static_cast<float>(std::max(classes, kUsual))));
 }
 
 void classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,

@@ -52,7 +52,7 @@ class PatchBeliefs {
 };
 
 /// Of a patch's leaves, from which it votes for a class: min_class_share, and less where more classes than four are
-/// taught, of which each has a thinner share.
+/// taught, of which each has a thinner share: n classes lower it by the fourth root of n / 4.
 float least_share(const DetectionSettings& settings, std::size_t classes);
 
 /// What the patches believe, by the engine that the settings name. `features`: one image per level. What `beliefs` held

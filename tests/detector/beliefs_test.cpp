@@ -100,7 +100,7 @@ TEST(Beliefs, OfManyClassesLessIsEnough) {
   settings.min_class_share = 0.1F;
   EXPECT_FLOAT_EQ(least_share(settings, 1), 0.1F);
   EXPECT_FLOAT_EQ(least_share(settings, 4), 0.1F);
-  EXPECT_FLOAT_EQ(least_share(settings, 16), 0.05F);
+  EXPECT_FLOAT_EQ(least_share(settings, 64), 0.05F);
 }
 
 TEST(Beliefs, NobodyBelievesBeforeARunIsNoted) {
