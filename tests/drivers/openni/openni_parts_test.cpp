@@ -1,5 +1,7 @@
 #include "drivers/openni/openni_parts.hpp"
 
+#include <opencv2/imgproc.hpp>
+
 #include "pipeline/checks.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 
@@ -56,8 +58,10 @@ TEST(OpenniParts, ADeviceTellsItsModesSerialNumberAndImages) {
     EXPECT_EQ(image->sensor, sensor);
     EXPECT_EQ(image->image.size(), cv::Size(320, 240));
     EXPECT_EQ(image->image.type(), sensor == Sensor::kDepth ? CV_16UC1 : CV_8UC3);
-    const cv::Point2d disc = sensor == Sensor::kDepth ? disc_in_depth_mm(image->image) : disc_in_colour(image->image);
-    EXPECT_GT(disc.x, 0.0) << "BGR and millimetres: the disc is seen";
+    cv::Mat bgr;
+    if (sensor == Sensor::kColour) cv::cvtColor(image->image, bgr, cv::COLOR_RGB2BGR);
+    const cv::Point2d disc = sensor == Sensor::kDepth ? disc_in_depth_mm(image->image) : disc_in_colour(bgr);
+    EXPECT_GT(disc.x, 0.0) << "RGB and millimetres: the disc is seen";
     stream.stop();
     stream.destroy();
   }
