@@ -77,9 +77,8 @@ struct PackedNode {
 
 /// The trees once more, node for node in eight bytes each; the right child follows the left one.
 struct PackedTrees {
-  std::vector<PackedNode> nodes;      ///< and leaves, each of which leads to itself; empty = see pack_trees
-  std::vector<std::int32_t> roots;    ///< per tree, into nodes
-  std::vector<std::int32_t> leaf_of;  ///< per node: its leaf's number; -1 for inner ones
+  std::vector<PackedNode> nodes;    ///< and leaves; empty = see pack_trees
+  std::vector<std::int32_t> roots;  ///< per tree, into nodes
 };
 
 /// A trained forest: flat arrays, trees one after another. Read-only once built.

@@ -44,15 +44,13 @@ bool append_packed(const Forest& forest, std::int32_t root, PackedTrees& trees) 
   const std::size_t first = trees.nodes.size();
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const std::int32_t source = sources[i];
-    if (source < 0) {  // a leaf leads to itself
-      trees.nodes.push_back({0, pack_way(first + i, kHighestLimit)});
-      trees.leaf_of.push_back(-1 - source);
+    if (source < 0) {
+      trees.nodes.push_back({packed::kLeaf, -1 - source});
       continue;
     }
     const TreeNode& node = forest.nodes[static_cast<std::size_t>(source)];
     if (!fits(node.test) || first + sources.size() + 2 > most) return false;
     trees.nodes.push_back(pack_node(node.test, first + sources.size()));
-    trees.leaf_of.push_back(-1);
     sources.push_back(node.left);
     sources.push_back(node.right);
   }

@@ -13,7 +13,8 @@ constexpr int kStepBits = 5;  ///< of dx1, dy1, dx2 and dy2 each, with sign
 constexpr int kPlaneShift = 20;
 constexpr std::uint32_t kAlone = 1U << 28;
 constexpr std::uint32_t kWraps = 1U << 29;
-constexpr int kLimitShift = 23;  ///< of the way: below lies the left child, above it the limit, with sign
+constexpr std::uint32_t kLeaf = 1U << 30;  ///< nothing else: the way is the leaf's number
+constexpr int kLimitShift = 23;            ///< of the way: below lies the left child, above it the limit, with sign
 }  // namespace packed
 
 /// Fills Forest::packed from roots and nodes; to be called whenever they have changed, before a frame is searched.

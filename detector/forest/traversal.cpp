@@ -23,18 +23,14 @@ struct Scratch {
   std::vector<std::uint8_t> planes;  // of a square
 };
 
-void walk_one_by_one(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
-  for (int p = 0; p < patches.count; ++p) {
-    leaves[p] = find_leaf(forest, tree, patches.image->patch(patches.x[p], patches.y[p], patches.scale[p]));
-  }
-}
-
-/// Leaves of patches of one level in the trees [first, last).
-void walk_trees(const Forest& forest, const WalkingPatches& walking, std::size_t first, std::size_t last,
-                std::int32_t* leaves) {
-  for (std::size_t tree = first; tree < last; ++tree, leaves += walking.count) {
-    const auto number = static_cast<int>(tree);
-    if (!walk_wide(forest, number, walking, leaves)) walk_one_by_one(forest, number, walking, leaves);
+/// Leaves of patches of one level in some of the trees.
+void walk_trees(const Forest& forest, const WalkingPatches& walking, TreeRange trees, std::int32_t* leaves) {
+  if (walk_wide(forest, trees, walking, leaves)) return;
+  for (std::size_t tree = trees.first; tree < trees.last; ++tree, leaves += walking.count) {
+    for (int p = 0; p < walking.count; ++p) {
+      const PatchView patch = walking.image->patch(walking.x[p], walking.y[p], walking.scale[p]);
+      leaves[p] = find_leaf(forest, static_cast<int>(tree), patch);
+    }
   }
 }
 
@@ -94,7 +90,7 @@ void walk_run(const Forest& forest, const SquareForest* for_squares, const Featu
   } else {
     const WalkingPatches all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
                              patches.scale.data() + run.first, static_cast<int>(run.count)};
-    walk_trees(forest, all, 0, first, scratch.leaves.data());
+    walk_trees(forest, all, {0, first}, scratch.leaves.data());
   }
   if (!may_end) {
     scratch.patches.resize(run.count);
@@ -103,7 +99,7 @@ void walk_run(const Forest& forest, const SquareForest* for_squares, const Featu
   }
   give_up(forest, early_end, run, first, scratch);
   const WalkingPatches left = gather_left(image, patches, scratch);
-  walk_trees(forest, left, first, trees, scratch.leaves.data() + first * scratch.patches.size());
+  walk_trees(forest, left, {first, trees}, scratch.leaves.data() + first * scratch.patches.size());
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "detector/forest/packed_trees.hpp"
 
@@ -19,18 +21,97 @@ constexpr std::size_t kMost = 256;  // patches that walk together
 using Int = hn::CappedTag<std::int32_t, 64>;
 using Ints = hn::Vec<Int>;
 
-/// Patches on their way, and what they see at each step.
+/// Patches on their way, and what they see at each step. Behind the last one is room for the rest of its vector.
+template <typename T>
+using PerWalker = std::array<T, kMost + hn::MaxLanes(Int())>;
 struct Walkers {
-  HWY_ALIGN std::int32_t at[kMost];      // PackedNode
-  HWY_ALIGN std::int32_t centre[kMost];  // byte offset of the patch's pixel
-  HWY_ALIGN std::int32_t scale[kMost];
-  HWY_ALIGN PackedNode nodes[kMost];
-  HWY_ALIGN std::int32_t first[kMost];  // byte offsets of what is looked at
-  HWY_ALIGN std::int32_t second[kMost];
-  HWY_ALIGN std::uint8_t first_values[kMost];
-  HWY_ALIGN std::uint8_t second_values[kMost];
-  std::size_t count = 0;  // whole vectors
+  PerWalker<std::int32_t> at;      // PackedNode
+  PerWalker<std::int32_t> who;     // of the patches that set out
+  PerWalker<std::int32_t> centre;  // byte offset of the patch's pixel
+  PerWalker<std::int32_t> scale;
+  PerWalker<PackedNode> nodes;
+  PerWalker<std::int32_t> test;  // of the nodes
+  PerWalker<std::int32_t> way;
+  PerWalker<std::int32_t> first;  // byte offsets of what is looked at
+  PerWalker<std::int32_t> second;
+  PerWalker<std::uint8_t> first_values;
+  PerWalker<std::uint8_t> second_values;
+  std::size_t count = 0;
 };
+
+/// Some of the patches, as they set out.
+struct Party {
+  PerWalker<std::int32_t> centre;
+  PerWalker<std::int32_t> scale;
+  std::size_t count = 0;
+};
+
+Party gather_party(const WalkingPatches& patches, std::size_t first) {
+  Party party;
+  party.count = std::min(kMost, static_cast<std::size_t>(patches.count) - first);
+  for (std::size_t i = 0; i < party.count; ++i) {
+    const std::size_t p = first + i;
+    party.centre[i] = patches.y[p] * patches.image->row_stride() + patches.x[p] * patches.image->pixel_stride();
+    party.scale[i] = patches.scale[p];
+  }
+  return party;
+}
+
+void set_out(const Party& party, std::int32_t root, Walkers& w) {
+  w.count = party.count;
+  w.centre = party.centre;
+  w.scale = party.scale;
+  std::fill_n(w.at.begin(), w.count, root);
+  std::iota(w.who.begin(), w.who.begin() + static_cast<std::ptrdiff_t>(w.count), 0);
+}
+
+/// Notes the leaves that some of a vector's patches have reached; `way` holds their numbers.
+HWY_INLINE void arrive(hn::Mask<Int> arrived, Ints who, Ints way, std::int32_t* leaves) {
+  const Int d;
+  std::array<std::int32_t, hn::MaxLanes(Int())> patches;
+  std::array<std::int32_t, hn::MaxLanes(Int())> numbers;
+  hn::StoreU(hn::Compress(who, arrived), d, patches.data());
+  hn::StoreU(hn::Compress(way, arrived), d, numbers.data());
+  const std::size_t count = hn::CountTrue(d, arrived);
+  for (std::size_t i = 0; i < count; ++i) leaves[patches[i]] = numbers[i];
+}
+
+/// Those who have arrived leave, and the others close up, so that nobody waits for the slowest.
+void close_up(Walkers& w, std::int32_t* leaves) {
+  const Int d;
+  const Ints leaf = hn::Set(d, packed::kLeaf);
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < w.count; i += hn::Lanes(d)) {
+    Ints test;
+    Ints way;
+    hn::LoadInterleaved2(d, reinterpret_cast<const std::int32_t*>(w.nodes.data() + i), test, way);
+    const Ints who = hn::LoadU(d, w.who.data() + i);
+    const Ints centre = hn::LoadU(d, w.centre.data() + i);
+    const Ints scale = hn::LoadU(d, w.scale.data() + i);
+    const auto present = hn::FirstN(d, w.count - i);
+    const auto arrived = hn::And(hn::TestBit(test, leaf), present);
+    if (hn::AllFalse(d, arrived)) {
+      hn::StoreU(test, d, w.test.data() + left);
+      hn::StoreU(way, d, w.way.data() + left);
+      if (left != i) {
+        hn::StoreU(who, d, w.who.data() + left);
+        hn::StoreU(centre, d, w.centre.data() + left);
+        hn::StoreU(scale, d, w.scale.data() + left);
+      }
+      left += std::min(hn::Lanes(d), w.count - i);
+      continue;
+    }
+    arrive(arrived, who, way, leaves);
+    const auto stays = hn::AndNot(arrived, present);  // what is stored behind them has been read
+    hn::StoreU(hn::Compress(test, stays), d, w.test.data() + left);
+    hn::StoreU(hn::Compress(way, stays), d, w.way.data() + left);
+    hn::StoreU(hn::Compress(who, stays), d, w.who.data() + left);
+    hn::StoreU(hn::Compress(centre, stays), d, w.centre.data() + left);
+    hn::StoreU(hn::Compress(scale, stays), d, w.scale.data() + left);
+    left += hn::CountTrue(d, stays);
+  }
+  w.count = left;
+}
 
 /// Which pixels the nodes ask for; as patch_offset.
 void find_pixels(const FeatureImage& image, Walkers& w) {
@@ -39,10 +120,8 @@ void find_pixels(const FeatureImage& image, Walkers& w) {
   const Ints pixel_stride = hn::Set(d, image.pixel_stride());
   const Ints half = hn::Set(d, 128);
   for (std::size_t i = 0; i < w.count; i += hn::Lanes(d)) {
-    Ints test;
-    Ints way;
-    hn::LoadInterleaved2(d, reinterpret_cast<const std::int32_t*>(w.nodes + i), test, way);
-    const Ints scale = hn::Load(d, w.scale + i);
+    const Ints test = hn::LoadU(d, w.test.data() + i);
+    const Ints scale = hn::LoadU(d, w.scale.data() + i);
     const auto to_px = [&](Ints high) {  // of the step in the highest bits
       return hn::ShiftRight<8>(hn::Add(hn::Mul(hn::ShiftRight<32 - packed::kStepBits>(high), scale), half));
     };
@@ -51,63 +130,57 @@ void find_pixels(const FeatureImage& image, Walkers& w) {
     const Ints x2 = to_px(hn::ShiftLeft<17>(test));
     const Ints y2 = to_px(hn::ShiftLeft<12>(test));
     const Ints plane = hn::And(hn::ShiftRight<packed::kPlaneShift>(test), hn::Set(d, 255));
-    const Ints start = hn::Add(hn::Load(d, w.centre + i), plane);
-    hn::Store(hn::Add(start, hn::Add(hn::Mul(y1, row_stride), hn::Mul(x1, pixel_stride))), d, w.first + i);
-    hn::Store(hn::Add(start, hn::Add(hn::Mul(y2, row_stride), hn::Mul(x2, pixel_stride))), d, w.second + i);
+    const Ints start = hn::Add(hn::LoadU(d, w.centre.data() + i), plane);
+    const auto place = [&](Ints x, Ints y) {
+      return hn::Add(start, hn::Add(hn::Mul(y, row_stride), hn::Mul(x, pixel_stride)));
+    };
+    hn::StoreU(place(x1, y1), d, w.first.data() + i);
+    hn::StoreU(place(x2, y2), d, w.second.data() + i);
   }
 }
 
-/// Goes left or right, as find_leaf; those who have arrived stay. Returns whether anyone has moved.
-bool take_step(Walkers& w) {
+/// Goes left or right, as find_leaf.
+void take_step(Walkers& w) {
   const Int d;
   const hn::Rebind<std::uint8_t, Int> bytes;
   const Ints alone = hn::Set(d, packed::kAlone);
   const Ints wraps = hn::Set(d, packed::kWraps);
   const Ints child_mask = hn::Set(d, (1 << packed::kLimitShift) - 1);
-  Ints moved = hn::Zero(d);
   for (std::size_t i = 0; i < w.count; i += hn::Lanes(d)) {
-    Ints test;
-    Ints way;
-    hn::LoadInterleaved2(d, reinterpret_cast<const std::int32_t*>(w.nodes + i), test, way);
-    const Ints p1 = hn::PromoteTo(d, hn::Load(bytes, w.first_values + i));
-    const Ints p2 = hn::PromoteTo(d, hn::Load(bytes, w.second_values + i));
+    const Ints test = hn::LoadU(d, w.test.data() + i);
+    const Ints way = hn::LoadU(d, w.way.data() + i);
+    const Ints p1 = hn::PromoteTo(d, hn::LoadU(bytes, w.first_values.data() + i));
+    const Ints p2 = hn::PromoteTo(d, hn::LoadU(bytes, w.second_values.data() + i));
     const Ints difference = hn::Sub(p1, hn::IfThenZeroElse(hn::TestBit(test, alone), p2));
     const Ints wrapped = hn::ShiftRight<24>(hn::ShiftLeft<24>(difference));
     const Ints value = hn::IfThenElse(hn::TestBit(test, wraps), wrapped, difference);
     const Ints right = hn::VecFromMask(d, hn::Gt(value, hn::ShiftRight<packed::kLimitShift>(way)));  // -1 or 0
-    const Ints next = hn::Sub(hn::And(way, child_mask), right);
-    moved = hn::Or(moved, hn::Xor(next, hn::Load(d, w.at + i)));
-    hn::Store(next, d, w.at + i);
-  }
-  return !hn::AllTrue(d, hn::Eq(moved, hn::Zero(d)));
-}
-
-/// Puts the patches from `first` on at the root; the last vector is filled with the last patch.
-void set_out(const WalkingPatches& patches, std::size_t first, std::int32_t root, Walkers& w) {
-  const std::size_t lanes = hn::Lanes(Int());
-  const std::size_t last = static_cast<std::size_t>(patches.count) - 1;
-  w.count = (std::min(kMost, last + 1 - first) + lanes - 1) / lanes * lanes;
-  for (std::size_t i = 0; i < w.count; ++i) {
-    const std::size_t p = std::min(first + i, last);
-    w.at[i] = root;
-    w.centre[i] = patches.y[p] * patches.image->row_stride() + patches.x[p] * patches.image->pixel_stride();
-    w.scale[i] = patches.scale[p];
+    hn::StoreU(hn::Sub(hn::And(way, child_mask), right), d, w.at.data() + i);
   }
 }
 
-void walk(const PackedTrees& trees, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
+void walk_tree(const PackedTrees& trees, std::size_t tree, const FeatureImage& image, const Party& party, Walkers& w,
+               std::int32_t* leaves) {
+  set_out(party, trees.roots[tree], w);
+  for (;;) {
+    fetch_nodes(trees.nodes.data(), w.at.data(), w.count, w.nodes.data());
+    close_up(w, leaves);
+    if (w.count == 0) return;
+    find_pixels(image, w);
+    fetch_pixels(image.at(0, 0), w.first.data(), w.second.data(), w.count, w.first_values.data(),
+                 w.second_values.data());
+    take_step(w);
+  }
+}
+
+void walk(const PackedTrees& trees, TreeRange range, const WalkingPatches& patches, std::int32_t* leaves) {
   const auto count = static_cast<std::size_t>(patches.count);
-  const std::uint8_t* origin = patches.image->at(0, 0);
   Walkers w;
   for (std::size_t first = 0; first < count; first += kMost) {
-    set_out(patches, first, trees.roots[static_cast<std::size_t>(tree)], w);
-    do {
-      fetch_nodes(trees.nodes.data(), w.at, w.count, w.nodes);
-      find_pixels(*patches.image, w);
-      fetch_pixels(origin, w.first, w.second, w.count, w.first_values, w.second_values);
-    } while (take_step(w));
-    const std::size_t arrived = std::min(kMost, count - first);
-    for (std::size_t i = 0; i < arrived; ++i) leaves[first + i] = trees.leaf_of[static_cast<std::size_t>(w.at[i])];
+    const Party party = gather_party(patches, first);
+    for (std::size_t tree = range.first; tree < range.last; ++tree) {
+      walk_tree(trees, tree, *patches.image, party, w, leaves + (tree - range.first) * count + first);
+    }
   }
 }
 
@@ -119,10 +192,10 @@ namespace houghstream {
 
 HWY_EXPORT(walk);
 
-bool walk_wide(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves) {
+bool walk_wide(const Forest& forest, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves) {
   const auto rows = static_cast<std::int64_t>(patches.image->height()) + 2 * FeatureImage::kPad;
   if (rows * patches.image->row_stride() > INT32_MAX || forest.packed.nodes.empty()) return false;
-  HWY_DYNAMIC_DISPATCH(walk)(forest.packed, tree, patches, leaves);
+  HWY_DYNAMIC_DISPATCH(walk)(forest.packed, trees, patches, leaves);
   return true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "detector/features/feature_image.hpp"
@@ -16,8 +17,13 @@ struct WalkingPatches {
   int count = 0;
 };
 
-/// Leaf of each patch, many patches a step. Returns false, having done nothing, where the forest is not packed or the
-/// image is too large for 32-bit offsets. The leaves are those of find_leaf.
-bool walk_wide(const Forest& forest, int tree, const WalkingPatches& patches, std::int32_t* leaves);
+struct TreeRange {
+  std::size_t first = 0;
+  std::size_t last = 0;  ///< not among them
+};
+
+/// Leaf of each patch, tree by tree, many patches a step. Returns false, having done nothing, where the forest is not
+/// packed or the image is too large for 32-bit offsets. The leaves are those of find_leaf.
+bool walk_wide(const Forest& forest, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves);
 
 }  // namespace houghstream

@@ -22,10 +22,9 @@ TEST(PackedTrees, HoldEveryNodeAndLeafOnce) {
   Random random(21);
   const Forest forest = chance::random_forest(32, random);
   EXPECT_EQ(forest.packed.nodes.size(), forest.roots.size() + 2 * forest.nodes.size());
-  EXPECT_EQ(forest.packed.leaf_of.size(), forest.packed.nodes.size());
   std::vector<int> seen(forest.packed.nodes.size() - forest.nodes.size());
-  for (const std::int32_t leaf : forest.packed.leaf_of) {
-    if (leaf >= 0) ++seen.at(static_cast<std::size_t>(leaf));
+  for (const PackedNode& node : forest.packed.nodes) {
+    if (node.test == packed::kLeaf) ++seen.at(static_cast<std::size_t>(node.way));
   }
   EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
 }

@@ -33,24 +33,28 @@ Patches random_patches(const FeatureImage& image, int count, Random& random) {
   return patches;
 }
 
-/// Compares the walk of all patches with find_leaf, and says whether there was one.
-bool walks_like_find_leaf(const Forest& forest, const FeatureImage& image, const Patches& patches) {
-  const auto count = static_cast<int>(patches.x.size());
-  bool walked = true;
-  for (int tree = 0; tree < static_cast<int>(forest.roots.size()); ++tree) {
-    std::vector<std::int32_t> leaves(patches.x.size() + 1, kNobody);
-    const WalkingPatches walking{&image, patches.x.data(), patches.y.data(), patches.scale.data(), count};
-    walked = walk_wide(forest, tree, walking, leaves.data());
-    for (std::size_t p = 0; p < leaves.size(); ++p) {
-      std::int32_t expected = kNobody;
-      if (walked && p < patches.x.size()) {
-        expected = find_leaf(forest, tree, image.patch(patches.x[p], patches.y[p], patches.scale[p]));
-      }
-      EXPECT_EQ(leaves[p], expected) << "tree " << tree << " patch " << p << " of " << count;
-      if (leaves[p] != expected) return walked;
-    }
+/// Compares the walk of all patches down some trees with find_leaf, and says whether there was one.
+bool walks_like_find_leaf(const Forest& forest, TreeRange trees, const FeatureImage& image, const Patches& patches) {
+  const std::size_t count = patches.x.size();
+  std::vector<std::int32_t> leaves((trees.last - trees.first) * count + 1, kNobody);
+  const WalkingPatches walking{&image, patches.x.data(), patches.y.data(), patches.scale.data(),
+                               static_cast<int>(count)};
+  const bool walked = walk_wide(forest, trees, walking, leaves.data());
+  std::vector<std::int32_t> expected(leaves.size(), kNobody);
+  for (std::size_t i = 0; walked && i + 1 < expected.size(); ++i) {
+    const std::size_t p = i % count;
+    const auto tree = static_cast<int>(trees.first + i / count);
+    expected[i] = find_leaf(forest, tree, image.patch(patches.x[p], patches.y[p], patches.scale[p]));
   }
+  EXPECT_EQ(leaves, expected) << "trees " << trees.first << " to " << trees.last << ", " << count << " patches";
   return walked;
+}
+
+/// Down all trees at once, and down some.
+bool walks_like_find_leaf(const Forest& forest, const FeatureImage& image, const Patches& patches) {
+  const std::size_t trees = forest.roots.size();
+  const bool some = walks_like_find_leaf(forest, {trees / 2, trees}, image, patches);
+  return walks_like_find_leaf(forest, {0, trees}, image, patches) && some;
 }
 
 /// What the processor can do, one instruction set at a time.
