@@ -24,11 +24,8 @@ void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, 
   const std::int32_t* leaves = seen.leaves;
   for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
     for (std::size_t i = 0; i < some.size(); ++i) {
-      const auto leaf = static_cast<std::size_t>(leaves[some[i]]);
-      for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-        const LeafClass& entry = forest.leaf_classes[e];
-        sums[i * classes + entry.class_index] += entry.probability;
-      }
+      const LeafShare* shares = forest.leaf_shares.data() + static_cast<std::size_t>(leaves[some[i]]) * classes;
+      for (std::size_t c = 0; c < classes; ++c) sums[i * classes + c] += shares[c].probability;
     }
   }
 }
@@ -36,12 +33,16 @@ void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, 
 /// What the leaves of a run's patch number `i` know of a class.
 void append_entries(const Forest& forest, std::size_t class_index, std::size_t i, const RunLeaves& seen,
                     std::vector<std::uint32_t>& entries) {
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
+  const std::size_t classes = forest.classes.size();
+  std::size_t count = entries.size();
+  entries.resize(count + forest.roots.size());
+  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {  // without a branch that nobody can predict
     const auto leaf = static_cast<std::size_t>(seen.leaves[tree * seen.count + i]);
-    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      if (forest.leaf_classes[e].class_index == class_index) entries.push_back(e);
-    }
+    const std::uint32_t entry = forest.leaf_shares[leaf * classes + class_index].entry;
+    entries[count] = entry;
+    count += entry != LeafShare::kNothing ? 1 : 0;
   }
+  entries.resize(count);
 }
 
 }  // namespace

@@ -6,9 +6,12 @@ namespace houghstream {
 
 void note_certainty(Forest& forest) {
   forest.leaf_certainty.assign(forest.leaves.size() - 1, 0.0F);
+  forest.leaf_shares.assign(forest.leaf_certainty.size() * forest.classes.size(), LeafShare{});
   for (std::size_t leaf = 0; leaf < forest.leaf_certainty.size(); ++leaf) {
     for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      forest.leaf_certainty[leaf] = std::max(forest.leaf_certainty[leaf], forest.leaf_classes[e].probability);
+      const LeafClass& entry = forest.leaf_classes[e];
+      forest.leaf_certainty[leaf] = std::max(forest.leaf_certainty[leaf], entry.probability);
+      forest.leaf_shares[leaf * forest.classes.size() + entry.class_index] = {entry.probability, e};
     }
   }
 }

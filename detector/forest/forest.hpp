@@ -69,6 +69,14 @@ struct TrainedView {
   Appearance appearance;
 };
 
+/// What a leaf knows of one class, if anything, where the class is given.
+struct LeafShare {
+  static constexpr std::uint32_t kNothing = UINT32_MAX;
+
+  float probability = 0.0F;        ///< of LeafClass
+  std::uint32_t entry = kNothing;  ///< into Forest::leaf_classes
+};
+
 /// A node or leaf as walk_wide reads it, see packed_trees.hpp.
 struct PackedNode {
   std::uint32_t test = 0;
@@ -97,11 +105,13 @@ struct Forest {
   std::vector<LeafClass> leaf_classes;
   std::vector<LeafVote> votes;
   std::vector<LeafView> leaf_views;
-  std::vector<float> leaf_certainty;  ///< per leaf: its largest p(class | leaf); not in files, see note_certainty
-  PackedTrees packed;                 ///< not in files, see pack_trees
+  std::vector<float> leaf_certainty;   ///< per leaf: its largest p(class | leaf); not in files, see note_certainty
+  std::vector<LeafShare> leaf_shares;  ///< [leaf * classes + class]; as leaf_certainty
+  PackedTrees packed;                  ///< not in files, see pack_trees
 };
 
-/// Fills leaf_certainty from the leaves; to be called whenever they have changed, before a frame is searched.
+/// Fills leaf_certainty and leaf_shares from the leaves; to be called whenever they have changed, before a frame is
+/// searched.
 void note_certainty(Forest& forest);
 
 /// Smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.

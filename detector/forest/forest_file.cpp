@@ -142,15 +142,28 @@ void check_indices(const Forest& forest, const std::string& source) {
                 (t.kind == PixelTest::kDifference || t.kind == PixelTest::kWrapping || t.kind == PixelTest::kAlone),
             "{}: node {} tests plane {}, expected one of {} planes within {} steps", source, n, t.plane, planes, reach);
   }
-  for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
-    require(forest.leaves[l - 1] <= forest.leaves[l], "{}: leaf {} ends before it begins", source, l - 1);
-  }
+}
+
+void check_leaves(const Forest& forest, const std::string& source) {
   for (const LeafClass& entry : forest.leaf_classes) {
     const bool good = entry.class_index < forest.classes.size() &&
                       entry.first_vote + std::uint64_t{entry.vote_count} <= forest.votes.size() &&
                       entry.first_view + std::uint64_t{entry.view_count} <= forest.leaf_views.size() &&
                       entry.probability >= 0.0F && entry.probability <= 1.0F;
     require(good, "{}: a leaf points outside the forest's lists", source);
+  }
+  for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
+    require(forest.leaves[l - 1] <= forest.leaves[l], "{}: leaf {} ends before it begins", source, l - 1);
+  }
+  for (std::size_t l = 1; l < forest.leaves.size(); ++l) {  // within the list: the last one ends where it does
+    const std::uint32_t first = forest.leaves[l - 1];
+    for (std::uint32_t e = first; e < forest.leaves[l]; ++e) {
+      const auto is_same = [&](const LeafClass& other) {
+        return other.class_index == forest.leaf_classes[e].class_index;
+      };
+      require(std::none_of(&forest.leaf_classes[first], &forest.leaf_classes[e], is_same),
+              "{}: leaf {} knows class {} twice", source, l - 1, forest.leaf_classes[e].class_index);
+    }
   }
   for (const LeafView& view : forest.leaf_views) {
     require(view.view < forest.views.size(), "{}: a leaf remembers view {} of {}", source, view.view,
@@ -246,6 +259,7 @@ Forest load_forest(const std::filesystem::path& file) {
   require(reader.at == payload.size(), "{}: {} bytes left over after the forest", source, payload.size() - reader.at);
   check_settings(forest, source);
   check_indices(forest, source);
+  check_leaves(forest, source);
   note_certainty(forest);
   pack_trees(forest);
   return forest;

@@ -104,6 +104,14 @@ TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
   EXPECT_THROW(load_forest(file_), InputError);
 }
 
+TEST_F(ForestFile, ALeafThatKnowsAClassTwiceIsRefused) {
+  Forest bad = forest_;
+  bad.leaf_classes.insert(bad.leaf_classes.begin(), bad.leaf_classes[0]);
+  for (std::uint32_t& end : bad.leaves) end += end > 0 ? 1 : 0;  // those of the first leaf that knows anything too
+  save_forest(bad, file_);
+  EXPECT_THROW(load_forest(file_), InputError);
+}
+
 TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
   const auto expect_refused = [&](const std::string& what, const auto& change) {
     Forest bad = forest_;

@@ -49,13 +49,24 @@ TEST(PixelTest, AloneItComparesOnePixelOnly) {
 
 TEST(LeafCertainty, IsWhatALeafKnowsBest) {
   Forest forest;
+  forest.classes.resize(2);
   forest.leaves = {0, 2, 2, 3};
   forest.leaf_classes.resize(3);
   forest.leaf_classes[0].probability = 0.2F;
   forest.leaf_classes[1].probability = 0.7F;
+  forest.leaf_classes[1].class_index = 1;
   forest.leaf_classes[2].probability = 0.1F;
   note_certainty(forest);
   EXPECT_EQ(forest.leaf_certainty, (std::vector<float>{0.7F, 0.0F, 0.1F}));
+  std::vector<std::uint32_t> entries;
+  std::vector<float> probabilities;
+  for (const LeafShare& share : forest.leaf_shares) {
+    entries.push_back(share.entry);
+    probabilities.push_back(share.probability);
+  }
+  constexpr std::uint32_t kNothing = LeafShare::kNothing;
+  EXPECT_EQ(entries, (std::vector<std::uint32_t>{0, 1, kNothing, kNothing, 2, kNothing}));
+  EXPECT_EQ(probabilities, (std::vector<float>{0.2F, 0.7F, 0.0F, 0.0F, 0.1F, 0.0F}));
 }
 
 TEST(FindLeaf, WalksRightFromTheThresholdOn) {
