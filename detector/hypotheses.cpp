@@ -1,5 +1,6 @@
 #include "detector/hypotheses.hpp"
 
+#include <hwy/base.h>
 #include <hwy/cache_control.h>
 
 #include <algorithm>
@@ -17,28 +18,33 @@ using Weights = std::vector<std::pair<std::uint32_t, float>>;
 class SparseSums {
  public:
   void make_room(std::size_t count) {
-    if (sums_.size() < count) sums_.resize(count, 0.0F);
+    if (sums_.size() >= count) return;
+    sums_.resize(count, 0.0F);
+    touched_.resize(count / kBits + 1, 0);
   }
 
   void add(std::uint32_t index, float value) {
-    if (sums_[index] == 0.0F) touched_.push_back(index);
+    touched_[index / kBits] |= std::uint64_t{1} << index % kBits;
     sums_[index] += value;
   }
 
   /// Indices and sums in order of the index; forgets them.
   void take(Weights& out) {
-    std::sort(touched_.begin(), touched_.end());
     out.clear();
-    for (const std::uint32_t index : touched_) {
-      out.emplace_back(index, sums_[index]);
-      sums_[index] = 0.0F;
+    for (std::size_t word = 0; word < touched_.size(); ++word) {
+      for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
+        const auto index = static_cast<std::uint32_t>(word * kBits + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+        out.emplace_back(index, sums_[index]);
+        sums_[index] = 0.0F;
+      }
+      touched_[word] = 0;
     }
-    touched_.clear();
   }
 
  private:
+  static constexpr std::size_t kBits = 64;
   std::vector<float> sums_;
-  std::vector<std::uint32_t> touched_;
+  std::vector<std::uint64_t> touched_;  // a bit for each sum, so that they need no sorting
 };
 
 /// Sums the support of a maximum by voter; returns the number of votes.
@@ -90,10 +96,12 @@ void sum_by_view(const Forest& forest, const HoughSpace& space, const Weights& b
 }
 
 /// A maximum with what supports it; its mass is what is seen of the object, the weight times the area of the patches.
-/// One without `least_mass` is left without views.
+/// One without `least_mass` is left without either.
 Hypothesis gather_support(const Forest& forest, const HoughSpace& space, const PatchGrid& patches, const Camera& camera,
                           const Eigen::Vector3f& centre, float least_mass, float vote_sigma) {
-  static thread_local Weights by_voter;  // kept from maximum to maximum
+  static thread_local Weights by_voter;  // both kept from maximum to maximum
+  static thread_local Weights supporters;
+  supporters.clear();
   Hypothesis hypothesis;
   hypothesis.centre_camera = centre;
   hypothesis.vote_count = sum_by_voter(space, camera, centre, vote_sigma, by_voter);
@@ -101,11 +109,12 @@ Hypothesis gather_support(const Forest& forest, const HoughSpace& space, const P
     const std::uint32_t patch = space.voters[index].patch;
     hypothesis.weight += weight;
     hypothesis.mass += weight * patches.area[patch];
-    Weights& supporters = hypothesis.patches;
     if (supporters.empty() || supporters.back().first != patch) supporters.emplace_back(patch, 0.0F);
     supporters.back().second += weight;
   }
-  if (hypothesis.mass >= least_mass) sum_by_view(forest, space, by_voter, hypothesis.views);
+  if (hypothesis.mass < least_mass) return hypothesis;
+  hypothesis.patches = supporters;
+  sum_by_view(forest, space, by_voter, hypothesis.views);
   return hypothesis;
 }
 
