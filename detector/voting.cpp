@@ -1,5 +1,8 @@
 #include "detector/voting.hpp"
 
+#include <hwy/cache_control.h>
+
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "detector/vote_casting.hpp"
@@ -49,7 +52,14 @@ void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, Hough
   const std::uint32_t* cell = cast.cells.data();
   const std::uint32_t* voter = cast.voters.data();
   const Vote* const end = cast.votes.data() + cast.count;
+  constexpr std::size_t kAhead = 24;  // votes, so that the cache misses of many places overlap
+  const Vote* const last_ahead = end - std::min(kAhead, cast.count);
   for (const Vote* vote = cast.votes.data(); vote != end; ++vote) {
+    if (vote < last_ahead) {
+      const std::uint32_t soon = free[cell[kAhead]];
+      hwy::Prefetch(votes + soon);
+      hwy::Prefetch(voters + soon);
+    }
     const std::uint32_t place = free[*cell++]++;
     // four numbers at once, not one by one
     Eigen::Map<Eigen::Array4f>(votes[place].centre_camera.data()) =
