@@ -15,11 +15,13 @@ using Sides = std::array<float, 4>;
 /// Where the supporting patches lie. Patches that hardly believe in the object lie beside it; the median supporter
 /// says what believing is here.
 Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches) {
-  std::vector<float> weights;
+  static thread_local std::vector<float> weights;  // both kept from hypothesis to hypothesis
+  static thread_local std::array<std::vector<float>, 4> values;
+  weights.clear();
   for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
   std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
   const float least = 0.3F * weights[weights.size() / 2];
-  std::array<std::vector<float>, 4> values;
+  for (std::vector<float>& side : values) side.clear();
   for (const auto& [patch, weight] : hypothesis.patches) {
     if (weight < least) continue;
     const cv::Rect2f& cell = patches.cell_px[patch];
@@ -43,9 +45,10 @@ Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const
   const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
   const Eigen::Vector2d centre_px = camera.project(centre);
   const auto px_per_metre = static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
+  static thread_local std::vector<std::pair<float, float>> values;  // kept from side to side
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    std::vector<std::pair<float, float>> values;
+    values.clear();
     for (const auto& [view, weight] : hypothesis.views) {
       values.emplace_back(forest.views[view].box[i], weight);
     }

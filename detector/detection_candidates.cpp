@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include "detector/boxes.hpp"
@@ -104,8 +106,10 @@ Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const
   detection.vote_weight = hypothesis.weight;
   detection.vote_count = hypothesis.vote_count;
   const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis.centre_camera));
+  const auto room = static_cast<std::size_t>(std::max(max_rotations, 0));
+  detection.rotations.reserve(std::min(room, hypothesis.views.size()));
   for (const auto& [view, weight] : weighed_views(hypothesis, spread, compared)) {
-    if (detection.rotations.size() >= static_cast<std::size_t>(max_rotations)) break;
+    if (detection.rotations.size() >= room) break;
     detection.rotations.push_back({R_camera_ray * Eigen::Quaternionf(forest.views[view].R_ray_object), weight});
   }
   return candidate;
@@ -137,12 +141,14 @@ std::vector<std::size_t> by_work(const Forest& forest, const PatchBeliefs& belie
   return order;
 }
 
-/// Of all classes, class by class.
+/// Of all classes, class by class; `meanwhile` is done by a thread that finds no class left.
 std::vector<ClassHypothesis> all_hypotheses(const Forest& forest, const SeenPatches& seen,
-                                            const DetectionSettings& settings) {
+                                            const DetectionSettings& settings, const std::function<void()>& meanwhile) {
   const std::vector<std::size_t> order = by_work(forest, seen.beliefs);
   std::vector<std::vector<Hypothesis>> by_class(order.size());
-  parallel_for(settings.threads, static_cast<int>(order.size()), [&](int i) {
+  const auto classes = static_cast<int>(order.size());
+  parallel_for(settings.threads, classes + 1, [&](int i) {
+    if (i == classes) return meanwhile();
     const std::size_t c = order[static_cast<std::size_t>(i)];
     by_class[c] = class_hypotheses(forest, c, seen, settings);
   });
@@ -165,12 +171,14 @@ std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& fr
   static thread_local SeenPatches seen_here;  // its memory is kept from frame to frame
   const SeenPatches& seen = seen_here;        // the same for the threads below
   classify_patches(forest, frame, settings, clock, seen_here);
-  const std::vector<ClassHypothesis> found = all_hypotheses(forest, seen, settings);  // Section 2
-  const LabFrame in_lab = make_lab_frame(frame, seen.colour, forest.features.image_scale);
+  std::optional<LabFrame> in_lab;
+  const std::vector<ClassHypothesis> found = all_hypotheses(forest, seen, settings, [&] {  // Section 2
+    in_lab.emplace(make_lab_frame(frame, seen.colour, forest.features.image_scale));
+  });
   std::vector<Candidate> all(found.size());
   parallel_for(settings.threads, static_cast<int>(found.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    all[at] = to_candidate(forest, found[at], seen, in_lab, settings.max_rotations, forgotten);
+    all[at] = to_candidate(forest, found[at], seen, *in_lab, settings.max_rotations, forgotten);
   });
   clock.mark("detect.voting");
   return all;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "detector/evidence/likeness.hpp"
+#include "detector/features/picture_memory.hpp"
 
 namespace houghstream {
 namespace {
@@ -184,9 +185,11 @@ Likeness compare_colours(const Comparison& comparison, const Tally& tally, const
 }  // namespace
 
 LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
-  cv::Mat lab;
-  cv::blur(colour, lab, cv::Size(3, 3));
-  cv::cvtColor(lab, lab, cv::COLOR_BGR2Lab);
+  static thread_local cv::Mat blurred;  // both kept from frame to frame
+  static thread_local cv::Mat lab;
+  forget_shared(lab);
+  cv::blur(colour, blurred, cv::Size(3, 3));
+  cv::cvtColor(blurred, lab, cv::COLOR_BGR2Lab);
   return {frame, lab, scale};
 }
 

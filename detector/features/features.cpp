@@ -5,6 +5,7 @@
 #include <climits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/features/picture_memory.hpp"
 #include "detector/features/surface_planes.hpp"
 #include "detector/features/tile_features.hpp"
 #include "detector/features/tile_turn.hpp"
@@ -17,7 +18,10 @@ namespace {
 struct Scratch {
   std::vector<cv::Rect> parts;
   std::vector<cv::Range> columns;  // by row of tiles: from the first wanted one to the last
+  std::array<PictureMemory, 3> lab_memory;
   std::array<cv::Mat, 3> lab;
+  int sobel_px = 0;  // of the kernels
+  SobelKernels kernels;
 };
 
 void list_parts(const FeatureTiles& tiles, Scratch& scratch) {
@@ -43,7 +47,8 @@ void convert_row(const cv::Mat& colour, int row, int margin, Scratch& scratch) {
   if (columns.end < columns.start) return;
   columns = {std::max(0, columns.start - margin), std::min(colour.cols, columns.end + margin)};
   const cv::Range rows(row * FeatureTiles::kSide, std::min(colour.rows, (row + 1) * FeatureTiles::kSide));
-  static thread_local cv::Mat lab;  // kept from row to row
+  static thread_local PictureMemory memory;  // kept from row to row
+  cv::Mat lab = memory.picture(cv::Size(columns.size(), rows.size()), CV_8UC3);
   cv::cvtColor(colour(rows, columns), lab, cv::COLOR_BGR2Lab);
   std::array<cv::Mat, 3> places;
   for (std::size_t c = 0; c < places.size(); ++c) places[c] = scratch.lab[c](rows, columns);
@@ -63,15 +68,18 @@ void compute_features(const WorkingFrame& frame, const FeatureSettings& settings
   Scratch& scratch = kept;  // this thread's in all threads
   list_parts(tiles, scratch);
   if ((settings.families & kIntensity) != 0) {
-    for (cv::Mat& plane : scratch.lab) plane.create(frame.colour.size(), CV_8UC1);
+    for (std::size_t c = 0; c < scratch.lab.size(); ++c) {
+      scratch.lab[c] = scratch.lab_memory[c].picture(frame.colour.size(), CV_8UC1);
+    }
     parallel_for(threads, tiles.rows(),
                  [&](int row) { convert_row(frame.colour, row, lab_margin(settings), scratch); });
   }
   const FeatureLayout layout(settings);
   std::vector<std::vector<cv::Mat>> base;
   for (const FeatureBlock& block : layout.blocks()) base.push_back(surface_planes(block.family, frame, threads));
-  const SobelKernels kernels = sobel_kernels(settings.depth_sobel_px);
-  const TileSources sources{frame, settings, layout, scratch.lab, kernels, base};
+  if (scratch.sobel_px != settings.depth_sobel_px) scratch.kernels = sobel_kernels(settings.depth_sobel_px);
+  scratch.sobel_px = settings.depth_sobel_px;
+  const TileSources sources{frame, settings, layout, scratch.lab, scratch.kernels, base};
   image.reset(frame.colour.cols, frame.colour.rows, layout.pixel_stride());
   parallel_for(threads, static_cast<int>(scratch.parts.size()), [&](int i) {
     static thread_local TileFeatures features;  // kept from part to part

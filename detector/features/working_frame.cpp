@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "detector/features/hole_filling.hpp"
+#include "detector/features/picture_memory.hpp"
 
 namespace houghstream {
 namespace {
@@ -93,11 +94,6 @@ cv::Mat enlarge_depth(const cv::Mat& depth, cv::Size size) {
     }
   }
   return smooth;
-}
-
-/// Before an image is written anew: what somebody else looks at as well gets a place of its own.
-void forget_shared(cv::Mat& image) {
-  if (image.u == nullptr || image.u->refcount > 1) image.release();
 }
 
 }  // namespace
