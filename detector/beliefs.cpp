@@ -1,5 +1,7 @@
 #include "detector/beliefs.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,12 +21,17 @@ void sum_certainties(const Forest& forest, const RunLeaves& seen, std::vector<fl
 /// Sums over the trees of p(class | leaf) for some of the patches of a run: element [i * classes + class].
 void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, const RunLeaves& seen,
                   std::vector<float>& sums) {
+  constexpr std::size_t kAhead = 16;  // patches, so that their cache misses overlap
   const std::size_t classes = forest.classes.size();
   sums.assign(some.size() * classes, 0.0F);
   const std::int32_t* leaves = seen.leaves;
   for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
+    const auto shares_of = [&](std::size_t i) {
+      return forest.leaf_shares.data() + static_cast<std::size_t>(leaves[some[i]]) * classes;
+    };
     for (std::size_t i = 0; i < some.size(); ++i) {
-      const LeafShare* shares = forest.leaf_shares.data() + static_cast<std::size_t>(leaves[some[i]]) * classes;
+      if (i + kAhead < some.size()) hwy::Prefetch(shares_of(i + kAhead));
+      const LeafShare* shares = shares_of(i);
       for (std::size_t c = 0; c < classes; ++c) sums[i * classes + c] += shares[c].probability;
     }
   }
