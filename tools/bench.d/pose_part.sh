@@ -21,7 +21,7 @@ bench_recorded_poses() {
   step "poses: recorded frames"
   "$bin/hs-bench-real" --scenes "$real/scenes" --camera $recorded_camera --forest "$data/real_forest" \
     --models "$data/real_models" --scan "$real/model/ornament_3.obj" \
-    --references "$real/scenes/pseudo_poses_ornament_3.json" --threshold 0.1 --threads "$(nproc)" --out "$out/real"
+    --references "$real/scenes/pseudo_poses_ornament_3.json" --threshold 0.02 --threads "$(nproc)" --out "$out/real"
 }
 
 bench_pose() {

@@ -50,8 +50,11 @@ void run(const BenchOptions& options) {
   PoseSettings pose_settings;
   pose_settings.threads = settings.threads;
   const PoseEstimator estimator(models, pose_settings);
+  pose_settings.min_score = 0.0F;
+  pose_settings.quality.least = 0.0F;
+  const PoseEstimator unchecked(models, pose_settings);
   const RealBench bench =
-      run_real_bench(options.scenes, parse_camera(options.camera), detector, estimator, models, object);
+      run_real_bench(options.scenes, parse_camera(options.camera), detector, estimator, unchecked, models, object);
   std::filesystem::create_directories(options.out);
   write_json(to_json(bench, object), options.out / "poses.json");
   write_png(draw_model(object.scan.mesh), options.out / (options.object + ".png"));

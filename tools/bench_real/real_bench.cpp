@@ -19,6 +19,17 @@ const ObjectPose* pose_of(const ObjectPoses& poses, const std::string& class_nam
   return best;
 }
 
+/// Of each class without a pose the one that was found for its strongest detection.
+ObjectPoses withheld_poses(const ObjectPoses& poses, const ObjectPoses& unchecked) {
+  ObjectPoses withheld;
+  for (const ObjectPose& found : unchecked.poses) {
+    const ObjectPose* best = pose_of(poses, found.class_name);
+    if (best != nullptr && !best->T_camera_object && best->detection_index == found.detection_index)
+      withheld.poses.push_back(found);
+  }
+  return withheld;
+}
+
 ComparedFrame compare(const std::string& frame, const ReferencePose& reference, const ObjectPoses& poses,
                       const ComparedObject& object) {
   ComparedFrame out;
@@ -49,18 +60,21 @@ OrderedJson to_json(const ComparedFrame& frame) {
 }  // namespace
 
 RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& camera, const Detector& detector,
-                         const PoseEstimator& estimator, const ClassModels& models, const ComparedObject& object) {
+                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
+                         const ComparedObject& object) {
   RealBench bench;
   std::int64_t utime = 0;
   for (const FramePair& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, camera, ++utime);
-    const ObjectPoses poses = estimator.estimate(frame, detector.detect(frame));
+    const Detections detections = detector.detect(frame);
+    const ObjectPoses poses = estimator.estimate(frame, detections);
+    const ObjectPoses withheld = withheld_poses(poses, unchecked.estimate(frame, detections));
     for (const ObjectPose& pose : poses.poses) bench.poses += pose.T_camera_object ? 1 : 0;
     const auto reference = object.references.find(pair.name);
     const bool is_compared = reference != object.references.end();
     if (is_compared) bench.compared.push_back(compare(pair.name, reference->second, poses, object));
     const std::string title = title_of(pair.name, is_compared ? &bench.compared.back() : nullptr);
-    bench.pictures.push_back(draw_poses(frame, poses, models, title));
+    bench.pictures.push_back(draw_poses(frame, poses, withheld, models, title));
     bench.pictures.push_back(paint_models(frame, poses, models));
   }
   require(bench.compared.size() == object.references.size(), "{}: {} of the {} frames with reference poses",
