@@ -13,6 +13,11 @@ die() {
   exit 1
 }
 
+# The commit that is checked out, short.
+commit_name() {
+  git rev-parse --short HEAD 2>/dev/null || echo unknown
+}
+
 # configure_and_build FOLDER BUILD_TYPE CMAKE_OPTIONS... -- TARGETS... (no target: everything)
 configure_and_build() {
   local folder=$1 build_type=$2

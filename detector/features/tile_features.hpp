@@ -18,7 +18,7 @@ struct TileSources {
   const WorkingFrame& frame;
   const FeatureSettings& settings;
   const FeatureLayout& layout;
-  const std::array<cv::Mat, 3>& lab;              ///< CV_8UC1 each; right where the part and kLabMargin around it are
+  const std::array<cv::Mat, 3>& lab;              ///< CV_8UC1 each; right where the part and lab_margin() around it are
   const SobelKernels& kernels;                    ///< of the depth derivatives
   const std::vector<std::vector<cv::Mat>>& base;  ///< by block, of those computed beforehand: CV_8UC1 planes
 };

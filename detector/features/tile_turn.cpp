@@ -7,19 +7,19 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "detector/features/byte_turn-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {
-
-constexpr int kSide = 16;  // bytes of a block of a vector
 
 #if HWY_TARGET != HWY_SCALAR
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Bytes of kSide planes side by side, then of the kSide planes that follow, ...
+/// Bytes of kTurnSide planes side by side, then of the kTurnSide planes that follow, ...
 template <std::size_t kSize>
 HWY_INLINE hn::Vec<hn::FixedTag<std::uint8_t, kSize>> load_blocks(const std::uint8_t* planes, int plane_stride) {
   const hn::FixedTag<std::uint8_t, kSize> d;
-  if constexpr (kSize == kSide) {
+  if constexpr (kSize == kTurnSide) {
     return hn::LoadU(d, planes);
   } else {
     return hn::Combine(d, load_blocks<kSize / 2>(planes + kSize / 2 * plane_stride, plane_stride),
@@ -27,26 +27,18 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::uint8_t, kSize>> load_blocks(const std::uin
   }
 }
 
-/// kSize planes of kSide pixels: kSide planes to a block, all blocks at once. Whole cache lines go past the cache, into
-/// which they would first have to be read.
+/// kSize planes of kTurnSide pixels: kTurnSide planes to a block, all blocks at once. Whole cache lines go past the
+/// cache, into which they would first have to be read.
 template <std::size_t kSize>
 HWY_INLINE void turn_block(const std::uint8_t* planes, int plane_stride, std::uint8_t* pixels, int pixel_stride) {
   constexpr std::size_t kLine = 64;
   const hn::FixedTag<std::uint8_t, kSize> d;
-  using Bytes = hn::Vec<decltype(d)>;
-  Bytes rows[kSide];
-  for (int i = 0; i < kSide; ++i) rows[i] = load_blocks<kSize>(planes + i * plane_stride, plane_stride);
-  for (int round = 0; round < 4; ++round) {  // each one merges row i with row i + 8
-    Bytes merged[kSide];
-    for (int i = 0; i < kSide / 2; ++i) {
-      merged[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + kSide / 2]);
-      merged[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + kSide / 2]);
-    }
-    for (int i = 0; i < kSide; ++i) rows[i] = merged[i];
-  }
+  hn::Vec<decltype(d)> rows[kTurnSide];
+  for (int i = 0; i < kTurnSide; ++i) rows[i] = load_blocks<kSize>(planes + i * plane_stride, plane_stride);
+  turn_bytes(d, rows);
   const bool whole_lines =
       kSize == kLine && pixel_stride % kLine == 0 && reinterpret_cast<std::uintptr_t>(pixels) % kLine == 0;
-  for (int i = 0; i < kSide; ++i) {
+  for (int i = 0; i < kTurnSide; ++i) {
     if (whole_lines) {
       hn::Stream(rows[i], d, pixels + i * pixel_stride);
     } else {
@@ -60,19 +52,19 @@ constexpr int kTurned = 64;
 #elif HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
 constexpr int kTurned = 32;
 #else
-constexpr int kTurned = kSide;
+constexpr int kTurned = kTurnSide;
 #endif
 
 /// Returns how many pixels were turned, from the first one on.
 int turn_whole_blocks(const std::uint8_t* planes, int plane_stride, int count, std::uint8_t* pixels, int pixel_stride) {
-  const int whole = count / kSide * kSide;
-  for (int x = 0; x < whole; x += kSide) {
+  const int whole = count / kTurnSide * kTurnSide;
+  for (int x = 0; x < whole; x += kTurnSide) {
     int p = 0;
     for (; p + kTurned <= pixel_stride; p += kTurned) {
       turn_block<kTurned>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
     }
-    for (; p < pixel_stride; p += kSide) {
-      turn_block<kSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
+    for (; p < pixel_stride; p += kTurnSide) {
+      turn_block<kTurnSide>(planes + p * plane_stride + x, plane_stride, pixels + x * pixel_stride + p, pixel_stride);
     }
   }
   return whole;

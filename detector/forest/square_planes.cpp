@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+#include "detector/features/byte_turn-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {
 
@@ -19,23 +21,14 @@ HWY_INLINE int turn_blocks(const std::uint8_t* pixels, int count, int pixel_stri
   return 0;
 #else
   namespace hn = hwy::HWY_NAMESPACE;
-  constexpr int kSide = 16;
-  const hn::FixedTag<std::uint8_t, kSide> d;
-  using Bytes = hn::Vec<decltype(d)>;
-  const int whole = layout.planes % kSide == 0 ? count / kSide * kSide : 0;
-  for (int x = 0; x < whole; x += kSide) {
-    for (int p = 0; p < layout.planes; p += kSide) {
-      Bytes rows[kSide];
-      for (int i = 0; i < kSide; ++i) rows[i] = hn::LoadU(d, pixels + (x + i) * pixel_stride + p);
-      for (int round = 0; round < 4; ++round) {  // each one merges row i with row i + 8
-        Bytes merged[kSide];
-        for (int i = 0; i < kSide / 2; ++i) {
-          merged[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + kSide / 2]);
-          merged[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + kSide / 2]);
-        }
-        for (int i = 0; i < kSide; ++i) rows[i] = merged[i];
-      }
-      for (int i = 0; i < kSide; ++i) hn::StoreU(rows[i], d, out + (p + i) * layout.plane_stride + x);
+  const hn::FixedTag<std::uint8_t, kTurnSide> d;
+  const int whole = layout.planes % kTurnSide == 0 ? count / kTurnSide * kTurnSide : 0;
+  for (int x = 0; x < whole; x += kTurnSide) {
+    for (int p = 0; p < layout.planes; p += kTurnSide) {
+      hn::Vec<decltype(d)> rows[kTurnSide];
+      for (int i = 0; i < kTurnSide; ++i) rows[i] = hn::LoadU(d, pixels + (x + i) * pixel_stride + p);
+      turn_bytes(d, rows);
+      for (int i = 0; i < kTurnSide; ++i) hn::StoreU(rows[i], d, out + (p + i) * layout.plane_stride + x);
     }
   }
   return whole;

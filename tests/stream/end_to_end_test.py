@@ -4,15 +4,12 @@ Renders a few training views and a short scene, trains a small forest, replays t
 lcm-logplayer to hs-detect and hs-pose, records the bus with the stock lcm-logger, and adds up.
 """
 
-import argparse
 import json
-import pathlib
-import shutil
 import subprocess
 import sys
 
-from bus import Process, enter_private_network
-from lcm_messages import detections_of, poses_of, read_log, utime_of
+from bus import Process, enter_private_network, read_arguments
+from lcm_messages import detections_by_utime, poses_of, read_log, utime_of
 from live_stream import check_live_stream
 
 FRAMES = 24
@@ -64,7 +61,7 @@ def check_account(summary, sent):
 
 
 def replay(tools, folder):
-    """Replays the log through the processes with LCM's own tools; returns (channel, data) of all that was heard."""
+    """Replays the log through the processes with LCM's own tools; returns all events that were heard."""
     recorded = folder / "recorded.log"
     logger = subprocess.Popen(["lcm-logger", "-f", "-q", str(recorded)], stderr=subprocess.DEVNULL)
     observe = Process(folder, tools / "hs-observe", "--expect", REPLAYED, "--out", folder / "observed.json")
@@ -82,7 +79,7 @@ def replay(tools, folder):
         for process in processes:
             process.kill()
     check_account(json.loads((folder / "observed.json").read_text()), REPLAYED)
-    return [(channel, data) for _, channel, data in read_log(recorded)]
+    return list(read_log(recorded))
 
 
 def capture_live(tools, folder):
@@ -107,8 +104,7 @@ def detect_offline(tools, folder):
     results = folder / "results.log"
     run(tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 1, "-l", f"file://{folder / 'scene.log'}",
         "--output-log", results)
-    return {utime_of(data): detections_of(data) for _, channel, data in read_log(results)
-            if channel == "HOUGHSTREAM_DETECTIONS"}
+    return detections_by_utime(read_log(results))
 
 
 def iou(a, b):
@@ -137,21 +133,19 @@ def check_detections(truth, offline):
 
 def check_same_on_the_bus(heard, offline):
     """What went over the network is what the log gives: other threads, other timing, same detections."""
-    compared = 0
-    for channel, data in heard:
-        if channel == "HOUGHSTREAM_DETECTIONS" and utime_of(data) in offline:
-            assert detections_of(data) == offline[utime_of(data)], utime_of(data)
-            compared += 1
-    assert compared > 0, "no detections of the scene's first round were heard"
+    compared = {utime: found for utime, found in detections_by_utime(heard).items() if utime in offline}
+    for utime, found in compared.items():
+        assert found == offline[utime], utime
+    assert compared, "no detections of the scene's first round were heard"
 
 
 def check_poses(truth, folder, heard):
     """Where an object was found, a pose that claims to be valid is near the truth."""
     utimes = [utime_of(data) for _, _, data in read_log(folder / "replay.log")]
     objects_of = {utime: truth[i % FRAMES] for i, utime in enumerate(utimes)}
-    detections = {utime_of(data): detections_of(data) for channel, data in heard if channel == "HOUGHSTREAM_DETECTIONS"}
+    detections = detections_by_utime(heard)
     errors = []
-    for data in (data for channel, data in heard if channel == "HOUGHSTREAM_POSES"):
+    for data in (data for _, channel, data in heard if channel == "HOUGHSTREAM_POSES"):
         for _, index, status, translation in poses_of(data):
             detection = detections[utime_of(data)][index]
             places = [item["cam_t_m2c"] for item, info in objects_of[utime_of(data)] if is_found(detection, item, info)]
@@ -177,14 +171,9 @@ def check_bad_input(tools, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
-    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for what the test makes")
-    arguments = parser.parse_args()
     enter_private_network()
-    shutil.rmtree(arguments.out, ignore_errors=True)
-    arguments.out.mkdir(parents=True)
-    tools, folder = arguments.tools.resolve(), arguments.out.resolve()
+    arguments = read_arguments(__doc__)
+    tools, folder = arguments.tools, arguments.out
     truth = make_data(tools, folder)
     offline = detect_offline(tools, folder)
     assert len(offline) == FRAMES, "a log is worked on without skipping"

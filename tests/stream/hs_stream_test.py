@@ -3,17 +3,15 @@
 Takes the forest, models and scene that end_to_end_test.py has made.
 """
 
-import argparse
 import os
 import pathlib
 import re
-import shutil
 import signal
 import subprocess
 import sys
 import time
 
-from bus import enter_private_network
+from bus import enter_private_network, read_arguments
 
 NAMES = ["detect", "pose", "view", "capture"]
 
@@ -97,15 +95,9 @@ def check_bad_start(tools, made, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
-    parser.add_argument("--made", type=pathlib.Path, required=True, help="what end_to_end_test.py has made")
-    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for what the test makes")
-    arguments = parser.parse_args()
     enter_private_network()
-    shutil.rmtree(arguments.out, ignore_errors=True)
-    arguments.out.mkdir(parents=True)
-    tools, made, folder = arguments.tools.resolve(), arguments.made.resolve(), arguments.out.resolve()
+    arguments = read_arguments(__doc__, made="what end_to_end_test.py has made")
+    tools, made, folder = arguments.tools, arguments.made, arguments.out
     check_restart_and_stop(tools, made, folder)
     check_killed_supervisor(tools, made, folder)
     check_bad_start(tools, made, folder)

@@ -62,6 +62,11 @@ def detections_of(data):
     return found
 
 
+def detections_by_utime(events):
+    """{utime: detections} of the detections_t among (timestamp, channel, data) events."""
+    return {utime_of(data): detections_of(data) for _, channel, data in events if channel == "HOUGHSTREAM_DETECTIONS"}
+
+
 def poses_of(data):
     """(class name, index of the detection, status, translation in metres) of each pose of an object_poses_t."""
     wire = Wire(data)

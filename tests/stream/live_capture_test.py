@@ -1,16 +1,13 @@
 """Virtual camera -> stock OpenNI2 -> hs-capture -> LCM: what a user with a camera starts, unplugs, records and replays."""
 
-import argparse
 import csv
 import json
 import os
-import pathlib
-import shutil
 import subprocess
 import sys
 import time
 
-from bus import Process, enter_private_network
+from bus import Process, enter_private_network, read_arguments
 from lcm_messages import images_of, read_log, status_of, utime_of
 
 LIVE_FRAMES = 90
@@ -137,14 +134,9 @@ def check_recording(tools, camera, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
-    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for what the test makes")
-    arguments = parser.parse_args()
     enter_private_network()
-    shutil.rmtree(arguments.out, ignore_errors=True)
-    arguments.out.mkdir(parents=True)
-    tools, folder = arguments.tools.resolve(), arguments.out.resolve()
+    arguments = read_arguments(__doc__)
+    tools, folder = arguments.tools, arguments.out
     camera = Camera(folder)
     check_listing(tools, camera)
     check_unplugging(tools, camera, folder)

@@ -7,7 +7,7 @@ import subprocess
 import time
 
 from bus import Process
-from lcm_messages import detections_of, read_log, utime_of
+from lcm_messages import detections_by_utime, read_log
 
 
 def camera_option(scene):
@@ -85,7 +85,7 @@ def check_live_stream(tools, folder, start_stream, offline):
     print(f"camera plugged in again: frames after {1e3 * back['t_frame']:.0f} ms, poses after {1e3 * back['t_poses']:.0f} ms")
     assert back["t_frame"] < 2.0, back
     known = list(offline.values())
-    heard = [data for _, channel, data in read_log(folder / "live_results.log") if channel == "HOUGHSTREAM_DETECTIONS"]
-    for data in heard:
-        assert detections_of(data) in known, f"frame {utime_of(data)}: other detections than of any of the scene's pictures"
+    heard = detections_by_utime(read_log(folder / "live_results.log"))
+    for utime, found in heard.items():
+        assert found in known, f"frame {utime}: other detections than of any of the scene's pictures"
     print(f"{len(heard)} frames detected live, each with the detections of its picture")

@@ -4,16 +4,13 @@ Host A publishes both cameras' frames and detects in the first one's; host B det
 both detectors must be what each gives offline. Uses what end_to_end_test.py has made.
 """
 
-import argparse
 import os
-import pathlib
-import shutil
 import subprocess
 import sys
 import time
 
-from bus import Process
-from lcm_messages import Wire, detections_of, read_log, utime_of
+from bus import Process, read_arguments
+from lcm_messages import Wire, detections_by_utime, detections_of, read_log, utime_of
 
 URL = "udpm://239.255.76.67:7667?ttl=1"  # one hop: to the other end of the cable
 CHANNELS = {"A": "CAMERA_A", "B": "CAMERA_B"}
@@ -66,10 +63,7 @@ def start(folder, *command):
 
 
 def start_detector(tools, made, folder, channel, host=()):
-    detect = ("hs-detect", "--forest", made / "small.forest", "--threads", 1, "-c", channel)
-    if not host:
-        return start(folder, tools / detect[0], *detect[1:])
-    return start(folder, *host, tools / detect[0], *detect[1:])
+    return start(folder, *host, tools / "hs-detect", "--forest", made / "small.forest", "--threads", 1, "-c", channel)
 
 
 def publish_cameras(tools, made):
@@ -112,17 +106,10 @@ def stream(tools, made, folder, host_b):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of the executables")
-    parser.add_argument("--made", type=pathlib.Path, required=True, help="folder that end_to_end_test.py wrote")
-    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for what the test makes")
-    arguments = parser.parse_args()
     enter_own_namespace()
-    tools, made, folder = arguments.tools.resolve(), arguments.made.resolve(), arguments.out.resolve()
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    offline = {utime_of(data): detections_of(data) for _, channel, data in read_log(made / "results.log")
-               if channel == "HOUGHSTREAM_DETECTIONS"}
+    arguments = read_arguments(__doc__, made="what end_to_end_test.py has made")
+    tools, made, folder = arguments.tools, arguments.made, arguments.out
+    offline = detections_by_utime(read_log(made / "results.log"))
     host_b = HostB()
     try:
         heard = stream(tools, made, folder, host_b)

@@ -182,6 +182,13 @@ class Choosing(Case):
         self.assertEqual((listed.returncode, self.calls()), (0, []))
         self.assertIn("train/gall/seed5", listed.stdout)
 
+    def test_list_ends_quietly_when_nobody_reads_on(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        listed = subprocess.run(self.words("--list"), env=self.environment(), stdout=writer, stderr=subprocess.PIPE)
+        os.close(writer)
+        self.assertEqual(listed.stderr, b"")
+
     def test_recorded_data_alone(self):
         self.assertEqual(self.run_it("--dataset", "real:/recorded").returncode, 0)
         self.assertFalse(any(call.startswith("hs-render") for call in self.calls()))

@@ -4,7 +4,7 @@
 speed_scene=table_small_1
 scene_distances=(--min-distance 0.75 --max-distance 2.1) # at which the objects of the test scenes stand
 
-# profile_forest PROFILE: $data/PROFILE_forest; of the default profile it is the forest that the other parts use.
+# profile_forest PROFILE: $data/PROFILE_forest, beside the default profile's $data/forest, which all parts use.
 profile_forest() {
   cached "$1_forest" 'training background' "$bin/hs-train" --profile "$1" --threads "$(nproc)" \
     --out "$data/$1_forest" --views "bop:$data/training" --background "bop:$data/background"

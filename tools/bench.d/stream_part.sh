@@ -1,5 +1,5 @@
-# A minute of replay through the processes, capture to pose, as compressed and as raw frames: $out/stream and
-# $out/stream_raw. Sourced by tools/bench.
+# A minute of replay through the processes, capture to pose, as compressed and as raw frames:
+# $out/stream_compressed and $out/stream_raw. Sourced by tools/bench.
 
 stream_rate=30
 stream_seconds=60

@@ -5,24 +5,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <numeric>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/percentiles.hpp"
+#include "tools/common/rounded.hpp"
 
 namespace houghstream {
 namespace {
-
-/// The value that a share of the values do not exceed; nearest rank.
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
-}
-
-double rounded(double ms) {
-  return std::round(ms * 1e3) / 1e3;
-}
 
 /// Highway's choice of an instruction set while this lives.
 class InstructionSet {
@@ -74,11 +64,11 @@ nlohmann::json to_json(const std::vector<Contender>& contenders, const std::vect
   for (std::size_t c = 0; c < contenders.size(); ++c) {
     const SpeedResult& result = results[c];
     nlohmann::json stages = nlohmann::json::object();
-    for (const auto& [stage, ms] : result.stage_ms) stages[stage] = rounded(quantile(ms, 0.5));
+    for (const auto& [stage, ms] : result.stage_ms) stages[stage] = rounded(percentile(ms, 50.0), 3);
     out[contenders[c].name] = {{"ms",
-                                {{"p10", rounded(quantile(result.ms, 0.1))},
-                                 {"p50", rounded(quantile(result.ms, 0.5))},
-                                 {"p90", rounded(quantile(result.ms, 0.9))}}},
+                                {{"p10", rounded(percentile(result.ms, 10.0), 3)},
+                                 {"p50", rounded(percentile(result.ms, 50.0), 3)},
+                                 {"p90", rounded(percentile(result.ms, 90.0), 3)}}},
                                {"frames", result.ms.size()},
                                {"detections", result.detections},
                                {"stage_ms", stages}};
@@ -89,12 +79,12 @@ nlohmann::json to_json(const std::vector<Contender>& contenders, const std::vect
 std::string speed_table(const std::vector<Contender>& contenders, const std::vector<SpeedResult>& results) {
   std::vector<std::size_t> order(contenders.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto median = [&](std::size_t c) { return quantile(results[c].ms, 0.5); };
+  const auto median = [&](std::size_t c) { return percentile(results[c].ms, 50.0); };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return median(a) < median(b); });
   std::string table = fmt::format("{:<24}{:>12}{:>12}{:>12}{:>8}\n", "ms a frame", "median", "10 %", "90 %", "frames");
   for (const std::size_t c : order) {
     table += fmt::format("{:<24}{:>12.2f}{:>12.2f}{:>12.2f}{:>8}\n", contenders[c].name, median(c),
-                         quantile(results[c].ms, 0.1), quantile(results[c].ms, 0.9), results[c].ms.size());
+                         percentile(results[c].ms, 10.0), percentile(results[c].ms, 90.0), results[c].ms.size());
   }
   return table;
 }

@@ -5,6 +5,7 @@
 
 #include "pipeline/checks.hpp"
 #include "pipeline/percentiles.hpp"
+#include "tools/common/rounded.hpp"
 
 namespace houghstream {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 OrderedJson number(double value) {
-  return finite_or_null(std::round(value * 1e4) / 1e4);
+  return finite_or_null(rounded(value, 4));
 }
 
 OrderedJson ratio(int part, int whole) {

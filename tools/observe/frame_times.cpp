@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipeline/percentiles.hpp"
+#include "tools/common/rounded.hpp"
 
 namespace houghstream {
 namespace {
@@ -20,7 +21,7 @@ double seconds(std::chrono::steady_clock::duration duration) {
 
 // JSON has no NaN.
 json number(double value) {
-  return std::isfinite(value) ? json(std::round(value * 1e3) / 1e3) : json(nullptr);
+  return std::isfinite(value) ? json(rounded(value, 3)) : json(nullptr);
 }
 
 json to_json(const Percentiles& latency) {

@@ -146,6 +146,7 @@ def main(words=None):
     store = Store(arguments.out, arguments.bin, units)
     require_executables(store, units)
     if arguments.list:
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a reader that has seen enough, as head, ends it quietly
         print_list(store, units)
         return
     signal.signal(signal.SIGTERM, interrupted)

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <cmath>
 #include <set>
 
 #include "pipeline/checks.hpp"
+#include "tools/common/rounded.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/report.hpp"
 #include "tools/rivals/linemod_detector.hpp"
@@ -37,10 +37,6 @@ std::vector<std::string> class_names(const std::vector<TrainingView>& views) {
 
 std::string folder_name(const fs::path& scene) {
   return fs::weakly_canonical(scene).filename().string();
-}
-
-double rounded(double value) {
-  return std::round(value * 1e3) / 1e3;
 }
 
 /// Every Nth frame of the scene: its truth, and what was detected.
@@ -84,13 +80,13 @@ void evaluate_scenes(const LinemodOptions& options) {
     const Evaluation evaluation = evaluate(frames, class_names(views), {}, options.rules);
     fmt::print("\n{}\n{}", scene.folder().string(), summary_table(evaluation, options.rules));
     OrderedJson summary = summary_json(evaluation, options.rules, {});
-    summary["linemod"] = {{"train_seconds", rounded(train_seconds)},
+    summary["linemod"] = {{"train_seconds", rounded(train_seconds, 3)},
                           {"templates", training.templates},
                           {"refused_templates", training.refused_templates},
                           {"refused_views", training.refused_views},
                           {"check_depth", options.selection.check_depth},
-                          {"min_distance", rounded(options.templates.min_distance)},
-                          {"max_distance", rounded(options.templates.max_distance)},
+                          {"min_distance", rounded(options.templates.min_distance, 3)},
+                          {"max_distance", rounded(options.templates.max_distance, 3)},
                           {"every", options.every}};
     write_report(evaluation, summary, fs::path(options.out) / folder_name(scene.folder()));
   }

@@ -51,7 +51,7 @@ const std::vector<Fault> kFaults = {
        m.machine.self_test = [](const std::string&, std::size_t) { return SelfTest{0, 0, "no bus"}; };
      },
      Level::kWrong, "LCM self test", "sudo ip link set lo multicast on"},
-    {"no OpenNI2", [](HealthyMachine& m) { fs::remove(m.library()); }, Level::kWrong, "OpenNI2",
+    {"no OpenNI2", [](HealthyMachine& m) { fs::remove(m.openni_library()); }, Level::kWrong, "OpenNI2",
      "sudo apt-get install libopenni2-0"},
     {"no driver folder", [](HealthyMachine& m) { fs::remove_all(m.drivers()); }, Level::kWrong, "driver folder",
      "sudo apt-get install --reinstall libopenni2-0"},
@@ -142,7 +142,7 @@ TEST(Examination, FindsEachPlantedFaultAndNamesItsRemedy) {
 TEST(Examination, WithoutACameraRecordingsStillWork) {
   HealthyMachine machine("doctor_no_camera");
   fs::remove_all(machine.machine.root / "sys/bus/usb/devices/1-1");
-  fs::remove(machine.library());
+  fs::remove(machine.openni_library());
   const Findings findings = examine(machine.machine, machine.settings);
   EXPECT_EQ(count_wrong(findings), 0) << to_text(findings);
   EXPECT_NE(to_text(findings).find("note   camera"), std::string::npos) << to_text(findings);

@@ -26,7 +26,7 @@ struct HealthyMachine {
           "lo\t000000E0\t00000000\t0001\t0\t0\t0\t000000F0\t0\t0\t0\n");
     plant(root / "proc/sys/net/core/rmem_default", "4194304\n");
     plant(root / "proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse4_2 avx avx2\nprocessor\t: 1\n");
-    plant(library());
+    plant(openni_library());
     for (const char* name : {"libPS1080", "libOniFile"}) {
       plant(drivers() / (name + std::string(".so")));
       plant(drivers() / (name + std::string(".so.0")));
@@ -47,8 +47,8 @@ struct HealthyMachine {
     machine.runs = [](const std::filesystem::path&, const std::string&) { return true; };
   }
 
-  std::filesystem::path library() const { return machine.root / "usr/lib/x86_64-linux-gnu/libOpenNI2.so.0"; }
-  std::filesystem::path drivers() const { return library().parent_path() / "OpenNI2/Drivers"; }
+  std::filesystem::path openni_library() const { return machine.root / "usr/lib/x86_64-linux-gnu/libOpenNI2.so.0"; }
+  std::filesystem::path drivers() const { return openni_library().parent_path() / "OpenNI2/Drivers"; }
 
   void plant_camera(const std::string& port, const std::string& vendor, const std::string& product, int number) {
     const std::filesystem::path device = machine.root / "sys/bus/usb/devices" / port;

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 TEST(OpenniFolder, TheLibraryPathComesBeforeTheSystemsFolders) {
   HealthyMachine healthy("openni_found");
-  EXPECT_EQ(find_openni(healthy.machine), healthy.library());
+  EXPECT_EQ(find_openni(healthy.machine), healthy.openni_library());
   const fs::path own = healthy.machine.root / "opt/mine/libOpenNI2.so.0";
   plant(own);
   healthy.machine.environment = [](const std::string& name) {
@@ -19,20 +19,21 @@ TEST(OpenniFolder, TheLibraryPathComesBeforeTheSystemsFolders) {
   };
   EXPECT_EQ(find_openni(healthy.machine), own);
   fs::remove(own);
-  fs::remove(healthy.library());
+  fs::remove(healthy.openni_library());
   EXPECT_EQ(find_openni(healthy.machine), std::nullopt);
 }
 
 TEST(OpenniFolder, DriversLieBesideTheLibraryUnlessTheIniFileSaysWhere) {
   const HealthyMachine healthy("openni_ini");
   const fs::path ini = healthy.machine.root / "etc/openni2/OpenNI.ini";
-  EXPECT_EQ(driver_folder(healthy.machine, healthy.library()), healthy.drivers());
+  EXPECT_EQ(driver_folder(healthy.machine, healthy.openni_library()), healthy.drivers());
   plant(ini, "[Drivers]\n;Repository=/commented/out\n");
-  EXPECT_EQ(driver_folder(healthy.machine, healthy.library()), healthy.drivers());
+  EXPECT_EQ(driver_folder(healthy.machine, healthy.openni_library()), healthy.drivers());
   plant(ini, "[Drivers]\r\n  Repository= /opt/drivers \r\n");
-  EXPECT_EQ(driver_folder(healthy.machine, healthy.library()), healthy.machine.root / "opt/drivers");
+  EXPECT_EQ(driver_folder(healthy.machine, healthy.openni_library()), healthy.machine.root / "opt/drivers");
   plant(ini, "Repository=mine/too\n");
-  EXPECT_EQ(driver_folder(healthy.machine, healthy.library()), healthy.library().parent_path() / "mine/too");
+  EXPECT_EQ(driver_folder(healthy.machine, healthy.openni_library()),
+            healthy.openni_library().parent_path() / "mine/too");
 }
 
 TEST(OpenniFolder, DriversWithAnotherEndAreNamedWrongUnlessTheRightOneIsThere) {
