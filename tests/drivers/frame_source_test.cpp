@@ -5,7 +5,6 @@
 #include "drivers/bop_dataset.hpp"
 #include "drivers/bop_writer.hpp"
 #include "drivers/image_file.hpp"
-#include "drivers/natural_order.hpp"
 #include "pipeline/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
@@ -25,16 +24,6 @@ fs::path write_uw_folder(const std::string& name, const std::string& colour_end)
     write_png(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1500)), folder / (stem + "_depth.png"));
   }
   return folder;
-}
-
-TEST(NaturalOrder, NumbersCompareAsNumbers) {
-  EXPECT_TRUE(natural_less("desk_1_9", "desk_1_28"));
-  EXPECT_FALSE(natural_less("desk_1_28", "desk_1_9"));
-  EXPECT_TRUE(natural_less("a", "b"));
-  EXPECT_TRUE(natural_less("a", "a1"));
-  EXPECT_TRUE(natural_less("00009", "00010"));
-  EXPECT_FALSE(natural_less("a1", "a1"));
-  EXPECT_NE(natural_less("a01", "a1"), natural_less("a1", "a01")) << "a strict order, equal only when equal";
 }
 
 TEST(FrameSource, BopGivesItsFramesAndEnds) {
