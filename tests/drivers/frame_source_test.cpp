@@ -17,7 +17,7 @@ const std::string kCameraText = ",64x48,60,61,31.5,23.5";
 
 /// Frames desk_1_9 and desk_1_28, whose colour is `9` and `28`.
 fs::path write_uw_folder(const std::string& name, const std::string& colour_end) {
-  const fs::path folder = fresh_folder(name);
+  fs::path folder = fresh_folder(name);
   for (const int number : {28, 9}) {
     const std::string stem = "desk_1_" + std::to_string(number);
     write_png(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(number)), folder / (stem + colour_end));
