@@ -140,6 +140,7 @@ def check_view(tools, data, logs, display, out):
         width = display.geometry(window)[2]
         display.do("windowfocus", window)
         press(display, "d", lambda: display.geometry(window)[2] < width, "d does not hide the depth")
+        press(display, "3", lambda: display.geometry(window)[2] == width, "3 does not show 3-D")
         check_saving(display, window)
         press(display, "space", lambda: is_still(display, window), "space does not pause")
         press(display, "q", lambda: view.process.poll() == 0, "q does not end hs-view")

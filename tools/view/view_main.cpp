@@ -26,6 +26,7 @@ void add_options(CLI::App& app, houghstream::ViewerSettings& settings, std::stri
   app.add_option("--min-score", show.picture.min_score, "weaker detections are not drawn")->capture_default_str();
   app.add_flag_callback(
       "--no-depth", [&] { show.picture.show_depth = false; }, "show the colour image only");
+  app.add_flag("--3d", show.picture.show_3d, "instead of the depth image: what was measured, seen from elsewhere");
   houghstream::add_lcm_url_option(app, settings.lcm_url);
 }
 

@@ -7,7 +7,8 @@
 #include "drivers/virtual_camera/virtual_device.hpp"
 #include "tests/drivers/test_files.hpp"
 
-// What OpenNI2 asks of a driver library.
+// What OpenNI2 asks of a driver library, by its names.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 void oniDriverCreate(OniDriverServices* services);
 void oniDriverDestroy();
@@ -19,6 +20,7 @@ void oniDriverDeviceClose(oni::driver::DeviceBase* device);
 void* oniDriverEnableFrameSync(oni::driver::StreamBase** streams, int count);
 void oniDriverDisableFrameSync(void* group);
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace houghstream {
 namespace {
