@@ -105,7 +105,7 @@ struct QualitySettings {
   std::array<double, 6> weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16};
   /// Means of right poses: what is farthest below them is the reason for "no pose".
   std::array<double, 6> typical = {1.63, 3.55, -0.16, 1.48, -0.70, -0.02};
-  float least = 0.75F;  ///< poses of lower quality are not published
+  float least = 0.6F;  ///< poses of lower quality are not published
 };
 
 struct PoseSettings {

@@ -60,7 +60,7 @@ def real_section(out, real):
     return [
         "<h2>Camera-recorded frames</h2>",
         "<p>One object's poses beside pseudo poses that another ICP gave: agreement, not accuracy. Below, outlines of the"
-        " models in every frame, and the models painted over it.</p>",
+        " models in every frame (white: the pose was withheld), and the models painted over it.</p>",
         table(("", ""), rows),
         sheet(out / "real", "sheet_*.png"),
     ]

@@ -19,9 +19,9 @@ bench_recorded_poses() {
     --background "images:$real/background"
   cached real_models '' "$bin/hs-fuse" --threads "$(nproc)" --out "$data/real_models" "${recorded_views[@]}"
   step "poses: recorded frames"
-  "$bin/hs-bench-real" --scenes "$real/scenes" --camera $recorded_camera --forest "$data/real_forest" \
+  "$bin/hs-bench-real" --scenes "$real/scenes" --forest "$data/real_forest" \
     --models "$data/real_models" --scan "$real/model/ornament_3.obj" \
-    --references "$real/scenes/pseudo_poses_ornament_3.json" --threshold 0.1 --threads "$(nproc)" --out "$out/real"
+    --references "$real/scenes/pseudo_poses_ornament_3.json" --threshold 0.01 --threads "$(nproc)" --out "$out/real"
 }
 
 bench_pose() {

@@ -17,7 +17,6 @@ using namespace houghstream;
 
 struct BenchOptions {
   std::string scenes;
-  std::string camera;
   std::string forest;
   std::string models;
   double model_unit_m = 1e-3;
@@ -50,8 +49,12 @@ void run(const BenchOptions& options) {
   PoseSettings pose_settings;
   pose_settings.threads = settings.threads;
   const PoseEstimator estimator(models, pose_settings);
+  pose_settings.min_score = 0.0F;
+  pose_settings.quality.least = 0.0F;
+  const PoseEstimator unchecked(models, pose_settings);
+  const DrawnBoxes drawn = read_drawn_boxes(std::filesystem::path(options.scenes) / "boxes.json");
   const RealBench bench =
-      run_real_bench(options.scenes, parse_camera(options.camera), detector, estimator, models, object);
+      run_real_bench(options.scenes, drawn.camera, detector, estimator, unchecked, models, drawn.frames, object);
   std::filesystem::create_directories(options.out);
   write_json(to_json(bench, object), options.out / "poses.json");
   write_png(draw_model(object.scan.mesh), options.out / (options.object + ".png"));
@@ -70,8 +73,8 @@ int main(int argc, char** argv) {
   CLI::App app("Estimates poses in recorded frames, compares one object's with reference poses and draws all",
                "hs-bench-real");
   BenchOptions options;
-  app.add_option("--scenes", options.scenes, "folder of FRAME_color.png with FRAME_depth.png")->required();
-  app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of the frames")->required();
+  app.add_option("--scenes", options.scenes, "folder of FRAME_color.png with FRAME_depth.png, and boxes.json")
+      ->required();
   app.add_option("--forest", options.forest, "forest file")->required();
   add_model_options(app, options.models, options.model_unit_m);
   app.get_option("--models")->required();

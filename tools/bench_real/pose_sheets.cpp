@@ -48,16 +48,20 @@ cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const Cla
   return image;
 }
 
-cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models,
-                   const std::string& title) {
+cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ObjectPoses& withheld,
+                   const ClassModels& models, const std::string& title) {
   constexpr int kLine_px = 18;
   cv::Mat image = frame.colour.clone();
   cv::Point at(6, kLine_px);
   draw_text(image, title, at);
-  for (const ObjectPose& pose : poses.poses) {
+  const auto outline = [&](const ObjectPose& pose, const cv::Scalar& colour) {
     const auto model = models.find(pose.class_name);
     if (pose.T_camera_object && model != models.end())
-      draw_outline(image, model->second, *pose.T_camera_object, frame.camera, class_colour(pose.class_id));
+      draw_outline(image, model->second, *pose.T_camera_object, frame.camera, colour);
+  };
+  for (const ObjectPose& pose : withheld.poses) outline(pose, cv::Scalar::all(255));
+  for (const ObjectPose& pose : poses.poses) {
+    outline(pose, class_colour(pose.class_id));
     at.y += kLine_px;
     draw_text(image, fmt::format("{} {:.2f} {}", pose.class_name, pose.detection_score, to_string(pose.status)), at,
               0.45, class_colour(pose.class_id));

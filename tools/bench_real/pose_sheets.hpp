@@ -16,9 +16,10 @@ void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_c
                   const cv::Scalar& colour);
 
 /// The frame's picture (CV_8UC3, BGR, its size) with each valid pose's model as the thinnest outline, holes and all, so
-/// that what lies under it can be judged; below the title a line for each pose: class, score, outcome.
-cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models,
-                   const std::string& title);
+/// that what lies under it can be judged; below the title a line for each pose: class, score, outcome. `withheld` are
+/// poses that were found and not believed: their outlines are white.
+cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ObjectPoses& withheld,
+                   const ClassModels& models, const std::string& title);
 
 /// The picture, darkened, with each valid pose's model in its own colours (white where it has none): a wrong turn shows
 /// beside draw_poses' picture.

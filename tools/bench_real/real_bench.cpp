@@ -1,5 +1,6 @@
 #include "tools/bench_real/real_bench.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/frame_folder.hpp"
@@ -17,6 +18,29 @@ const ObjectPose* pose_of(const ObjectPoses& poses, const std::string& class_nam
     if (best == nullptr || (!best->T_camera_object && pose.T_camera_object)) best = &pose;
   }
   return best;
+}
+
+bool lies_in(const Detection& detection, const std::vector<DrawnBox>& boxes) {
+  return std::any_of(boxes.begin(), boxes.end(), [&](const DrawnBox& box) {
+    return box.object == detection.class_name && box_iou(detection.box_px, box.box_px) >= 0.5F;
+  });
+}
+
+/// The poses that were found for true detections and not believed.
+ObjectPoses withheld_poses(const Detections& detections, const ObjectPoses& poses, const ObjectPoses& unchecked,
+                           const std::vector<DrawnBox>& boxes) {
+  ObjectPoses withheld;
+  for (std::size_t i = 0; i < poses.poses.size(); ++i) {
+    if (!poses.poses[i].T_camera_object && lies_in(detections.detections[i], boxes))
+      withheld.poses.push_back(unchecked.poses[i]);
+  }
+  return withheld;
+}
+
+const std::vector<DrawnBox>& boxes_of(const std::string& frame, const std::vector<DrawnFrame>& drawn) {
+  const auto at = std::find_if(drawn.begin(), drawn.end(), [&](const DrawnFrame& f) { return f.name == frame; });
+  require(at != drawn.end(), "frame {}: no entry among the {} frames with drawn boxes", frame, drawn.size());
+  return at->boxes;
 }
 
 ComparedFrame compare(const std::string& frame, const ReferencePose& reference, const ObjectPoses& poses,
@@ -49,18 +73,22 @@ OrderedJson to_json(const ComparedFrame& frame) {
 }  // namespace
 
 RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& camera, const Detector& detector,
-                         const PoseEstimator& estimator, const ClassModels& models, const ComparedObject& object) {
+                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
+                         const std::vector<DrawnFrame>& drawn, const ComparedObject& object) {
   RealBench bench;
   std::int64_t utime = 0;
   for (const FramePair& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, camera, ++utime);
-    const ObjectPoses poses = estimator.estimate(frame, detector.detect(frame));
+    const Detections detections = detector.detect(frame);
+    const ObjectPoses poses = estimator.estimate(frame, detections);
+    const ObjectPoses withheld =
+        withheld_poses(detections, poses, unchecked.estimate(frame, detections), boxes_of(pair.name, drawn));
     for (const ObjectPose& pose : poses.poses) bench.poses += pose.T_camera_object ? 1 : 0;
     const auto reference = object.references.find(pair.name);
     const bool is_compared = reference != object.references.end();
     if (is_compared) bench.compared.push_back(compare(pair.name, reference->second, poses, object));
     const std::string title = title_of(pair.name, is_compared ? &bench.compared.back() : nullptr);
-    bench.pictures.push_back(draw_poses(frame, poses, models, title));
+    bench.pictures.push_back(draw_poses(frame, poses, withheld, models, title));
     bench.pictures.push_back(paint_models(frame, poses, models));
   }
   require(bench.compared.size() == object.references.size(), "{}: {} of the {} frames with reference poses",

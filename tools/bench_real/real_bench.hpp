@@ -10,6 +10,7 @@
 #include "pose/pose_estimator.hpp"
 #include "tools/bench_real/pose_agreement.hpp"
 #include "tools/bench_real/scan_model.hpp"
+#include "tools/evaluate/drawn_boxes.hpp"
 #include "tools/view/overlay.hpp"
 
 namespace houghstream {
@@ -30,9 +31,12 @@ struct RealBench {
 };
 
 /// Detects in every image pair of the folder and estimates poses; of several detections of the compared object the
-/// strongest one that has a pose counts. Throws InputError, also for references to frames that are not there.
+/// strongest one that has a pose counts. `unchecked` publishes every pose it finds: those that `estimator` withholds
+/// are drawn too where the detection lies in a drawn box of its class. Throws InputError, also for references to frames
+/// that are not there.
 RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& camera, const Detector& detector,
-                         const PoseEstimator& estimator, const ClassModels& models, const ComparedObject& object);
+                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
+                         const std::vector<DrawnFrame>& drawn, const ComparedObject& object);
 
 /// {"object", "poses", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries", "alignment",
 /// "per_frame": [{"frame", "reliable", "outcome", "mm", "deg"}]}; null where there is no pose. "poses" is of all

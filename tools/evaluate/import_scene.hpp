@@ -6,10 +6,9 @@
 
 namespace houghstream {
 
-/// Turns SOURCE/boxes.json with SOURCE/FRAME_color.png and FRAME_depth.png into a BOP scene whose objects have boxes
-/// only: scene_gt.json without poses, scene_gt_info.json with visib_fract 1, names.json with ids in the order of the
-/// names. boxes.json: {"image_size": [w,h], "camera": {fx,fy,cx,cy}, "frames": [{"frame": NAME, "objects": [{"object":
-/// NAME, "bbox_xyxy": [x0,y0,x1,y1]}]}]}. Returns the number of frames. Throws InputError.
+/// Turns SOURCE/boxes.json (drawn_boxes.hpp) with SOURCE/FRAME_color.png and FRAME_depth.png into a BOP scene whose
+/// objects have boxes only: scene_gt.json without poses, scene_gt_info.json with visib_fract 1, names.json with ids in
+/// the order of the names. Returns the number of frames. Throws InputError.
 int import_boxes(const std::filesystem::path& source, const std::filesystem::path& scene_folder);
 
 /// Turns a video of the UW RGB-D Scenes Dataset (drivers/uw_scenes.hpp) into a BOP scene whose objects have boxes only,

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/camera.hpp"
+
+namespace houghstream {
+
+struct DrawnBox {
+  std::string object;
+  cv::Rect box_px;
+};
+
+struct DrawnFrame {
+  std::string name;  ///< of NAME_color.png and NAME_depth.png
+  std::vector<DrawnBox> boxes;
+};
+
+/// What a person has drawn around the objects of a folder of frames.
+struct DrawnBoxes {
+  Camera camera;
+  std::vector<DrawnFrame> frames;
+};
+
+/// {"image_size": [w,h], "camera": {fx,fy,cx,cy}, "frames": [{"frame": NAME, "objects": [{"object": NAME, "bbox_xyxy":
+/// [x0,y0,x1,y1]}]}]}; pixels. Throws InputError, also for a box outside the image and where there are no frames.
+DrawnBoxes read_drawn_boxes(const std::filesystem::path& file);
+
+}  // namespace houghstream
