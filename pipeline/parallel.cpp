@@ -39,7 +39,7 @@ class Items {
 
  private:
   const ItemWork& work_;
-  const int count_;
+  int count_;
   std::atomic<int> next_{0};
   std::mutex error_mutex_;
   int error_index_;

@@ -38,7 +38,7 @@ void push(Cloud& cloud, const Eigen::Vector3f& point, const Eigen::Vector3f& nor
 }
 
 Cloud::Ptr measured_cloud(const std::vector<Eigen::Vector3f>& points_camera, const Eigen::Isometry3d& T_object_camera) {
-  const Cloud::Ptr cloud(new Cloud);
+  Cloud::Ptr cloud(new Cloud);
   const Eigen::Isometry3f T = T_object_camera.cast<float>();
   for (const Eigen::Vector3f& point : points_camera) {
     push(*cloud, T * point, T.linear() * -point.normalized());  // PCL asks for a normal and does not use it
@@ -47,7 +47,7 @@ Cloud::Ptr measured_cloud(const std::vector<Eigen::Vector3f>& points_camera, con
 }
 
 Cloud::Ptr model_cloud(const ModelView& view) {
-  const Cloud::Ptr cloud(new Cloud);
+  Cloud::Ptr cloud(new Cloud);
   for (std::size_t i = 0; i < view.points.size(); ++i) push(*cloud, view.points[i], view.normals[i]);
   return cloud;
 }

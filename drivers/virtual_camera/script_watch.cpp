@@ -3,23 +3,27 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <fstream>
+#include <iterator>
+#include <utility>
 
 namespace houghstream {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod(10);
 
-std::filesystem::file_time_type time_of(const std::filesystem::path& file) {
-  std::error_code error;
-  return std::filesystem::last_write_time(file, error);
+/// Two changes may come within a tick of the clock that stamps files, so the text itself is compared.
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
 
 ScriptWatch::ScriptWatch(std::filesystem::path file)
     : file_(std::move(file)),
-      script_(std::make_shared<CameraScript>(read_camera_script(file_))),
-      read_at_(time_of(file_)) {}
+      text_(text_of(file_)),
+      script_(std::make_shared<CameraScript>(read_camera_script(file_))) {}
 
 ScriptWatch::~ScriptWatch() {
   running_ = false;
@@ -39,8 +43,9 @@ void ScriptWatch::start(std::function<void(const CameraScript&, const CameraScri
 void ScriptWatch::watch() {
   while (running_) {
     std::this_thread::sleep_for(kPeriod);
-    if (time_of(file_) == read_at_) continue;
-    read_at_ = time_of(file_);
+    std::string text = text_of(file_);
+    if (text == text_) continue;
+    text_ = std::move(text);
     look();
   }
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "drivers/virtual_camera/camera_script.hpp"
@@ -32,9 +33,9 @@ class ScriptWatch {
   void look();
 
   std::filesystem::path file_;
+  std::string text_;  // as it was looked at last
   mutable std::mutex mutex_;
   Script script_;
-  std::filesystem::file_time_type read_at_;
   std::function<void(const CameraScript&, const CameraScript&)> changed_;
   std::atomic<bool> running_{true};
   std::thread thread_;

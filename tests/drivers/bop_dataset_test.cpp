@@ -28,7 +28,7 @@ TrueObject some_object() {
 
 /// Twelve images with one object each: enough for image 10 to come before image 9 in the order of text.
 fs::path write_scene(const std::string& name) {
-  const fs::path folder = fresh_folder(name);
+  fs::path folder = fresh_folder(name);
   BopWriter writer(folder);
   for (int i = 0; i < 12; ++i) {
     RgbdFrame frame = plain_frame();

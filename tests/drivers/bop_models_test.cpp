@@ -26,7 +26,7 @@ Symmetries some_symmetries() {
 }
 
 fs::path write_models(const std::string& name) {
-  const fs::path folder = fresh_folder(name);
+  fs::path folder = fresh_folder(name);
   write_bop_models({{1, "bowl", tetrahedron(), some_symmetries()}, {12, "mug", tetrahedron(), {}}}, folder / "models");
   return folder;
 }

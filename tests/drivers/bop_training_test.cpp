@@ -33,7 +33,7 @@ TrueObject mug() {
 
 /// One scene with `frames`, the object in each.
 fs::path write_training(const std::string& name, const std::vector<RgbdFrame>& frames, bool masks = true) {
-  const fs::path folder = fresh_folder(name);
+  fs::path folder = fresh_folder(name);
   BopWriter writer(folder / "train" / "000002");
   for (const RgbdFrame& frame : frames) {
     std::vector<cv::Mat> visible;

@@ -5,7 +5,6 @@
 #include "drivers/bop_dataset.hpp"
 #include "drivers/bop_writer.hpp"
 #include "drivers/image_file.hpp"
-#include "drivers/natural_order.hpp"
 #include "pipeline/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
@@ -18,23 +17,13 @@ const std::string kCameraText = ",64x48,60,61,31.5,23.5";
 
 /// Frames desk_1_9 and desk_1_28, whose colour is `9` and `28`.
 fs::path write_uw_folder(const std::string& name, const std::string& colour_end) {
-  const fs::path folder = fresh_folder(name);
+  fs::path folder = fresh_folder(name);
   for (const int number : {28, 9}) {
     const std::string stem = "desk_1_" + std::to_string(number);
     write_png(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(number)), folder / (stem + colour_end));
     write_png(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1500)), folder / (stem + "_depth.png"));
   }
   return folder;
-}
-
-TEST(NaturalOrder, NumbersCompareAsNumbers) {
-  EXPECT_TRUE(natural_less("desk_1_9", "desk_1_28"));
-  EXPECT_FALSE(natural_less("desk_1_28", "desk_1_9"));
-  EXPECT_TRUE(natural_less("a", "b"));
-  EXPECT_TRUE(natural_less("a", "a1"));
-  EXPECT_TRUE(natural_less("00009", "00010"));
-  EXPECT_FALSE(natural_less("a1", "a1"));
-  EXPECT_NE(natural_less("a01", "a1"), natural_less("a1", "a01")) << "a strict order, equal only when equal";
 }
 
 TEST(FrameSource, BopGivesItsFramesAndEnds) {

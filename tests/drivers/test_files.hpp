@@ -11,7 +11,7 @@ namespace houghstream {
 
 /// An empty folder of this test's own.
 inline std::filesystem::path fresh_folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("houghstream_test_" + name);
+  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("houghstream_test_" + name);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

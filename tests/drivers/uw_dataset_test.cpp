@@ -23,7 +23,7 @@ void write_view(const fs::path& folder, const std::string& instance, int number,
 
 /// can_1 and can_2 with four views each, cup_1 with four.
 fs::path write_objects(const std::string& name) {
-  const fs::path folder = fresh_folder(name);
+  fs::path folder = fresh_folder(name);
   for (const std::string instance : {"can_1", "can_2", "cup_1"}) {
     const fs::path inside = folder / instance.substr(0, 3) / instance;
     fs::create_directories(inside);

@@ -17,7 +17,7 @@ const cv::Size kSize(64, 48);
 /// desk/desk_1/ with frames 1 to `count` in a folder of this test's own, without its annotations.
 fs::path write_frames(int count) {
   const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  const fs::path folder = fresh_folder("uw_scenes_" + test) / "desk" / "desk_1";
+  fs::path folder = fresh_folder("uw_scenes_" + test) / "desk" / "desk_1";
   fs::create_directories(folder);
   for (int number = 1; number <= count; ++number) {
     const std::string stem = (folder / ("desk_1_" + std::to_string(number))).string();
@@ -33,7 +33,7 @@ fs::path mat_of(const fs::path& folder) {
 
 /// One frame with one box, annotated with `cell`.
 fs::path write_one(matvar_t* cell) {
-  const fs::path folder = write_frames(1);
+  fs::path folder = write_frames(1);
   write_mat(mat_of(folder), mat_cells("bboxes", {cell}));
   return folder;
 }

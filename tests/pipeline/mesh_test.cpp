@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::temp_directory_path() / ("houghstream_mesh_test_" + name);
+  fs::path folder = fs::temp_directory_path() / ("houghstream_mesh_test_" + name);
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

@@ -111,6 +111,19 @@ def places_of(sent, replayed):
     return places
 
 
+def check_import(tools, folder, events):
+    """hs-log makes the same of a .oni file, with colour as it is there."""
+    imported = run(tools / "hs-log", "import", folder / "live.oni", folder / "imported.log")
+    assert imported.returncode == 0, imported
+    frames = [(utime_of(data), images_of(data)) for _, _, data in read_log(folder / "imported.log")]
+    assert [utime for utime, _ in frames] == [utime for _, utime, _ in events], "every frame, at the same time"
+    for (_, images), (_, _, replayed) in zip(frames, events):
+        assert images[DEPTH_MM_ZIPPED] == replayed[DEPTH_MM_ZIPPED]
+    assert all(len(images[LEFT]) == 640 * 480 * 3 for _, images in frames)
+    info = run(tools / "hs-log", "info", folder / "imported.log")
+    assert info.returncode == 0 and "OPENNI_FRAME" in info.stdout and "images_t" in info.stdout, info
+
+
 def check_recording(tools, camera, folder):
     """What is replayed from a .oni file is, message by message, what went out live."""
     camera.write("")
@@ -128,6 +141,7 @@ def check_recording(tools, camera, folder):
     assert places[-1] - places[0] < LIVE_FRAMES + 10, "one after the other"
     for (_, before, _), (_, after, _) in zip(events, events[1:]):
         assert abs(after - before - 33333) < 200, "no frame is missing, times are those of the recording"
+    check_import(tools, folder, events)
     slow = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--frames", 10, "--rate", 10, "--log", folder / "slow.log")
     times = [timestamp for timestamp, _, _ in read_log(folder / "slow.log")]
     assert slow.returncode == 0 and times[-1] - times[0] == 900000, (slow, times)

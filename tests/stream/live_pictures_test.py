@@ -8,6 +8,7 @@ spy_preview.png, view.png. Data and forest are those that end_to_end_test.py mad
 import argparse
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import time
@@ -139,10 +140,23 @@ def check_view(tools, data, logs, display, out):
         width = display.geometry(window)[2]
         display.do("windowfocus", window)
         press(display, "d", lambda: display.geometry(window)[2] < width, "d does not hide the depth")
+        press(display, "3", lambda: display.geometry(window)[2] == width, "3 does not show 3-D")
+        check_saving(display, window)
         press(display, "space", lambda: is_still(display, window), "space does not pause")
         press(display, "q", lambda: view.process.poll() == 0, "q does not end hs-view")
     finally:
         view.kill()
+
+
+def check_saving(display, window):
+    """s saves the picture that is shown, in the folder where hs-view was started."""
+    saved = lambda: list(pathlib.Path().glob("view_*.png"))
+    for file in saved():
+        file.unlink()
+    press(display, "s", lambda: saved() and saved()[0].read_bytes().endswith(b"IEND\xaeB`\x82"), "s saves no picture")
+    size = struct.unpack(">II", saved()[0].read_bytes()[16:24])
+    saved()[0].unlink()
+    assert size == display.geometry(window)[2:], (size, display.geometry(window))
 
 
 def press(display, key, condition, complaint, seconds=60):

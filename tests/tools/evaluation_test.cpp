@@ -216,7 +216,7 @@ TEST(PoseMetrics, FramesWithoutPublishedPosesAndObjectsWithoutTruePosesAreLeftOu
 }
 
 fs::path write_csv(const std::string& text) {
-  const fs::path file = fs::temp_directory_path() / "houghstream_latency_test.csv";
+  fs::path file = fs::temp_directory_path() / "houghstream_latency_test.csv";
   std::ofstream(file) << text;
   return file;
 }

@@ -19,7 +19,7 @@ const std::string kBoxes = R"({"image_size": [64, 48], "camera": {"fx": 60, "fy"
             {"frame": "a_9", "objects": []}]})";
 
 fs::path write_source(const std::string& name) {
-  const fs::path folder = fresh_folder(name);
+  fs::path folder = fresh_folder(name);
   for (const int number : {9, 10}) {
     const std::string stem = "a_" + std::to_string(number);
     write_png(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(number)), folder / (stem + "_color.png"));

@@ -35,7 +35,7 @@ SurfaceCloud::Ptr with_normals(const SurfaceCloud::Ptr& points, const SurfaceClo
   estimation.setRadiusSearch(radius_m);
   SurfaceCloud normals;
   estimation.compute(normals);
-  const SurfaceCloud::Ptr out(new SurfaceCloud);
+  SurfaceCloud::Ptr out(new SurfaceCloud);
   for (std::size_t i = 0; i < points->size(); ++i) {
     if (!normals[i].getNormalVector3fMap().allFinite()) continue;
     out->push_back(normals[i]);
@@ -54,7 +54,7 @@ SurfaceCloud::Ptr thinned(const SurfaceCloud& cloud, double spacing_m) {
     sum.normal += point.getNormalVector3fMap();
     ++sum.count;
   }
-  const SurfaceCloud::Ptr out(new SurfaceCloud);
+  SurfaceCloud::Ptr out(new SurfaceCloud);
   for (const auto& [cell, sum] : cells) {
     pcl::PointNormal mean;
     mean.getVector3fMap() = sum.point / static_cast<float>(sum.count);

@@ -22,7 +22,7 @@ struct Options {
 };
 
 constexpr const char* kSources =
-    "an LCM log of images_t, kinect.frame_msg_t or lcmt_image_array; FILE.klg; bop:DIR, uw:DIR or tum:DIR";
+    "an LCM log of images_t, kinect.frame_msg_t or lcmt_image_array; FILE.klg or FILE.oni; bop:DIR, uw:DIR or tum:DIR";
 
 CLI::App* add_info(CLI::App& app, Options& options) {
   CLI::App* info = app.add_subcommand("info", "channels, types, rates, gaps and sizes");

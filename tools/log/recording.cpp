@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "drivers/frame_source.hpp"
+#include "drivers/openni/camera_source.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/messages.hpp"
 #include "pipeline/wire_check.hpp"
@@ -19,12 +20,12 @@ bool starts_with(const std::string& text, const std::string& start) {
   return text.rfind(start, 0) == 0;
 }
 
-/// The file of FILE.klg or klg:FILE.
-std::optional<std::string> klg_path(const std::string& source) {
-  if (starts_with(source, "klg:")) return source.substr(4);
-  const std::string end = ".klg";
-  const bool is_klg = source.size() > end.size() && source.compare(source.size() - end.size(), end.size(), end) == 0;
-  return is_klg ? std::optional<std::string>(source) : std::nullopt;
+/// The file of FILE.KIND or KIND:FILE.
+std::optional<std::string> file_of(const std::string& source, const std::string& kind) {
+  if (starts_with(source, kind + ":")) return source.substr(kind.size() + 1);
+  const std::string end = "." + kind;
+  const bool ends_so = source.size() > end.size() && source.compare(source.size() - end.size(), end.size(), end) == 0;
+  return ends_so ? std::optional<std::string>(source) : std::nullopt;
 }
 
 /// KIND:WHERE, as open_frame_source() takes it; the names of files may hold a colon too.
@@ -125,7 +126,7 @@ class KlgRecording {
 
 class SourceRecording {
  public:
-  explicit SourceRecording(const std::string& source) : source_(open_frame_source(source)) {}
+  explicit SourceRecording(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
 
   std::optional<RecordedFrame> next() {
     const std::optional<RgbdFrame> frame = source_->next();
@@ -149,10 +150,17 @@ NextFrame reading(std::shared_ptr<Recording> recording) {
 
 NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses) {
   if (settings.camera) check_camera(*settings.camera, "--camera");
-  if (const auto file = klg_path(settings.source)) {
+  if (const auto file = file_of(settings.source, "klg")) {
     return reading(std::make_shared<KlgRecording>(*file, settings, losses));
   }
-  if (is_frame_source(settings.source)) return reading(std::make_shared<SourceRecording>(settings.source));
+  if (const auto file = file_of(settings.source, "oni")) {
+    CameraOptions options;
+    options.camera = settings.camera;
+    return reading(std::make_shared<SourceRecording>(open_oni_source(*file, options)));
+  }
+  if (is_frame_source(settings.source)) {
+    return reading(std::make_shared<SourceRecording>(open_frame_source(settings.source)));
+  }
   return reading(std::make_shared<LogRecording>(settings, losses));
 }
 

@@ -20,9 +20,9 @@ std::int64_t microseconds(std::chrono::steady_clock::time_point time) {
 
 }  // namespace
 
-BusWatcher::BusWatcher(const std::string& lcm_url, const std::string& frame_channel, const MatchSettings& match,
+BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channel, const MatchSettings& match,
                        std::size_t waiting_frames)
-    : bus_(lcm_url), matcher_(match), queue_(waiting_frames) {
+    : bus_(bus), matcher_(match), queue_(waiting_frames) {
   require(!bus_.is_log(), "{}: a log is watched by replaying it with lcm-logplayer, expected a network URL",
           bus_.url());
   subscribe(frame_channel);

@@ -18,9 +18,9 @@ namespace houghstream {
 /// Listens to frames, detections and poses in a thread of its own, so that slow drawing never delays receiving.
 class BusWatcher {
  public:
-  /// Starts to listen. `waiting_frames` may queue up to be drawn. Throws InputError where the network cannot be used.
-  BusWatcher(const std::string& lcm_url, const std::string& frame_channel, const MatchSettings& match,
-             std::size_t waiting_frames);
+  /// Starts to listen to `bus`, which must outlive it. `waiting_frames` may queue up to be drawn. Throws InputError
+  /// where the network cannot be used, or where it is a log.
+  BusWatcher(LcmBus& bus, const std::string& frame_channel, const MatchSettings& match, std::size_t waiting_frames);
   ~BusWatcher();
   BusWatcher(const BusWatcher&) = delete;
   BusWatcher& operator=(const BusWatcher&) = delete;
@@ -52,7 +52,7 @@ class BusWatcher {
   void listen();
   void hand_over();
 
-  LcmBus bus_;
+  LcmBus& bus_;
   StatusReporter status_{"hs-view"};
   FrameMatcher matcher_;
   StreamWatch stream_;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/view/turned_view.hpp"
 #include "tools/view/view_panel.hpp"
 
 namespace houghstream {
@@ -43,7 +44,9 @@ cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const
                         const StreamView& stream) {
   const ViewedFrame viewed = without_weak(all, settings.min_score);
   cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
-  if (settings.show_depth) {
+  if (settings.show_3d) {
+    cv::hconcat(picture, draw_turned_view(viewed.frame, viewed.poses, models), picture);
+  } else if (settings.show_depth) {
     cv::hconcat(picture, colour_depth(viewed.frame.depth, settings.depth_near, settings.depth_far), picture);
   }
   cv::vconcat(picture, draw_panel(viewed, stream, settings, picture.cols), picture);

@@ -22,6 +22,7 @@ struct ViewedFrame {
 struct FrameViewSettings {
   float min_score = 0.5F;   ///< weaker detections and their poses are not drawn
   bool show_depth = true;   ///< depth, colour-mapped, to the right
+  bool show_3d = false;     ///< there the measured points, seen from elsewhere, instead (turned_view.hpp)
   float depth_near = 0.4F;  ///< metres, red end of the colour map
   float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue
   bool show_keys = false;   ///< a line that names the window's keys
@@ -41,8 +42,8 @@ cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
 /// The frame without detections weaker than `min_score` and without their poses.
 ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 
-/// The whole picture, CV_8UC3: overlay, depth beside it, and below them the panel (view_panel.hpp). Its size is even in
-/// both directions, as video encoders want. Throws InputError as draw_overlay does.
+/// The whole picture, CV_8UC3: overlay, depth or 3-D beside it, and below them the panel (view_panel.hpp). Its size is
+/// even in both directions, as video encoders want. Throws InputError as draw_overlay does.
 cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
                         const StreamView& stream = {});
 

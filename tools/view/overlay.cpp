@@ -95,14 +95,6 @@ void draw_axes(cv::Mat& image, const Eigen::Isometry3d& T_camera_object, double 
   }
 }
 
-void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models, const Camera& camera) {
-  if (!pose.T_camera_object) return;
-  const auto model = models.find(pose.class_name);
-  if (model != models.end()) draw_outline(image, model->second, pose, camera);
-  const double length = model == models.end() ? kDefaultAxis : axis_length(model->second);
-  draw_axes(image, *pose.T_camera_object, length, camera);
-}
-
 // The pose of each detection, null where there is none.
 std::vector<const ObjectPose*> poses_by_detection(const Detections& detections,
                                                   const std::optional<ObjectPoses>& poses) {
@@ -144,6 +136,14 @@ cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const
     draw_label(image, detections.detections[i], pose_of[i]);
   }
   return image;
+}
+
+void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models, const Camera& camera) {
+  if (!pose.T_camera_object) return;
+  const auto model = models.find(pose.class_name);
+  if (model != models.end()) draw_outline(image, model->second, pose, camera);
+  const double length = model == models.end() ? kDefaultAxis : axis_length(model->second);
+  draw_axes(image, *pose.T_camera_object, length, camera);
 }
 
 void draw_text(cv::Mat& image, const std::string& text, cv::Point origin_px, double scale, const cv::Scalar& colour) {

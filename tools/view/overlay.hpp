@@ -25,6 +25,9 @@ cv::Scalar class_colour(int class_id);
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
                      const ClassModels& models);
 
+/// The outline of the pose's model, where there is one, and its axes; nothing where there is no pose.
+void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models, const Camera& camera);
+
 /// Text that stays readable on any background: light, with a dark rim. `origin_px` is the left end of its baseline.
 void draw_text(cv::Mat& image, const std::string& text, cv::Point origin_px, double scale = 0.45,
                const cv::Scalar& colour = {255, 255, 255});

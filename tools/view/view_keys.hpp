@@ -11,8 +11,8 @@ enum class KeyAction {
   kEnd,
 };
 
-/// What a key, as cv::waitKey gives it, does to the settings: q or Esc ends, space pauses, d shows or hides depth,
-/// + and - move the smallest score that is drawn.
+/// What a key, as cv::waitKey gives it, does to the settings: q or Esc ends, space pauses, d shows or hides depth, 3
+/// shows 3-D in its place, + and - move the smallest score that is drawn.
 KeyAction apply_key(int key, FrameViewSettings& settings);
 
 }  // namespace houghstream

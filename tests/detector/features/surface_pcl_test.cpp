@@ -26,7 +26,7 @@ WorkingFrame noisy_ball() {
 }
 
 Points::Ptr cloud_of(const WorkingFrame& frame) {
-  const Points::Ptr cloud(new Points);
+  Points::Ptr cloud(new Points);
   for (int y = 0; y < frame.filled_depth.rows; ++y) {
     for (int x = 0; x < frame.filled_depth.cols; ++x) {
       const Eigen::Vector3d point = frame.camera.backproject(x, y, frame.filled_depth.at<float>(y, x));
@@ -45,7 +45,7 @@ Normals::Ptr searched_normals(const Points::Ptr& cloud, int neighbours) {
   estimation.setInputCloud(cloud);
   estimation.setSearchMethod(tree());
   estimation.setKSearch(neighbours);
-  const Normals::Ptr normals(new Normals);
+  Normals::Ptr normals(new Normals);
   estimation.compute(*normals);
   return normals;
 }

@@ -31,5 +31,19 @@ TEST(ScriptWatch, NoticesAChangeAndOutlivesAMistake) {
   EXPECT_FALSE(watch.current()->plugged);
 }
 
+// The clock that stamps files ticks every few milliseconds only.
+TEST(ScriptWatch, NoticesAChangeThatKeepsTheFilesTime) {
+  const auto file = fresh_folder("script_watch_time") / "script";
+  write_text(file, "plugged yes\n");
+  const auto time = std::filesystem::last_write_time(file);
+  ScriptWatch watch(file);
+  watch.start([](const CameraScript&, const CameraScript&) {});
+  write_text(file.string() + ".new", "plugged no\n");
+  std::filesystem::last_write_time(file.string() + ".new", time);
+  std::filesystem::rename(file.string() + ".new", file);
+  for (int i = 0; i < 500 && watch.current()->plugged; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(watch.current()->plugged);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -39,6 +39,20 @@ TEST(Recording, TheFirstChannelWithFramesIsReadUnlessOneIsNamed) {
   EXPECT_THROW(numbers_in(settings, losses), InputError);
 }
 
+TEST(Recording, WhatIsNotThereIsAnErrorThatNamesIt) {
+  LossAccount losses;
+  for (const std::string source : {"/no/such.log", "/no/such.klg", "/no/such.oni", "oni:/no/such", "bop:/no/such"}) {
+    RecordingSettings settings;
+    settings.source = source;
+    try {
+      open_recording(settings, losses)();
+      ADD_FAILURE() << source;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("/no/such"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Recording, FramesKeepTheirOwnCameraAndTimeAndAreCounted) {
   const fs::path folder = fresh_folder("recording_camera");
   TestLog log(folder / "log");

@@ -40,6 +40,20 @@ TEST(FrameView, PictureHoldsOverlayDepthAndPanelAndIsEven) {
   EXPECT_EQ(draw_frame_view(small_frame(), {}, without).cols, 162);
 }
 
+TEST(FrameView, ThreeDStandsInThePlaceOfDepth) {
+  FrameViewSettings settings;
+  const cv::Mat with_depth = draw_frame_view(small_frame(), {}, settings);
+  settings.show_3d = true;
+  const cv::Mat with_3d = draw_frame_view(small_frame(), {}, settings);
+  ASSERT_EQ(with_3d.size(), with_depth.size());
+  const cv::Rect left(0, 0, 161, 121);
+  const cv::Rect right(161, 0, 161, 121);
+  EXPECT_EQ(cv::norm(with_3d(left), with_depth(left), cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(with_3d(right), with_depth(right), cv::NORM_INF), 0.0);
+  settings.show_depth = false;
+  EXPECT_EQ(draw_frame_view(small_frame(), {}, settings).cols, with_3d.cols);
+}
+
 TEST(FrameView, WeakDetectionsAreLeftOutWithTheirPoses) {
   ViewedFrame viewed;
   viewed.detections.detections.resize(3);

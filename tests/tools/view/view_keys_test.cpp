@@ -9,6 +9,8 @@ TEST(ViewKeys, EachKeyDoesWhatTheWindowSays) {
   FrameViewSettings settings;
   EXPECT_EQ(apply_key('d', settings), KeyAction::kRedraw);
   EXPECT_FALSE(settings.show_depth);
+  EXPECT_EQ(apply_key('3', settings), KeyAction::kRedraw);
+  EXPECT_TRUE(settings.show_3d);
   EXPECT_EQ(apply_key(' ', settings), KeyAction::kRedraw);
   EXPECT_TRUE(settings.paused);
   apply_key(' ', settings);

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("view_outputs_test_" + name);
+  fs::path folder = fs::path(testing::TempDir()) / ("view_outputs_test_" + name);
   fs::remove_all(folder);
   return folder;
 }

@@ -1,0 +1,106 @@
+#include "tools/view/bus_watcher.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "pipeline/checks.hpp"
+#include "pipeline/event_log.hpp"
+#include "tests/tools/view/watched_bus.hpp"
+
+namespace houghstream {
+namespace {
+
+TEST(BusWatcher, AFrameComesWithItsResults) {
+  WatchedBus watched;
+  watched.publish_frame(1);
+  watched.publish_results(1);
+  const std::optional<MatchedFrame> matched = watched.next();
+  ASSERT_TRUE(matched.has_value());
+  EXPECT_EQ(matched->utime, 1);
+  ASSERT_TRUE(matched->detections.has_value());
+  EXPECT_EQ(matched->detections->detections.size(), 1U);
+  EXPECT_TRUE(matched->poses.has_value());
+  EXPECT_FALSE(watched.watcher.next(std::chrono::milliseconds(0)).has_value());
+}
+
+TEST(BusWatcher, RateAndFramesThatNeverArrivedAreCounted) {
+  WatchedBus watched;
+  watched.publish_frame(1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  watched.publish_frame(4);
+  EXPECT_TRUE(WatchedBus::comes_true([&] { return watched.watcher.frames_lost() == 2; }));
+  EXPECT_TRUE(WatchedBus::comes_true([&] { return watched.watcher.stream_state().frames_hz > 0.0; }));
+}
+
+TEST(BusWatcher, WhatIsNoMessageOfTheChannelDoesNotEndIt) {
+  WatchedBus watched;
+  const std::vector<std::uint8_t> rubbish(20, 7);
+  for (const std::string& name : {channel::kFrame, channel::kDetections, channel::kPoses, channel::kStatus}) {
+    watched.bus.publish(name, {rubbish.data(), rubbish.size()}, 0);
+  }
+  watched.publish_frame(1);
+  watched.publish_results(1);
+  EXPECT_TRUE(watched.next().has_value());
+}
+
+TEST(BusWatcher, ProcessesAreKnownByWhatTheySay) {
+  WatchedBus watched;
+  status_t status{};
+  status.process = "hs-detect";
+  status.frames_skipped = 3;
+  watched.bus.publish(channel::kStatus, status);
+  ASSERT_TRUE(WatchedBus::comes_true([&] { return !watched.watcher.stream_state().processes.empty(); }));
+  const ProcessState heard = watched.watcher.stream_state().processes[0];
+  EXPECT_EQ(heard.name, "hs-detect");
+  EXPECT_EQ(heard.skipped, 3);
+}
+
+TEST(BusWatcher, SaysWhatBecameOfTheFrames) {
+  WatchedBus watched;
+  watched.publish_frame(1);
+  watched.publish_results(1);
+  const std::optional<MatchedFrame> matched = watched.next();
+  ASSERT_TRUE(matched.has_value());
+  watched.watcher.note_drawn(*matched);
+  watched.watcher.note_skipped();
+  watched.watcher.note_refused("no camera");
+  const status_t last = watched.last_words();
+  EXPECT_EQ(last.process, "hs-view");
+  EXPECT_EQ(last.frames_received, 1);
+  EXPECT_EQ(last.frames_skipped, 1);
+  EXPECT_EQ(last.frames_refused, 1);
+  EXPECT_EQ(last.last_error, "no camera");
+}
+
+TEST(BusWatcher, APreviewIsAJpegOfThePicture) {
+  WatchedBus watched;
+  watched.watcher.stop();  // from here on this thread receives
+  image_t preview{};
+  watched.bus.subscribe(channel::kPreview, [&](const Arrival& arrival) {
+    preview.decode(arrival.bytes.data, 0, static_cast<int>(arrival.bytes.size));
+  });
+  watched.watcher.publish_preview(cv::Mat(40, 60, CV_8UC3, cv::Scalar(0, 0, 200)), 9);
+  ASSERT_TRUE(watched.bus.handle(std::chrono::milliseconds(1000)));
+  EXPECT_EQ(preview.utime, 9);
+  EXPECT_EQ(cv::Size(preview.width, preview.height), cv::Size(60, 40));
+  EXPECT_EQ(preview.pixelformat, image_t::PIXEL_FORMAT_MJPEG);
+  EXPECT_EQ(preview.size, static_cast<std::int32_t>(preview.data.size()));
+  ASSERT_GT(preview.data.size(), 2U);
+  EXPECT_EQ(preview.data[0] << 8 | preview.data[1], 0xFFD8);
+}
+
+TEST(BusWatcher, ALogIsNotWatched) {
+  const auto file = std::filesystem::temp_directory_path() / ("bus_watcher_test." + std::to_string(getpid()));
+  const std::uint8_t byte = 0;
+  LogWriter writer(file);
+  writer.write(0, "X", {&byte, 1});
+  writer.close();
+  LcmBus bus("file://" + file.string());
+  EXPECT_THROW(BusWatcher(bus, channel::kFrame, {}, 1), InputError);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "pipeline/channels.hpp"
+#include "pipeline/messages.hpp"
+#include "tests/pipeline/test_frame.hpp"
+#include "tools/view/bus_watcher.hpp"
+
+namespace houghstream {
+
+/// An in-process bus with a watcher that draws every frame, as the processes of a stream would see it.
+struct WatchedBus {
+  static MatchSettings every_frame() {
+    MatchSettings match;
+    match.rate_hz = 1000.0;
+    return match;
+  }
+
+  void publish_frame(std::int64_t utime) {
+    bus.publish(channel::kFrame, to_message(make_test_frame(utime), WireFormat{}, utime - 1));
+  }
+
+  void publish_results(std::int64_t utime) {
+    Detections detections;
+    detections.utime = utime;
+    detections.detections.resize(1);
+    detections.detections[0].class_id = 1;
+    detections.detections[0].class_name = "bowl";
+    detections.detections[0].box_px = {10.0F, 10.0F, 20.0F, 20.0F};
+    bus.publish(channel::kDetections, to_message(detections));
+    ObjectPoses poses;
+    poses.utime = utime;
+    bus.publish(channel::kPoses, to_message(poses));
+  }
+
+  std::optional<MatchedFrame> next() { return watcher.next(std::chrono::seconds(10)); }
+
+  /// Waits until it holds; false after ten seconds.
+  static bool comes_true(const std::function<bool()>& condition) {
+    for (int i = 0; i < 1000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return condition();
+  }
+
+  /// What hs-view says about its frames at its end.
+  status_t last_words() {
+    std::optional<status_t> last;
+    watcher.stop();  // from here on this thread receives
+    bus.subscribe(channel::kStatus, [&](const Arrival& arrival) { last = decode_message<status_t>(arrival.bytes); });
+    watcher.finish();
+    while (!last && bus.handle(std::chrono::milliseconds(1000))) {
+    }
+    return last.value_or(status_t{});
+  }
+
+  LcmBus bus{"memq://"};
+  BusWatcher watcher{bus, channel::kFrame, every_frame(), 10};
+};
+
+/// The encoded message of a frame, with nothing found in it.
+inline MatchedFrame matched_frame(std::int64_t utime) {
+  MatchedFrame matched;
+  matched.utime = utime;
+  matched.frame_bytes = encode_message(to_message(make_test_frame(utime), WireFormat{}, 0));
+  return matched;
+}
+
+/// The same as another program sends it: without a camera.
+inline MatchedFrame matched_frame_without_camera(std::int64_t utime) {
+  images_t message = to_message(make_test_frame(utime), WireFormat{}, 0);
+  for (image_t& image : message.images) {
+    image.metadata.clear();
+    image.nmetadata = 0;
+  }
+  MatchedFrame matched;
+  matched.utime = utime;
+  matched.frame_bytes = encode_message(message);
+  return matched;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,90 @@
+#include "tools/view/frame_show.hpp"
+
+#include <utility>
+
+#include "drivers/bop_dataset.hpp"
+#include "pipeline/checks.hpp"
+#include "pipeline/messages.hpp"
+#include "pipeline/wire_check.hpp"
+
+namespace houghstream {
+namespace {
+
+ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& camera) {
+  const ByteView bytes{matched.frame_bytes.data(), matched.frame_bytes.size()};
+  ViewedFrame viewed;
+  viewed.frame = frame_from_message(decode_message<houghstream::images_t>(bytes), camera);
+  viewed.detections.utime = matched.utime;
+  if (matched.detections) {
+    viewed.detections = *matched.detections;
+    viewed.detect_latency_ms = matched.detect_latency_ms;
+  }
+  if (matched.poses) {
+    viewed.poses = matched.poses;
+    viewed.pose_latency_ms = matched.pose_latency_ms;
+  }
+  return viewed;
+}
+
+}  // namespace
+
+FrameShow::FrameShow(const ShowSettings& settings)
+    : models_(settings.models.empty() ? ClassModels() : load_class_models(settings.models, settings.model_unit_m)),
+      window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
+      outputs_(settings.outputs),
+      camera_(settings.camera),
+      picture_settings_(settings.picture),
+      preview_(settings.preview) {
+  picture_settings_.show_keys = window_ != nullptr;
+}
+
+void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
+  if (picture_settings_.paused) {
+    watcher.note_skipped();
+    return;
+  }
+  const std::optional<cv::Mat> picture = drawn(matched, watcher);
+  if (!picture) return;
+  if (window_) window_->show(*picture, matched.utime);
+  outputs_.add(*picture, matched.utime, matched.slot);
+  if (preview_) watcher.publish_preview(*picture, matched.utime);
+}
+
+bool FrameShow::handle_keys() {
+  if (!window_) return true;
+  const KeyAction action = window_->handle_keys(picture_settings_);
+  if (action == KeyAction::kRedraw && viewed_) window_->show(draw(*viewed_), viewed_->frame.utime);
+  return action != KeyAction::kEnd;
+}
+
+std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher& watcher) {
+  try {
+    ViewedFrame viewed = decode(matched, camera_);
+    remember(viewed);
+    stream_.state = watcher.stream_state();
+    stream_.frames_lost = watcher.frames_lost();
+    cv::Mat picture = draw(viewed);
+    viewed_ = std::move(viewed);
+    watcher.note_drawn(matched);
+    return picture;
+  } catch (const InputError& error) {
+    watcher.note_refused(error.what());
+    return std::nullopt;
+  }
+}
+
+cv::Mat FrameShow::draw(const ViewedFrame& viewed) const {
+  return draw_frame_view(viewed, models_, picture_settings_, stream_);
+}
+
+void FrameShow::remember(const ViewedFrame& viewed) {
+  constexpr std::size_t kFrames = 200;
+  if (viewed.poses) {
+    stream_.history.push_back({viewed.poses->stages, viewed.pose_latency_ms});
+  } else {
+    stream_.history.push_back({viewed.detections.stages, viewed.detect_latency_ms});
+  }
+  if (stream_.history.size() > kFrames) stream_.history.pop_front();
+}
+
+}  // namespace houghstream

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "tools/view/bus_watcher.hpp"
+#include "tools/view/frame_view.hpp"
+#include "tools/view/view_outputs.hpp"
+#include "tools/view/view_window.hpp"
+
+namespace houghstream {
+
+/// What is drawn of each frame, and where to.
+struct ShowSettings {
+  std::optional<Camera> camera;  ///< of frames that carry none of their own
+  std::string models;            ///< folder of models for outlines; "" = none
+  double model_unit_m = 1e-3;    ///< unit of the models' coordinates
+  FrameViewSettings picture;
+  bool preview = false;  ///< send each picture on the preview channel
+  OutputSettings outputs;
+
+  /// Files or the preview are asked for: then there is no window.
+  bool headless() const {
+    return preview || !outputs.snapshot.empty() || !outputs.video.empty() || !outputs.pictures.empty();
+  }
+};
+
+/// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
+class FrameShow {
+ public:
+  /// Throws InputError where there are no models, no display or no folder to write to.
+  explicit FrameShow(const ShowSettings& settings);
+
+  /// Shows a frame, unless paused. One that cannot be understood is reported to `watcher` and passed over. Throws
+  /// InputError where a file cannot be written.
+  void show(const MatchedFrame& matched, BusWatcher& watcher);
+
+  /// Lets the window act on keys. False when it was asked to end.
+  bool handle_keys();
+
+  /// As ViewOutputs.
+  bool complete() const { return outputs_.complete(); }
+  void finish() { outputs_.finish(); }
+
+ private:
+  std::optional<cv::Mat> drawn(const MatchedFrame& matched, BusWatcher& watcher);
+  cv::Mat draw(const ViewedFrame& viewed) const;
+  void remember(const ViewedFrame& viewed);
+
+  ClassModels models_;
+  std::unique_ptr<ViewWindow> window_;
+  ViewOutputs outputs_;
+  std::optional<Camera> camera_;
+  FrameViewSettings picture_settings_;
+  bool preview_;
+  std::optional<ViewedFrame> viewed_;
+  StreamView stream_;
+};
+
+}  // namespace houghstream
