@@ -11,12 +11,14 @@
 
 // What the whole process asks the C library for, OpenCV's pictures and operator new among it: glibc lets a program
 // bring its own of these, and has the same ones under other names.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): its names
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 }
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 
 namespace {
 
@@ -33,7 +35,6 @@ void count_allocation(std::size_t size) {
 
 }  // namespace
 
-// NOLINTBEGIN(misc-definitions-in-headers, readability-inconsistent-declaration-parameter-name)
 extern "C" {
 void* malloc(std::size_t size) noexcept {
   count_allocation(size);
@@ -59,7 +60,6 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexc
   return *memory != nullptr ? 0 : ENOMEM;
 }
 }
-// NOLINTEND(misc-definitions-in-headers, readability-inconsistent-declaration-parameter-name)
 
 namespace houghstream {
 namespace {
