@@ -138,7 +138,7 @@ void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level
 
 std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
   if (!patches.squares.empty()) return patches.squares;
-  constexpr std::size_t kPatches = 256;
+  constexpr std::size_t kPatches = 512;
   std::vector<PatchRun> runs;
   for (std::size_t begin = 0; begin < patches.size();) {
     std::size_t end = begin;
