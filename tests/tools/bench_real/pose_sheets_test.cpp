@@ -60,9 +60,20 @@ TEST(PoseSheets, TheOutlineLeavesWhatLiesUnderTheModel) {
 
 TEST(PoseSheets, EachPoseHasALineBelowTheTitle) {
   const RgbdFrame frame = plain_frame();
-  const cv::Mat titled = draw_poses(frame, {}, {}, "frame");
+  const cv::Mat titled = draw_poses(frame, {}, {}, {}, "frame");
   EXPECT_GT(cv::norm(titled, frame.colour, cv::NORM_L1), 0.0);
-  EXPECT_GT(cv::norm(draw_poses(frame, in_front(), {}, "frame"), titled, cv::NORM_L1), 0.0);
+  EXPECT_GT(cv::norm(draw_poses(frame, in_front(), {}, {}, "frame"), titled, cv::NORM_L1), 0.0);
+}
+
+TEST(PoseSheets, AWithheldPoseIsAWhiteOutlineWithoutALine) {
+  const RgbdFrame frame = plain_frame();
+  const cv::Mat titled = draw_poses(frame, {}, {}, square({1, 2, 3}), "frame");
+  cv::Mat changed;
+  cv::absdiff(draw_poses(frame, {}, in_front(), square({1, 2, 3}), "frame"), titled, changed);
+  cv::cvtColor(changed, changed, cv::COLOR_BGR2GRAY);
+  EXPECT_NEAR(cv::boundingRect(changed).width, 12, 1);
+  EXPECT_EQ(draw_poses(frame, {}, in_front(), square({1, 2, 3}), "frame").at<cv::Vec3b>(24, 32),
+            frame.colour.at<cv::Vec3b>(24, 32));
 }
 
 TEST(PoseSheets, FourTilesToASheet) {
