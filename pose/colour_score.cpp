@@ -24,7 +24,7 @@ enum Column : Eigen::Index {
   kSeenB,
   kColumns
 };
-using Samples = Eigen::Matrix<float, Eigen::Dynamic, kColumns>;
+using Samples = Eigen::Matrix<float, Eigen::Dynamic, kColumns, Eigen::RowMajor>;
 using Products = Eigen::Matrix<double, kColumns, kColumns>;  // of the columns' mean values
 
 double seen_variance(const Products& products, Eigen::Index seen) {

@@ -168,11 +168,15 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
 const ModelView& nearest_view(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
   const Eigen::Vector3d eye = -(T_camera_object.linear().transpose() * T_camera_object.translation());
   const Eigen::Vector3f direction = eye.cast<float>() - model.centre;
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < model.views.size(); ++i) {
-    if (model.views[i].direction.dot(direction) > model.views[best].direction.dot(direction)) best = i;
+  const ModelView* best = &model.views.front();
+  float best_along = best->direction.dot(direction);
+  for (const ModelView& view : model.views) {
+    const float along = view.direction.dot(direction);
+    if (!(along > best_along)) continue;
+    best = &view;
+    best_along = along;
   }
-  return model.views[best];
+  return *best;
 }
 
 }  // namespace houghstream

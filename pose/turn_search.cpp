@@ -38,10 +38,12 @@ Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectM
 ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
                       const Eigen::Isometry3d& T_camera_object, const Climb& climb, const DepthTolerance& tolerance) {
   ScoredPose best = judge_pose(frame, colours, model, T_camera_object, climb.points, tolerance);
+  constexpr int kMotions = 8;
   double size = 1.0;
+  int failed = 0;  // one after the other, of this size
   for (int round = 0; round < climb.rounds; ++round) {
     bool improved = false;
-    for (int motion = 0; motion < 8; ++motion) {
+    for (int motion = 0; motion < kMotions && failed < kMotions; ++motion) {  // a ninth would repeat the first
       const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
       Eigen::Isometry3d moved = best.T_camera_object;
       if (motion < 2) {
@@ -50,11 +52,15 @@ ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const Ob
         moved.translate(way * climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
       }
       const ScoredPose next = judge_pose(frame, colours, model, moved, climb.points, tolerance);
+      ++failed;
       if (!(next.score > best.score)) continue;
       best = next;
       improved = true;
+      failed = 0;
     }
-    if (!improved) size *= 0.5;
+    if (improved) continue;
+    size *= 0.5;
+    failed = 0;
   }
   return best;
 }
