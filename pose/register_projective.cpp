@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "pose/pair_block.hpp"
 #include "pose/registration.hpp"
 
 namespace houghstream {
@@ -10,17 +11,14 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector8f = Eigen::Matrix<float, 8, 1>;
-using Matrix8f = Eigen::Matrix<float, 8, 8>;
 
 constexpr int kLeastPairs = 12;    // for a step: twice the unknowns
 constexpr double kDamping = 1e-3;  // of the mean curvature, holds turns that symmetric surfaces leave open
 
-/// What the pairs pull, as weighted sums of products: single precision and a width of eight suit vector units. Arms are
-/// from the model's centre to the points, in its radius.
+/// What the pairs pull, as weighted sums of products. Arms are from the model's centre to the points, in its radius.
 struct Pull {
-  Matrix8f across = Matrix8f::Zero();  // of (arm x normal, normal, gap along the normal, 0)
-  Matrix8f along = Matrix8f::Zero();   // of (arm, 1, gap, 0)
+  PairSums across = PairSums::Zero();  // of (arm x normal, normal, gap along the normal, 0)
+  PairSums along = PairSums::Zero();   // of (arm, 1, gap, 0)
   int pairs = 0;
   double squares = 0.0;  // of the distances along the normals
 };
@@ -31,70 +29,46 @@ struct StepEquations {
   Vector6d gradient = Vector6d::Zero();
 };
 
-/// Rays of pixels with z = 1: that of (0,0), and the steps between neighbours.
-struct Rays {
-  explicit Rays(const Camera& camera)
-      : first(camera.backproject(0, 0, 1.0).cast<float>()),
-        step((camera.backproject(1, 1, 1.0) - camera.backproject(0, 0, 1.0)).cast<float>()) {}
-  Eigen::Vector3f first;
-  Eigen::Vector3f step;
+/// A block of points with the normals that go with them.
+struct Visible {
+  PairBlock block;
+  std::array<Eigen::Vector3f, PairBlock::kSize> normals;
+
+  void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
+    block.x[block.count] = point.x();
+    block.y[block.count] = point.y();
+    block.z[block.count] = point.z();
+    normals[block.count++] = normal;
+  }
 };
 
-/// The gap to the measured point nearest to `p` among a lattice of pixels that reaches `distance` to each side.
-bool nearest_measured(const RgbdFrame& frame, const Rays& rays, const Eigen::Vector3f& p, float distance, int steps,
-                      Eigen::Vector3f& gap) {
-  const Eigen::Vector2f pixel = frame.camera.project_single(p) + Eigen::Vector2f::Constant(0.5F);
-  const bool inside = pixel.x() >= 0.5F && pixel.y() >= 0.5F && pixel.x() < static_cast<float>(frame.depth.cols) &&
-                      pixel.y() < static_cast<float>(frame.depth.rows);
-  if (!inside) return false;
-  const int stride = std::max(1, static_cast<int>(distance / (rays.step.x() * p.z() * static_cast<float>(steps))));
-  const int u = static_cast<int>(pixel.x());
-  const int v = static_cast<int>(pixel.y());
-  const auto least = [stride, steps](int at) { return -std::min(steps, at / stride); };
-  const auto most = [stride, steps](int at, int size) { return std::min(steps, (size - 1 - at) / stride); };
-  float best_sq = distance * distance;
-  const float limit_sq = best_sq;
-  for (int j = least(v); j <= most(v, frame.depth.rows); ++j) {
-    const int y = v + j * stride;
-    const float* depth = frame.depth.ptr<float>(y);
-    const float ray_y = rays.first.y() + rays.step.y() * static_cast<float>(y);
-    for (int i = least(u); i <= most(u, frame.depth.cols); ++i) {
-      const int x = u + i * stride;
-      const float z = depth[x];  // NaN fails the comparison below
-      const Eigen::Vector3f here(z * (rays.first.x() + rays.step.x() * static_cast<float>(x)) - p.x(),
-                                 z * ray_y - p.y(), z - p.z());
-      const float distance_sq = here.squaredNorm();
-      if (!(distance_sq < best_sq)) continue;
-      best_sq = distance_sq;
-      gap = here;
-    }
+PairRow across_row(const Eigen::Vector3f& a, const Eigen::Vector3f& n, float apart) {
+  return {{a.y() * n.z() - a.z() * n.y(), a.z() * n.x() - a.x() * n.z(), a.x() * n.y() - a.y() * n.x(), n.x(), n.y(),
+           n.z(), apart, 0.0F}};
+}
+
+/// Adds what the block's pairs pull and empties it.
+void add_pairs(const ObjectModel& model, const Eigen::Vector3f& centre, float limit_sq, Visible& visible, Pull& pull) {
+  const PairBlock& block = visible.block;
+  PairRows across;
+  PairRows along;
+  PairBlock::Values weights;
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    if (!(block.distance_sq[i] < limit_sq)) continue;
+    const Eigen::Vector3f arm = (Eigen::Vector3f(block.x[i], block.y[i], block.z[i]) - centre) / model.radius;
+    const Eigen::Vector3f gap(block.gap_x[i], block.gap_y[i], block.gap_z[i]);
+    const float apart = gap.dot(visible.normals[i]);
+    const float left = 1.0F - block.distance_sq[i] / limit_sq;
+    across[pairs] = across_row(arm, visible.normals[i], apart);
+    along[pairs] = {{arm.x(), arm.y(), arm.z(), 1.0F, gap.x(), gap.y(), gap.z(), 0.0F}};
+    weights[pairs++] = left * left;  // Tukey's biweight
+    pull.squares += static_cast<double>(apart * apart);
   }
-  return best_sq < limit_sq;
-}
-
-void add_product(Matrix8f& sum, const std::array<float, 8>& row, float weight) {
-  const Eigen::Map<const Vector8f> r(row.data());
-  sum.noalias() += (weight * r) * r.transpose();
-}
-
-void add_pair(Pull& pull, const Eigen::Vector3f& arm, const Eigen::Vector3f& normal, const Eigen::Vector3f& gap,
-              float weight) {
-  const float apart = gap.dot(normal);
-  const Eigen::Vector3f& a = arm;
-  const Eigen::Vector3f& n = normal;
-  const std::array<float, 8> across{a.y() * n.z() - a.z() * n.y(),
-                                    a.z() * n.x() - a.x() * n.z(),
-                                    a.x() * n.y() - a.y() * n.x(),
-                                    n.x(),
-                                    n.y(),
-                                    n.z(),
-                                    apart,
-                                    0.0F};
-  const std::array<float, 8> along{a.x(), a.y(), a.z(), 1.0F, gap.x(), gap.y(), gap.z(), 0.0F};
-  add_product(pull.across, across, weight);
-  add_product(pull.along, along, weight);
-  ++pull.pairs;
-  pull.squares += static_cast<double>(apart * apart);
+  add_products(across, weights, pairs, pull.across);
+  add_products(along, weights, pairs, pull.along);
+  pull.pairs += static_cast<int>(pairs);
+  visible.block.count = 0;
 }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
@@ -125,17 +99,18 @@ Pull pair_up(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isom
   const ModelView& view = nearest_view(model, T_camera_object);
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const Eigen::Vector3f centre = T * model.centre;
-  const auto reach = static_cast<float>(distance);
-  const Rays rays(frame.camera);
+  const PairSearch search{static_cast<float>(distance), steps};
+  const std::size_t used = std::min(count, view.points.size());
+  Visible visible;
   Pull pull;
-  for (std::size_t i = 0; i < std::min(count, view.points.size()); ++i) {
+  for (std::size_t i = 0; i < used; ++i) {
     const Eigen::Vector3f point = T * view.points[i];
     const Eigen::Vector3f normal = T.linear() * view.normals[i];
-    if (!(point.z() > 0.0F) || normal.dot(point) >= 0.0F) continue;  // turned away since the view was chosen
-    Eigen::Vector3f gap = Eigen::Vector3f::Zero();
-    if (!nearest_measured(frame, rays, point, reach, steps, gap)) continue;
-    const float left = 1.0F - gap.squaredNorm() / (reach * reach);
-    add_pair(pull, (point - centre) / model.radius, normal, gap, left * left);  // Tukey's biweight
+    const bool seen = point.z() > 0.0F && normal.dot(point) < 0.0F;  // not turned away since the view was chosen
+    if (seen) visible.add(point, normal);
+    if (visible.block.count < PairBlock::kSize && i + 1 < used) continue;
+    find_gaps(frame, search, visible.block);
+    add_pairs(model, centre, search.distance_m * search.distance_m, visible, pull);
   }
   return pull;
 }
