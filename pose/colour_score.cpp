@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -24,8 +25,70 @@ enum Column : Eigen::Index {
   kSeenB,
   kColumns
 };
-using Samples = Eigen::Matrix<float, Eigen::Dynamic, kColumns, Eigen::RowMajor>;
 using Products = Eigen::Matrix<double, kColumns, kColumns>;  // of the columns' mean values
+
+/// Sums of those products that are asked for, point by point, in vectors of four. Only sums of normals are ever
+/// rounded: colours are whole numbers.
+class ProductSums {
+ public:
+  /// `own` and `seen`: L*, a*, b* and 1; `normal`: its coordinates and 1.
+  void add(const Eigen::Array4f& own, const Eigen::Array4f& seen, const Eigen::Array4f& normal) {
+    own_ += own;
+    seen_ += seen;
+    own_own_ += own * own;
+    own_seen_ += own * seen;
+    seen_seen_ += seen * seen;
+    normal_own_ += own[0] * normal;
+    normal_seen_ += seen[0] * normal;
+    for (Eigen::Index i = 0; i < 3; ++i) normals_.col(i) += normal[i] * normal;
+    ++count_;
+  }
+
+  int count() const { return count_; }
+
+  /// Entries that were not summed are 0.
+  Products means() const {
+    Products products = Products::Zero();
+    const auto set = [&](Eigen::Index a, Eigen::Index b, float sum) {
+      products(a, b) = products(b, a) = static_cast<double>(sum) / static_cast<double>(count_);
+    };
+    constexpr std::array<Eigen::Index, 3> kOwn = {kLightness, kA, kB};
+    constexpr std::array<Eigen::Index, 3> kSeen = {kSeenLightness, kSeenA, kSeenB};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto i = static_cast<Eigen::Index>(c);
+      set(kOwn[c], kOne, own_[i]);
+      set(kSeen[c], kOne, seen_[i]);
+      set(kOwn[c], kOwn[c], own_own_[i]);
+      set(kOwn[c], kSeen[c], own_seen_[i]);
+      set(kSeen[c], kSeen[c], seen_seen_[i]);
+      set(kNormal + i, kLightness, normal_own_[i]);
+      set(kNormal + i, kSeenLightness, normal_seen_[i]);
+      set(kNormal + i, kOne, normals_(3, i));
+      for (Eigen::Index j = 0; j <= i; ++j) set(kNormal + i, kNormal + j, normals_(j, i));
+    }
+    set(kOne, kOne, static_cast<float>(count_));
+    return products;
+  }
+
+ private:
+  Eigen::Array4f own_ = Eigen::Array4f::Zero();
+  Eigen::Array4f seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f own_own_ = Eigen::Array4f::Zero();
+  Eigen::Array4f own_seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f seen_seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_own_ = Eigen::Array4f::Zero();   // times the own lightness
+  Eigen::Array4f normal_seen_ = Eigen::Array4f::Zero();  // times the seen lightness
+  Eigen::Array<float, 4, 3> normals_ = Eigen::Array<float, 4, 3>::Zero();
+  int count_ = 0;
+};
+
+/// About grey.
+template <typename Lab>
+Eigen::Array4f about_grey(const Lab& lab) {
+  constexpr float kGrey = 128.0F;
+  return {static_cast<float>(lab[0]) - kGrey, static_cast<float>(lab[1]) - kGrey, static_cast<float>(lab[2]) - kGrey,
+          1.0F};
+}
 
 double seen_variance(const Products& products, Eigen::Index seen) {
   return products(seen, seen) - products(seen, kOne) * products(seen, kOne);
@@ -59,19 +122,16 @@ double lightness_left_over(const Products& products) {
   return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
 }
 
-ColourComparison compare(const Samples& samples, Eigen::Index count) {
+ColourComparison compare(const Products& products, int count) {
   constexpr double kNoise = 15.0;           // variance of the three channels on a plain surface in even light
   constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
-  const auto used = samples.topRows(count);
-  const Products products = (used.transpose() * used).cast<double>() / static_cast<double>(count);
   const double seen = kNoise + kLightnessWeight * seen_variance(products, kSeenLightness) +
                       seen_variance(products, kSeenA) + seen_variance(products, kSeenB);
   const double left = kLightnessWeight * lightness_left_over(products) + chroma_left_over(products, kA, kSeenA) +
                       chroma_left_over(products, kB, kSeenB);
   const double shift =
       std::hypot(products(kSeenA, kOne) - products(kA, kOne), products(kSeenB, kOne) - products(kB, kOne));
-  return {static_cast<int>(count), static_cast<float>(1.0 - left / seen), static_cast<float>(std::sqrt(left)),
-          static_cast<float>(shift)};
+  return {count, static_cast<float>(1.0 - left / seen), static_cast<float>(std::sqrt(left)), static_cast<float>(shift)};
 }
 
 }  // namespace
@@ -87,24 +147,20 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
                                                 const DepthTolerance& tolerance) {
   constexpr int kFewest = 30;
   constexpr float kNormalUnits = 100.0F;  // brings normals to the size of the other terms
-  constexpr float kGrey = 128.0F;
   if (seen.view.colours.empty()) return std::nullopt;
   const auto width = static_cast<float>(tolerance.at(seen.T.translation().z()));
   const cv::Rect part(cv::Point(), colours.lab.size());
-  Samples samples(static_cast<Eigen::Index>(seen.looks.size()), kColumns);
-  Eigen::Index count = 0;
+  ProductSums sums;
   for (std::size_t i = 0; i < seen.looks.size(); ++i) {
     const Look& look = seen.looks[i];
     const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
     if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
-    const LabColour& own = seen.view.colours[i];
-    const auto& there = colours.lab.at<cv::Vec3b>(inside);
     const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
-    samples.row(count++) << own[0] - kGrey, normal.transpose(), 1.0F, own[1] - kGrey, own[2] - kGrey, there[0] - kGrey,
-        there[1] - kGrey, there[2] - kGrey;
+    sums.add(about_grey(seen.view.colours[i]), about_grey(colours.lab.at<cv::Vec3b>(inside)),
+             {normal.x(), normal.y(), normal.z(), 1.0F});
   }
-  if (count < kFewest) return std::nullopt;
-  return compare(samples, count);
+  if (sums.count() < kFewest) return std::nullopt;
+  return compare(sums.means(), sums.count());
 }
 
 float joint_score(float depth_value, const std::optional<ColourComparison>& colour) {
