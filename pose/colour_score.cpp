@@ -6,81 +6,14 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "pose/colour_sums.hpp"
+
 namespace houghstream {
 namespace {
 
 // What exposure and haze make of a remembered contrast.
 constexpr double kLeastGain = 0.4;
 constexpr double kMostGain = 2.5;
-
-// What is noted of a compared point; values about 0, so that single precision is enough.
-enum Column : Eigen::Index {
-  kLightness,
-  kNormal,
-  kOne = kNormal + 3,
-  kA,
-  kB,
-  kSeenLightness,
-  kSeenA,
-  kSeenB,
-  kColumns
-};
-using Products = Eigen::Matrix<double, kColumns, kColumns>;  // of the columns' mean values
-
-/// Sums of those products that are asked for, point by point, in vectors of four. Only sums of normals are ever
-/// rounded: colours are whole numbers.
-class ProductSums {
- public:
-  /// `own` and `seen`: L*, a*, b* and 1; `normal`: its coordinates and 1.
-  void add(const Eigen::Array4f& own, const Eigen::Array4f& seen, const Eigen::Array4f& normal) {
-    own_ += own;
-    seen_ += seen;
-    own_own_ += own * own;
-    own_seen_ += own * seen;
-    seen_seen_ += seen * seen;
-    normal_own_ += own[0] * normal;
-    normal_seen_ += seen[0] * normal;
-    for (Eigen::Index i = 0; i < 3; ++i) normals_.col(i) += normal[i] * normal;
-    ++count_;
-  }
-
-  int count() const { return count_; }
-
-  /// Entries that were not summed are 0.
-  Products means() const {
-    Products products = Products::Zero();
-    const auto set = [&](Eigen::Index a, Eigen::Index b, float sum) {
-      products(a, b) = products(b, a) = static_cast<double>(sum) / static_cast<double>(count_);
-    };
-    constexpr std::array<Eigen::Index, 3> kOwn = {kLightness, kA, kB};
-    constexpr std::array<Eigen::Index, 3> kSeen = {kSeenLightness, kSeenA, kSeenB};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto i = static_cast<Eigen::Index>(c);
-      set(kOwn[c], kOne, own_[i]);
-      set(kSeen[c], kOne, seen_[i]);
-      set(kOwn[c], kOwn[c], own_own_[i]);
-      set(kOwn[c], kSeen[c], own_seen_[i]);
-      set(kSeen[c], kSeen[c], seen_seen_[i]);
-      set(kNormal + i, kLightness, normal_own_[i]);
-      set(kNormal + i, kSeenLightness, normal_seen_[i]);
-      set(kNormal + i, kOne, normals_(3, i));
-      for (Eigen::Index j = 0; j <= i; ++j) set(kNormal + i, kNormal + j, normals_(j, i));
-    }
-    set(kOne, kOne, static_cast<float>(count_));
-    return products;
-  }
-
- private:
-  Eigen::Array4f own_ = Eigen::Array4f::Zero();
-  Eigen::Array4f seen_ = Eigen::Array4f::Zero();
-  Eigen::Array4f own_own_ = Eigen::Array4f::Zero();
-  Eigen::Array4f own_seen_ = Eigen::Array4f::Zero();
-  Eigen::Array4f seen_seen_ = Eigen::Array4f::Zero();
-  Eigen::Array4f normal_own_ = Eigen::Array4f::Zero();   // times the own lightness
-  Eigen::Array4f normal_seen_ = Eigen::Array4f::Zero();  // times the seen lightness
-  Eigen::Array<float, 4, 3> normals_ = Eigen::Array<float, 4, 3>::Zero();
-  int count_ = 0;
-};
 
 /// About grey.
 template <typename Lab>
@@ -90,12 +23,12 @@ Eigen::Array4f about_grey(const Lab& lab) {
           1.0F};
 }
 
-double seen_variance(const Products& products, Eigen::Index seen) {
+double seen_variance(const ColourProducts& products, Eigen::Index seen) {
   return products(seen, seen) - products(seen, kOne) * products(seen, kOne);
 }
 
 /// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
-double chroma_left_over(const Products& products, Eigen::Index remembered, Eigen::Index seen) {
+double chroma_left_over(const ColourProducts& products, Eigen::Index remembered, Eigen::Index seen) {
   const double mean = products(remembered, kOne);
   const double variance = products(remembered, remembered) - mean * mean;
   const double covariance = products(remembered, seen) - mean * products(seen, kOne);
@@ -104,7 +37,7 @@ double chroma_left_over(const Products& products, Eigen::Index remembered, Eigen
 }
 
 /// The same for lightness on the remembered one and the surface's normal.
-double lightness_left_over(const Products& products) {
+double lightness_left_over(const ColourProducts& products) {
   constexpr double kDamping = 1e-4;  // terms that do not vary are left alone
   constexpr int kTerms = kOne + 1;   // remembered value, normal (3), 1
   constexpr int kOthers = kTerms - 1;
@@ -122,7 +55,7 @@ double lightness_left_over(const Products& products) {
   return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
 }
 
-ColourComparison compare(const Products& products, int count) {
+ColourComparison compare(const ColourProducts& products, int count) {
   constexpr double kNoise = 15.0;           // variance of the three channels on a plain surface in even light
   constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
   const double seen = kNoise + kLightnessWeight * seen_variance(products, kSeenLightness) +
@@ -150,15 +83,22 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   if (seen.view.colours.empty()) return std::nullopt;
   const auto width = static_cast<float>(tolerance.at(seen.T.translation().z()));
   const cv::Rect part(cv::Point(), colours.lab.size());
-  ProductSums sums;
+  ColourSums sums;
+  std::array<ComparedPoint, 64> points;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < seen.looks.size(); ++i) {
     const Look& look = seen.looks[i];
     const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
     if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
     const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
-    sums.add(about_grey(seen.view.colours[i]), about_grey(colours.lab.at<cv::Vec3b>(inside)),
-             {normal.x(), normal.y(), normal.z(), 1.0F});
+    points[count++] = {about_grey(seen.view.colours[i]),
+                       about_grey(colours.lab.at<cv::Vec3b>(inside)),
+                       {normal.x(), normal.y(), normal.z(), 1.0F}};
+    if (count < points.size()) continue;
+    sums.add(points, count);
+    count = 0;
   }
+  sums.add(points, count);
   if (sums.count() < kFewest) return std::nullopt;
   return compare(sums.means(), sums.count());
 }

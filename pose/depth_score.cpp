@@ -13,9 +13,9 @@ DepthScore score_of(const ViewLook& seen, float shift, float width) {
   DepthScore score;
   for (const Look& look : seen.looks) {
     const float ratio = (look.beyond - shift) / width;
-    // Without branches: which case it is changes from point to point. NaN is none.
-    score.agreeing += std::abs(ratio) <= 1.0F ? 1.0F - ratio * ratio : 0.0F;
-    score.violating += ratio > 1.0F ? std::min(1.0F, ratio - 1.0F) : 0.0F;
+    // Without branches, as the case changes from point to point: NaN is not above 0 and adds nothing.
+    score.agreeing += std::max(0.0F, 1.0F - ratio * ratio);
+    score.violating += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
   }
   score.agreeing /= static_cast<float>(seen.looks.size());
   score.violating /= static_cast<float>(seen.looks.size());
