@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cerrno>  // program_invocation_short_name
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -9,9 +10,10 @@
 
 namespace houghstream {
 
-/// An empty folder of this test's own.
+/// An empty folder of this test's own, also while other test programs run.
 inline std::filesystem::path fresh_folder(const std::string& name) {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("houghstream_test_" + name);
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / (std::string(program_invocation_short_name) + "_" + name);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
