@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "detector/forest/pixel_test.hpp"
-#include "detector/forest/square_forest.hpp"
 
 namespace houghstream {
 namespace {
@@ -80,17 +79,14 @@ void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index
   grid.cell_px.emplace_back(left, top, side_px, side_px);
 }
 
-/// Where for_places goes from square to square, at every pixel.
-void list_squares(cv::Size size, PatchGrid& grid) {
-  std::size_t first = 0;
-  for (int top = 0; top < size.height; top += kSquareSide) {
-    for (int left = 0; left < size.width; left += kSquareSide) {
-      const int width = std::min(kSquareSide, size.width - left);
-      const int height = std::min(kSquareSide, size.height - top);
-      const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-      grid.squares.push_back({first, count, width});
-      first += count;
-    }
+/// The patches from `first` on, which for_places came to at every pixel, by square.
+void list_squares(std::size_t first, PatchGrid& grid) {
+  const auto share_square = [&](std::size_t a, std::size_t b) {
+    return grid.x[a] / kSquareSide == grid.x[b] / kSquareSide && grid.y[a] / kSquareSide == grid.y[b] / kSquareSide;
+  };
+  for (std::size_t last = first; first < grid.size(); first = last) {
+    while (last < grid.size() && share_square(first, last)) ++last;
+    grid.squares.push_back({first, last - first});
   }
 }
 
@@ -113,6 +109,7 @@ void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint
   std::array<float, kThinnings + 1> sides{};  // working pixels between patches
   for (int t = 0; t <= kThinnings; ++t) sides[t] = static_cast<float>(spacing.stride * std::pow(2.0, 0.5 * t));
   const auto metres_per_px = static_cast<float>(frame.camera.metres_per_px(1.0));
+  const std::size_t first = grid.size();
   for_places(frame.filled_depth.size(), spacing.stride, [&](int x, int y) {
     const float z = frame.filled_depth.at<float>(y, x);
     if (!level.holds(z) || !thinning.leaves(thinnings_survived(x / spacing.stride, y / spacing.stride), z)) return;
@@ -123,17 +120,19 @@ void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint
     grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
     grid.area.push_back(side_metres * side_metres);
   });
+  if (spacing.stride == 1 && spacing.metres == 0.0F) list_squares(first, grid);
 }
 
 void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
                             int stride, PatchGrid& grid) {
   const std::int32_t scale = limited_scale(patch, patch.unit);
+  const std::size_t first = grid.size();
   reserve_places(frame.filled_depth.size(), stride, grid);
   for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
     add_place(x, y, level, 0, static_cast<float>(stride), grid);
     grid.scale.push_back(scale);
   });
-  if (stride == 1) list_squares(frame.filled_depth.size(), grid);
+  if (stride == 1) list_squares(first, grid);
 }
 
 std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
@@ -143,7 +142,7 @@ std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
   for (std::size_t begin = 0; begin < patches.size();) {
     std::size_t end = begin;
     while (end < patches.size() && end - begin < kPatches && patches.level[end] == patches.level[begin]) ++end;
-    runs.push_back({begin, end - begin, 0});
+    runs.push_back({begin, end - begin});
     begin = end;
   }
   return runs;

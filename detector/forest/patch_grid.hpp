@@ -10,11 +10,12 @@
 
 namespace houghstream {
 
+constexpr int kSquareSide = 32;  ///< patches a side, so that a row of them is a word with a bit each
+
 /// Patches that are looked at together: all of one level, one after another in the grid.
 struct PatchRun {
   std::size_t first = 0;
   std::size_t count = 0;
-  int width = 0;  ///< of a square: rows of so many neighbours of one scale, one at every pixel; else 0
 };
 
 /// The patches of a frame, level by level.
@@ -26,7 +27,7 @@ struct PatchGrid {
   std::vector<Eigen::Vector3f> point_camera;  ///< the surface point seen at the centre, metres
   std::vector<cv::Rect2f> cell_px;            ///< the part of the frame that the patch stands for, frame pixels
   std::vector<float> area;                    ///< the same on the surface, facing the camera, square metres
-  std::vector<PatchRun> squares;              ///< all patches, or none where they have gaps or several scales
+  std::vector<PatchRun> squares;  ///< all patches by square of kSquareSide pixels; none where they stand farther apart
 
   std::size_t size() const { return x.size(); }
   void clear();  ///< keeps the memory

@@ -22,8 +22,9 @@ HWY_INLINE int turn_blocks(const std::uint8_t* pixels, int count, int pixel_stri
 #else
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::FixedTag<std::uint8_t, kTurnSide> d;
-  const int whole = layout.planes % kTurnSide == 0 ? count / kTurnSide * kTurnSide : 0;
-  for (int x = 0; x < whole; x += kTurnSide) {
+  if (layout.planes % kTurnSide != 0 || count < kTurnSide) return 0;
+  for (int next = 0; next < count; next += kTurnSide) {
+    const int x = std::min(next, count - kTurnSide);  // the last ones may be turned twice
     for (int p = 0; p < layout.planes; p += kTurnSide) {
       hn::Vec<decltype(d)> rows[kTurnSide];
       for (int i = 0; i < kTurnSide; ++i) rows[i] = hn::LoadU(d, pixels + (x + i) * pixel_stride + p);
@@ -31,7 +32,7 @@ HWY_INLINE int turn_blocks(const std::uint8_t* pixels, int count, int pixel_stri
       for (int i = 0; i < kTurnSide; ++i) hn::StoreU(rows[i], d, out + (p + i) * layout.plane_stride + x);
     }
   }
-  return whole;
+  return count;
 #endif
 }
 
@@ -49,8 +50,8 @@ namespace houghstream {
 
 HWY_EXPORT(copy_row);
 
-void copy_planes(const FeatureImage& image, const PatchSquare& square, const SquareLayout& layout,
-                 std::vector<std::uint8_t>& planes) {
+void copy_planes(const FeatureImage& image, const PatchSquare& square, std::vector<std::uint8_t>& planes) {
+  const SquareLayout& layout = square.layout;
   planes.resize(layout.size());
   std::fill_n(planes.begin() + layout.planes * layout.plane_stride, layout.plane_stride, std::uint8_t{0});
   for (int y = 0; y < square.height + 2 * layout.reach; ++y) {

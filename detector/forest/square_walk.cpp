@@ -17,15 +17,8 @@ namespace houghstream::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A node as four 32-bit words is what the gathers below rely on.
-static_assert(sizeof(SquareNode) == 16 && offsetof(SquareNode, left) == 8);
-
-constexpr int kPatches = kSquareSide * kSquareSide;
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2  // better targets have lower numbers
-constexpr int kFewest = 8;                  // patches that stay together
-#else
-constexpr int kFewest = 2;  // without gathers a patch on its own is slow
-#endif
+constexpr int kPatches = kSquarePatches;
+constexpr int kFewest = 8;  // patches that stay together
 
 /// The patches of one row that stand at one node, a bit each.
 struct Row {
@@ -47,24 +40,34 @@ struct Depth {
   int row_count = 0;
 };
 
-/// Patches that walk on their own.
+/// Patches that walk on their own, perhaps down several trees.
 struct Walkers {
-  static constexpr int kSpare = 64;                   // lanes of a vector behind the last one
-  std::array<std::int32_t, kPatches + kSpare> patch;  // y * kSquareSide + x
-  std::array<std::int32_t, kPatches + kSpare> node;
+  std::array<std::int32_t, 2 * kPatches> start;  // y * row_stride + x of the patch, bytes
+  std::array<std::int32_t, 2 * kPatches> leaf;   // where it is to be noted
+  std::array<std::int32_t, 2 * kPatches> node;
   int count = 0;
 };
 
-/// A walk down one tree.
+/// A group's walk down one tree.
 struct Walk {
-  const SquareForest& forest;
+  const SquareNode* nodes;
   const PatchSquare& square;
+  const std::int32_t* places;  // of the group
   const std::uint8_t* planes;
-  std::int32_t* leaves;
+  std::int32_t* leaves;     // of all trees
+  std::int32_t first_leaf;  // of this tree's
 
-  std::int32_t& leaf_of(std::int32_t patch) const {
-    return leaves[patch / kSquareSide * square.width + patch % kSquareSide];
+  std::int32_t leaf_of(std::int32_t patch) const {  // into `leaves`
+    return first_leaf + square.numbers[static_cast<std::size_t>(patch)];
   }
+
+  /// Distance of the pixel that a word of a node stands for from y * row_stride + x of the patch, bytes.
+  std::int32_t place(std::uint32_t word) const {
+    return static_cast<std::int32_t>(word >> SquareNode::kPlaneShift) * square.layout.plane_stride +
+           places[word >> SquareNode::kStepShift & SquareNode::kStepMask];
+  }
+  /// Pixels that count as 0.
+  const std::uint8_t* zeros() const { return planes + square.layout.planes * square.layout.plane_stride; }
 };
 
 /// Which of kSquareSide neighbouring patches pass a node's comparison.
@@ -95,11 +98,12 @@ struct Split {
 template <bool kWraps>
 HWY_INLINE Split split_rows(const Walk& walk, const SquareNode& node, const Row* rows, int count, Row* left,
                             Row* right) {
-  const std::uint8_t* first = walk.planes + (node.first >> 8);
-  const std::uint8_t* second = walk.planes + (node.second >> 8);
+  const std::uint8_t* first = walk.planes + walk.place(node.first);
+  const bool alone = (node.second & SquareNode::kAlone) != 0;
+  const std::uint8_t* second = alone ? walk.zeros() : walk.planes + walk.place(node.second);
   const auto limit = static_cast<std::uint8_t>(node.first);
   const std::uint32_t inverted = (node.second & SquareNode::kInverted) != 0 ? ~0U : 0U;
-  const std::ptrdiff_t row_stride = walk.forest.layout.row_stride;
+  const std::ptrdiff_t row_stride = walk.square.layout.row_stride;
   Split split;
   for (int i = 0; i < count; ++i) {
     const Row row = rows[i];
@@ -126,17 +130,18 @@ HWY_INLINE void for_patches(const Row* rows, int count, const Visit& visit) {
 HWY_INLINE void settle(const Walk& walk, std::int32_t node, int rows, Depth& depth, Walkers& walkers) {
   const Row* begin = depth.rows.data() + depth.row_count;
   if (node < 0) {
-    for_patches(begin, rows, [&](std::int32_t patch) { walk.leaf_of(patch) = -1 - node; });
+    for_patches(begin, rows, [&](std::int32_t patch) { walk.leaves[walk.leaf_of(patch)] = -1 - node; });
     return;
   }
-  hwy::Prefetch(&walk.forest.nodes[node]);
+  hwy::Prefetch(&walk.nodes[node]);
   int patches = 0;
   if (rows < kFewest) {
     for (int i = 0; i < rows; ++i) patches += static_cast<int>(hwy::PopCount(begin[i].patches));
   }
   if (rows < kFewest && patches < kFewest) {
     for_patches(begin, rows, [&](std::int32_t patch) {
-      walkers.patch[walkers.count] = patch;
+      walkers.start[walkers.count] = patch / kSquareSide * walk.square.layout.row_stride + patch % kSquareSide;
+      walkers.leaf[walkers.count] = walk.leaf_of(patch);
       walkers.node[walkers.count++] = node;
     });
     return;
@@ -152,7 +157,7 @@ HWY_INLINE void go_deeper(const Walk& walk, const Depth& from, Depth& to, Walker
   const Row* rows = from.rows.data();
   for (int c = 0; c < from.crowd_count; ++c) {
     const Crowd crowd = from.crowds[c];
-    const SquareNode& node = walk.forest.nodes[crowd.node];
+    const SquareNode& node = walk.nodes[crowd.node];
     Row* left = to.rows.data() + to.row_count;
     const Split split = (node.second & SquareNode::kWraps) != 0
                             ? split_rows<true>(walk, node, rows, crowd.rows, left, right.data())
@@ -167,95 +172,63 @@ HWY_INLINE void go_deeper(const Walk& walk, const Depth& from, Depth& to, Walker
   }
 }
 
-void walk_one_by_one(const Walk& walk, const Walkers& walkers) {
-  const int row_stride = walk.forest.layout.row_stride;
-  for (int i = 0; i < walkers.count; ++i) {
-    const std::int32_t patch = walkers.patch[i];
-    const std::uint8_t* place = walk.planes + patch / kSquareSide * row_stride + patch % kSquareSide;
-    std::int32_t at = walkers.node[i];
-    while (at >= 0) {
-      const SquareNode& node = walk.forest.nodes[at];
-      const int difference = place[node.first >> 8] - place[node.second >> 8];
-      const int value = (node.second & SquareNode::kWraps) != 0 ? (difference + 128) & 255 : difference;
-      const bool passes = value >= static_cast<int>(node.first & 255U);
-      at = passes != ((node.second & SquareNode::kInverted) != 0) ? node.right : node.left;
-    }
-    walk.leaf_of(patch) = -1 - at;
-  }
+/// Node that a patch reaches by a node's test; without a branch that nobody can predict.
+HWY_INLINE std::int32_t next_node(const Walk& walk, const SquareNode& node, const std::uint8_t* start) {
+  const int second_mask = (node.second & SquareNode::kAlone) != 0 ? 0 : 255;
+  const int difference = start[walk.place(node.first)] - (start[walk.place(node.second)] & second_mask);
+  const int value = (node.second & SquareNode::kWraps) != 0 ? (difference + 128) & 255 : difference;
+  const bool passes = value >= static_cast<int>(node.first & 255U);
+  return passes != ((node.second & SquareNode::kInverted) != 0) ? node.right : node.left;
 }
 
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-/// Node that each of a vector of patches reaches by its node's test.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V next_nodes(D d, const Walk& walk, V patch, V node) {
-  const auto* words = reinterpret_cast<const std::int32_t*>(walk.forest.nodes.data());
-  const V row = hn::ShiftRight<5>(patch);
-  const V x = hn::And(patch, hn::Set(d, kSquareSide - 1));
-  const V place = hn::Add(hn::Mul(row, hn::Set(d, walk.forest.layout.row_stride)), x);
-  const V byte = hn::Set(d, 255);
-  const V word = hn::ShiftLeft<2>(node);
-  const V first = hn::GatherIndex(d, words, word);
-  const V second = hn::GatherIndex(d, words + 1, word);
-  const auto* pixels = reinterpret_cast<const std::int32_t*>(walk.planes);
-  const V p1 = hn::And(hn::GatherOffset(d, pixels, hn::Add(hn::ShiftRight<8>(first), place)), byte);
-  const V p2 = hn::And(hn::GatherOffset(d, pixels, hn::Add(hn::ShiftRight<8>(second), place)), byte);
-  const V difference = hn::Sub(p1, p2);
-  const auto wraps = hn::TestBit(second, hn::Set(d, static_cast<std::int32_t>(SquareNode::kWraps)));
-  const V value = hn::IfThenElse(wraps, hn::And(hn::Add(difference, hn::Set(d, 128)), byte), difference);
-  const V fails = hn::VecFromMask(d, hn::Lt(value, hn::And(first, byte)));
-  const V passes = hn::Add(fails, hn::Set(d, 1));
-  const V goes_right = hn::Xor(passes, hn::And(second, hn::Set(d, static_cast<std::int32_t>(SquareNode::kInverted))));
-  return hn::GatherIndex(d, words + 2, hn::Add(word, goes_right));
-}
-
-/// Steps of all walkers by turns; those that have arrived make room, so that every vector is full but the last.
+/// Steps of all walkers by turns, so that their cache misses overlap; those that have arrived make room.
 void walk_together(const Walk& walk, Walkers& walkers) {
-  const hn::CappedTag<std::int32_t, Walkers::kSpare> d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
   while (walkers.count > 0) {
     int walking = 0;
-    for (int i = 0; i < walkers.count; i += lanes) {
-      const auto patch = hn::LoadU(d, walkers.patch.data() + i);
-      const auto present = hn::FirstN(d, static_cast<std::size_t>(walkers.count - i));
-      const auto node = hn::IfThenElseZero(present, hn::LoadU(d, walkers.node.data() + i));
-      const auto next = next_nodes(d, walk, hn::IfThenElseZero(present, patch), node);
-      const auto arrives = hn::And(present, hn::Lt(next, hn::Zero(d)));
-      HWY_ALIGN std::int32_t patches[Walkers::kSpare];
-      HWY_ALIGN std::int32_t leaves[Walkers::kSpare];
-      hn::Store(hn::Compress(patch, arrives), d, patches);
-      hn::Store(hn::Compress(hn::Not(next), arrives), d, leaves);
-      const std::size_t arrived = hn::CountTrue(d, arrives);
-      for (std::size_t a = 0; a < arrived; ++a) walk.leaf_of(patches[a]) = leaves[a];
-      const auto stays = hn::AndNot(arrives, present);  // what is stored behind them has been read
-      hn::StoreU(hn::Compress(patch, stays), d, walkers.patch.data() + walking);
-      hn::StoreU(hn::Compress(next, stays), d, walkers.node.data() + walking);
-      walking += static_cast<int>(hn::CountTrue(d, stays));
+    for (int i = 0; i < walkers.count; ++i) {
+      const std::int32_t start = walkers.start[i];
+      const std::int32_t leaf = walkers.leaf[i];
+      const std::int32_t next = next_node(walk, walk.nodes[walkers.node[i]], walk.planes + start);
+      hwy::Prefetch(&walk.nodes[std::max(next, 0)]);
+      walk.leaves[leaf] = -1 - next;  // is written over until it is one
+      walkers.start[walking] = start;
+      walkers.leaf[walking] = leaf;
+      walkers.node[walking] = next;
+      walking += next >= 0 ? 1 : 0;
     }
     walkers.count = walking;
   }
 }
-#else
-void walk_together(const Walk& walk, Walkers& walkers) {
-  walk_one_by_one(walk, walkers);
-}
-#endif
 
-void walk_tree(const SquareForest& forest, int tree, const PatchSquare& square, const std::uint8_t* planes,
-               std::int32_t* leaves) {
-  const Walk walk{forest, square, planes, leaves};
+void walk_tree(const Walk& walk, std::int32_t root, const SquareGroup& group, Walkers& walkers) {
   Depth a;
   Depth b;
-  Walkers walkers;
-  const std::uint32_t whole = ~0U >> (kSquareSide - square.width);
-  for (int y = 0; y < square.height; ++y) a.rows[y] = {whole, y};
-  settle(walk, forest.roots[tree], square.height, a, walkers);
+  int rows = 0;
+  for (int y = 0; y < walk.square.height; ++y) {
+    const std::uint32_t patches = group.rows[static_cast<std::size_t>(y)];
+    if (patches != 0) a.rows[static_cast<std::size_t>(rows++)] = {patches, y};
+  }
+  settle(walk, root, rows, a, walkers);
   Depth* from = &a;
   Depth* to = &b;
   while (from->crowd_count > 0) {
     go_deeper(walk, *from, *to, walkers);
     std::swap(from, to);
   }
-  walk_together(walk, walkers);
+}
+
+void walk_trees(const SquareForest& forest, int trees, const PatchSquare& square, const std::uint8_t* planes,
+                std::int32_t* leaves) {
+  Walkers walkers;
+  for (std::size_t g = 0; g < square.group_count; ++g) {
+    const SquareGroup& group = square.groups[g];
+    Walk walk{forest.nodes.data(), square, group.places.data(), planes, leaves, 0};
+    for (int tree = 0; tree < trees; ++tree, walk.first_leaf += square.count) {
+      walk_tree(walk, forest.roots[tree], group, walkers);
+      if (walkers.count > kPatches) walk_together(walk, walkers);  // there must be room for another tree's
+    }
+    walk_together(walk, walkers);
+  }
 }
 
 }  // namespace houghstream::HWY_NAMESPACE
@@ -264,11 +237,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace houghstream {
 
-HWY_EXPORT(walk_tree);
+HWY_EXPORT(walk_trees);
 
-void walk_square(const SquareForest& forest, int tree, const PatchSquare& square,
+void walk_square(const SquareForest& forest, int trees, const PatchSquare& square,
                  const std::vector<std::uint8_t>& planes, std::int32_t* leaves) {
-  HWY_DYNAMIC_DISPATCH(walk_tree)(forest, tree, square, planes.data(), leaves);
+  HWY_DYNAMIC_DISPATCH(walk_trees)(forest, trees, square, planes.data(), leaves);
 }
 
 }  // namespace houghstream

@@ -1,8 +1,10 @@
 #include "detector/forest/traversal.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <optional>
 
+#include "detector/forest/patch_square.hpp"
 #include "detector/forest/square_forest.hpp"
 #include "detector/forest/square_planes.hpp"
 #include "detector/forest/square_walk.hpp"
@@ -20,7 +22,8 @@ struct Scratch {
   std::vector<std::int16_t> x;         // of those left
   std::vector<std::int16_t> y;
   std::vector<std::int32_t> scale;
-  std::vector<std::uint8_t> planes;  // of a square
+  PatchSquare square;
+  std::vector<std::uint8_t> planes;  // of the square
 };
 
 /// Leaves of patches of one level in some of the trees.
@@ -34,16 +37,18 @@ void walk_trees(const Forest& forest, const WalkingPatches& walking, TreeRange t
   }
 }
 
-/// Leaves of a square in all trees.
-void walk_square_run(const SquareForest& forest, const FeatureImage& image, const PatchGrid& patches,
-                     const PatchRun& run, Scratch& scratch) {
-  const PatchSquare square{patches.x[run.first], patches.y[run.first], run.width,
-                           static_cast<int>(run.count) / run.width};
-  copy_planes(image, square, forest.layout, scratch.planes);
-  std::int32_t* leaves = scratch.leaves.data();
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += run.count) {
-    walk_square(forest, static_cast<int>(tree), square, scratch.planes, leaves);
-  }
+/// What squares of patches need.
+struct ForSquares {
+  SquareForest forest;
+  ScaleClasses classes;
+};
+
+/// Leaves of a square in the first trees.
+void walk_square_run(const ForSquares& ready, const FeatureImage& image, const PatchGrid& patches, const PatchRun& run,
+                     std::size_t trees, Scratch& scratch) {
+  group_patches(patches, run, ready.classes, ready.forest.radius, image.pixel_stride(), scratch.square);
+  copy_planes(image, scratch.square, scratch.planes);
+  walk_square(ready.forest, static_cast<int>(trees), scratch.square, scratch.planes, scratch.leaves.data());
 }
 
 /// Gives patches up and closes the gaps that they leave in the leaves of the first `walked` trees.
@@ -79,14 +84,14 @@ WalkingPatches gather_left(const FeatureImage& image, const PatchGrid& patches, 
 }
 
 /// Leaves of one run; `for_squares` where it is a square.
-void walk_run(const Forest& forest, const SquareForest* for_squares, const FeatureImage& image,
-              const PatchGrid& patches, const PatchRun& run, const EarlyEnd& early_end, Scratch& scratch) {
+void walk_run(const Forest& forest, const ForSquares* for_squares, const FeatureImage& image, const PatchGrid& patches,
+              const PatchRun& run, const EarlyEnd& early_end, Scratch& scratch) {
   const std::size_t trees = forest.roots.size();
   const bool may_end = early_end.is_used(forest);
-  const std::size_t first = may_end && for_squares == nullptr ? static_cast<std::size_t>(early_end.trees) : trees;
+  const std::size_t first = may_end ? static_cast<std::size_t>(early_end.trees) : trees;
   scratch.leaves.resize(run.count * trees);
   if (for_squares != nullptr) {
-    walk_square_run(*for_squares, image, patches, run, scratch);
+    walk_square_run(*for_squares, image, patches, run, first, scratch);
   } else {
     const WalkingPatches all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
                              patches.scale.data() + run.first, static_cast<int>(run.count)};
@@ -106,8 +111,11 @@ void walk_run(const Forest& forest, const SquareForest* for_squares, const Featu
 
 void find_leaves(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
                  const std::vector<PatchRun>& runs, const EarlyEnd& early_end, int threads, const LeafVisitor& visit) {
-  std::optional<SquareForest> for_squares;
-  if (!patches.squares.empty()) for_squares.emplace(forest, patches.scale[0], features[0].pixel_stride());
+  std::optional<ForSquares> for_squares;
+  if (!patches.squares.empty()) {
+    const std::int32_t largest = *std::max_element(patches.scale.begin(), patches.scale.end());
+    for_squares = ForSquares{SquareForest(forest), ScaleClasses(forest.patch.radius, largest)};
+  }
   parallel_for(threads, static_cast<int>(runs.size()), [&](int r) {
     static thread_local Scratch scratch;
     const PatchRun& run = runs[static_cast<std::size_t>(r)];

@@ -47,11 +47,42 @@ TEST(PatchGrid, ItsSquaresHoldAllPatchesRowByRow) {
   for (const PatchRun& square : patch_runs(grid)) {
     EXPECT_EQ(square.first, next);
     for (std::size_t i = 0; i < square.count; ++i, ++next) {
-      EXPECT_EQ(grid.x[next], grid.x[square.first] + static_cast<int>(i) % square.width);
-      EXPECT_EQ(grid.y[next], grid.y[square.first] + static_cast<int>(i) / square.width);
+      const int width = std::min(kSquareSide, 70 - grid.x[square.first]);
+      EXPECT_EQ(grid.x[next], grid.x[square.first] + static_cast<int>(i) % width);
+      EXPECT_EQ(grid.y[next], grid.y[square.first] + static_cast<int>(i) / width);
     }
   }
   EXPECT_EQ(next, grid.size());
+}
+
+TEST(PatchGrid, SquaresHaveNoPatchesWhereThereIsNoDepth) {
+  WorkingFrame frame;
+  frame.camera = {96, 48, 60, 60, 47.5, 23.5};
+  frame.filled_depth = cv::Mat(48, 96, CV_32FC1, cv::Scalar(2.0));
+  frame.filled_depth(cv::Rect(10, 0, 60, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
+  PatchGrid grid;
+  add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 0, PatchSettings{}, {1, 0.0F}, grid);
+  add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 1, PatchSettings{}, {1, 0.0F}, grid);
+  ASSERT_EQ(grid.size(), 2U * 36U * 48U);
+  const std::vector<PatchRun> runs = patch_runs(grid);
+  ASSERT_EQ(runs.size(), 2U * 4U);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    EXPECT_EQ(runs[r].first, r == 0 ? 0 : runs[r - 1].first + runs[r - 1].count);
+    EXPECT_EQ(runs[r].count, (r % 2 == 0 ? 10U : 26U) * (r % 4 < 2 ? 32U : 16U)) << r;
+    EXPECT_EQ(grid.level[runs[r].first], r / 4);
+  }
+}
+
+TEST(PatchGrid, HasNoSquaresWherePatchesStandApart) {
+  WorkingFrame frame;
+  frame.camera = {64, 48, 60, 60, 31.5, 23.5};
+  frame.filled_depth = cv::Mat(48, 64, CV_32FC1, cv::Scalar(2.0));
+  for (const PatchSpacing spacing : {PatchSpacing{2, 0.0F}, PatchSpacing{1, 0.2F}}) {
+    PatchGrid grid;
+    add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 0, PatchSettings{}, spacing, grid);
+    EXPECT_GT(grid.size(), 0U);
+    EXPECT_TRUE(grid.squares.empty());
+  }
 }
 
 TEST(PatchGrid, StandsOnDepthThatItsLevelHolds) {

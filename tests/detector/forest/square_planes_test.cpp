@@ -8,9 +8,15 @@
 namespace houghstream {
 namespace {
 
-void expect_pixels(const FeatureImage& image, const PatchSquare& square, const SquareLayout& layout) {
+void expect_pixels(const FeatureImage& image, cv::Rect box, const SquareLayout& layout) {
+  PatchSquare square;
+  square.left = box.x;
+  square.top = box.y;
+  square.width = box.width;
+  square.height = box.height;
+  square.layout = layout;
   std::vector<std::uint8_t> planes(3, 9);
-  copy_planes(image, square, layout, planes);
+  copy_planes(image, square, planes);
   ASSERT_EQ(planes.size(), layout.size());
   for (int p = 0; p <= layout.planes; ++p) {
     for (int y = 0; y < square.height + 2 * layout.reach; ++y) {

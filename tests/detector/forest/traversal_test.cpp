@@ -110,6 +110,20 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelAndThoseWithGaps) {
   }
 }
 
+TEST_F(Traversal, SoDoPatchesAtEveryPixelWithDepth) {
+  room.depth(cv::Rect(100, 40, 90, 90)).setTo(0.45F);  // nearer, and some pixels know no depth
+  std::vector<FeatureImage> features;
+  PatchGrid patches;
+  for (const FeatureLevel& level : feature_levels(forest.features)) {
+    const WorkingFrame frame = make_working_frame(room, level, forest.features);
+    add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, {1, 0.0F}, patches);
+    features.push_back(compute_features(frame, forest.features, 2));
+  }
+  ASSERT_FALSE(patches.squares.empty());
+  expect_leaves_of_find_leaf(forest, features, patches);
+  for (const float share : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, share, features, patches);
+}
+
 TEST_F(Traversal, NobodyIsGivenUpAfterTheLastTree) {
   const int trees = static_cast<int>(forest.roots.size());
   EXPECT_TRUE((EarlyEnd{trees - 1, 0.1F}.is_used(forest)));
