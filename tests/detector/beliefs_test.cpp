@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "read_beliefs.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -22,19 +24,6 @@ Forest three_leaves() {
   forest.leaf_classes[2].class_index = 1;
   note_certainty(forest);
   return forest;
-}
-
-struct Belief {
-  std::uint32_t patch;
-  std::vector<std::uint32_t> entries;
-};
-
-std::vector<Belief> beliefs_in(int class_index, const PatchBeliefs& beliefs) {
-  std::vector<Belief> found;
-  beliefs.for_believers(class_index, [&](std::uint32_t patch, const std::uint32_t* entries, std::uint32_t count) {
-    found.push_back({patch, {entries, entries + count}});
-  });
-  return found;
 }
 
 TEST(Beliefs, APatchBelievesByTheMeanOfItsTrees) {

@@ -7,6 +7,7 @@
 
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/checks.hpp"
+#include "same_detections.hpp"
 #include "toy_data.hpp"
 
 namespace houghstream {
@@ -55,15 +56,6 @@ TEST(Detector, NothingIsFoundWhereThereIsNoDepth) {
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   EXPECT_TRUE(detect(frame, 1).detections.empty());
-}
-
-void expect_same(const Detections& one, const Detections& other) {
-  ASSERT_EQ(one.detections.size(), other.detections.size());
-  for (std::size_t i = 0; i < one.detections.size(); ++i) {
-    EXPECT_EQ(one.detections[i].score, other.detections[i].score);
-    EXPECT_EQ(one.detections[i].box_px, other.detections[i].box_px);
-    EXPECT_EQ(one.detections[i].centre_camera, other.detections[i].centre_camera);
-  }
 }
 
 TEST(Detector, AnyNumberOfThreadsAndTheReadableEngineGiveTheSameDetections) {

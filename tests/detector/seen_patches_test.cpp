@@ -5,6 +5,8 @@
 #include "detector/detector.hpp"
 #include "detector/features/features.hpp"
 #include "detector/training/forest_trainer.hpp"
+#include "read_beliefs.hpp"
+#include "same_detections.hpp"
 #include "toy_data.hpp"
 
 namespace houghstream {
@@ -53,20 +55,6 @@ std::vector<FeatureImage> whole_images(const RgbdFrame& frame) {
     images.push_back(compute_features(working, toy_forest().features, 1));
   }
   return images;
-}
-
-struct Belief {
-  std::uint32_t patch;
-  std::vector<std::uint32_t> entries;  // which leaves the trees lead to
-  bool operator==(const Belief& other) const { return patch == other.patch && entries == other.entries; }
-};
-
-std::vector<Belief> beliefs_in(int class_index, const PatchBeliefs& beliefs) {
-  std::vector<Belief> found;
-  beliefs.for_believers(class_index, [&](std::uint32_t patch, const std::uint32_t* entries, std::uint32_t count) {
-    found.push_back({patch, {entries, entries + count}});
-  });
-  return found;
 }
 
 TEST(SeenPatches, LeavesInWantedTilesAreThoseInWholeImages) {
@@ -128,12 +116,7 @@ TEST(SeenPatches, DetectionsInWantedTilesAreThoseInWholeImages) {
   settings.readable = true;  // features of whole images
   const Detections expected = Detector(toy_forest(), settings).detect(tile_in_a_room());
   ASSERT_FALSE(expected.detections.empty());
-  ASSERT_EQ(found.detections.size(), expected.detections.size());
-  for (std::size_t i = 0; i < expected.detections.size(); ++i) {
-    EXPECT_EQ(found.detections[i].score, expected.detections[i].score);
-    EXPECT_EQ(found.detections[i].box_px, expected.detections[i].box_px);
-    EXPECT_EQ(found.detections[i].centre_camera, expected.detections[i].centre_camera);
-  }
+  expect_same(found, expected);
 }
 
 TEST(SeenPatches, ColourAndCameraAreThoseOfTheNearLevel) {

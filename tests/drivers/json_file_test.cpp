@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "pipeline/checks.hpp"
@@ -18,15 +17,6 @@ fs::path file_with(const std::string& text) {
   fs::path file = fresh_folder("json_file") / "file.json";
   write_text(file, text);
   return file;
-}
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(JsonFile, IsWrittenInOrderAndComesBack) {

@@ -3,9 +3,11 @@
 #include <cerrno>  // program_invocation_short_name
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <string>
 
+#include "pipeline/checks.hpp"
 #include "pipeline/frame.hpp"
 
 namespace houghstream {
@@ -17,6 +19,16 @@ inline std::filesystem::path fresh_folder(const std::string& name) {
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
+}
+
+/// What an InputError of the work says; empty where it throws none.
+inline std::string error_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 inline void write_text(const std::filesystem::path& file, const std::string& text) {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "pipeline/random.hpp"
-#include "tests/detector/features/every_target.hpp"
+#include "tests/every_target.hpp"
 
 namespace houghstream {
 namespace {

@@ -72,17 +72,17 @@ OrderedJson to_json(const ComparedFrame& frame) {
 
 }  // namespace
 
-RealBench run_real_bench(const std::filesystem::path& scenes, const Camera& camera, const Detector& detector,
+RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const Detector& detector,
                          const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
-                         const std::vector<DrawnFrame>& drawn, const ComparedObject& object) {
+                         const ComparedObject& object) {
   RealBench bench;
   std::int64_t utime = 0;
   for (const FramePair& pair : list_frame_pairs(scenes)) {
-    const RgbdFrame frame = read_frame_pair(pair, camera, ++utime);
+    const RgbdFrame frame = read_frame_pair(pair, drawn.camera, ++utime);
     const Detections detections = detector.detect(frame);
     const ObjectPoses poses = estimator.estimate(frame, detections);
     const ObjectPoses withheld =
-        withheld_poses(detections, poses, unchecked.estimate(frame, detections), boxes_of(pair.name, drawn));
+        withheld_poses(detections, poses, unchecked.estimate(frame, detections), boxes_of(pair.name, drawn.frames));
     for (const ObjectPose& pose : poses.poses) bench.poses += pose.T_camera_object ? 1 : 0;
     const auto reference = object.references.find(pair.name);
     const bool is_compared = reference != object.references.end();

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "detector/features/features.hpp"
-#include "every_target.hpp"
 #include "pipeline/random.hpp"
+#include "tests/every_target.hpp"
 
 namespace houghstream {
 namespace {

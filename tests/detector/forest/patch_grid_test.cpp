@@ -28,6 +28,14 @@ std::set<std::pair<int, int>> places(const PatchGrid& grid) {
   return out;
 }
 
+/// Two metres away, wherever the camera looks.
+WorkingFrame wall(const Camera& camera) {
+  WorkingFrame frame;
+  frame.camera = camera;
+  frame.filled_depth = cv::Mat(camera.height, camera.width, CV_32FC1, cv::Scalar(2.0));
+  return frame;
+}
+
 double nearest_neighbour(const PatchGrid& grid) {
   double nearest = 1e9;
   for (std::size_t p = 1; p < grid.size(); ++p) {
@@ -56,9 +64,7 @@ TEST(PatchGrid, ItsSquaresHoldAllPatchesRowByRow) {
 }
 
 TEST(PatchGrid, SquaresHaveNoPatchesWhereThereIsNoDepth) {
-  WorkingFrame frame;
-  frame.camera = {96, 48, 60, 60, 47.5, 23.5};
-  frame.filled_depth = cv::Mat(48, 96, CV_32FC1, cv::Scalar(2.0));
+  WorkingFrame frame = wall({96, 48, 60, 60, 47.5, 23.5});
   frame.filled_depth(cv::Rect(10, 0, 60, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
   PatchGrid grid;
   add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 0, PatchSettings{}, {1, 0.0F}, grid);
@@ -74,9 +80,7 @@ TEST(PatchGrid, SquaresHaveNoPatchesWhereThereIsNoDepth) {
 }
 
 TEST(PatchGrid, HasNoSquaresWherePatchesStandApart) {
-  WorkingFrame frame;
-  frame.camera = {64, 48, 60, 60, 31.5, 23.5};
-  frame.filled_depth = cv::Mat(48, 64, CV_32FC1, cv::Scalar(2.0));
+  WorkingFrame frame = wall({64, 48, 60, 60, 31.5, 23.5});
   for (const PatchSpacing spacing : {PatchSpacing{2, 0.0F}, PatchSpacing{1, 0.2F}}) {
     PatchGrid grid;
     add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 0, PatchSettings{}, spacing, grid);
@@ -86,9 +90,7 @@ TEST(PatchGrid, HasNoSquaresWherePatchesStandApart) {
 }
 
 TEST(PatchGrid, StandsOnDepthThatItsLevelHolds) {
-  WorkingFrame frame;
-  frame.camera = {64, 48, 60, 60, 31.5, 23.5};
-  frame.filled_depth = cv::Mat(48, 64, CV_32FC1, cv::Scalar(2.0));
+  WorkingFrame frame = wall({64, 48, 60, 60, 31.5, 23.5});
   frame.filled_depth(cv::Rect(0, 0, 32, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
   PatchGrid grid;
   add_patches(frame, {0.5F, 1.0F, 0.0F, 1.9F}, 0, PatchSettings{}, {2, 0.0F}, grid);

@@ -76,6 +76,15 @@ class Traversal : public ::testing::Test {
     }
   }
 
+  /// All levels, with a patch every so many pixels.
+  void look_at_room(int stride, std::vector<FeatureImage>& features, PatchGrid& patches) const {
+    for (const FeatureLevel& level : feature_levels(forest.features)) {
+      const WorkingFrame frame = make_working_frame(room, level, forest.features);
+      add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, {stride, 0.0F}, patches);
+      features.push_back(compute_features(frame, forest.features, 2));
+    }
+  }
+
   const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   RgbdFrame room = toy::room(5);
 };
@@ -83,11 +92,7 @@ class Traversal : public ::testing::Test {
 TEST_F(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
   std::vector<FeatureImage> features;
   PatchGrid patches;
-  for (const FeatureLevel& level : feature_levels(forest.features)) {
-    const WorkingFrame frame = make_working_frame(room, level, forest.features);
-    add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, {2, 0.0F}, patches);
-    features.push_back(compute_features(frame, forest.features, 2));
-  }
+  look_at_room(2, features, patches);
   ASSERT_GT(patches.size(), 4000U);
   ASSERT_TRUE(patches.squares.empty());
   expect_leaves_of_find_leaf(forest, features, patches);
@@ -114,11 +119,7 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelWithDepth) {
   room.depth(cv::Rect(100, 40, 90, 90)).setTo(0.45F);  // nearer, and some pixels know no depth
   std::vector<FeatureImage> features;
   PatchGrid patches;
-  for (const FeatureLevel& level : feature_levels(forest.features)) {
-    const WorkingFrame frame = make_working_frame(room, level, forest.features);
-    add_patches(frame, level, static_cast<std::uint8_t>(features.size()), forest.patch, {1, 0.0F}, patches);
-    features.push_back(compute_features(frame, forest.features, 2));
-  }
+  look_at_room(1, features, patches);
   ASSERT_FALSE(patches.squares.empty());
   expect_leaves_of_find_leaf(forest, features, patches);
   for (const float share : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, share, features, patches);

@@ -6,20 +6,12 @@
 #include "drivers/openni/frame_of_pair.hpp"
 #include "pipeline/checks.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
+#include "tests/drivers/test_files.hpp"
 
 namespace houghstream {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
