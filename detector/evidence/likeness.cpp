@@ -6,7 +6,8 @@
 namespace houghstream {
 namespace {
 
-constexpr int kFewest = 12;  // pairs from which a comparison means something
+constexpr int kFewest = 12;         // pairs from which a comparison means something
+constexpr double kNeutral = 128.0;  // a* and b* of grey
 
 }  // namespace
 
@@ -18,8 +19,7 @@ double Likeness::seen_variance(std::size_t channel) const {
 
 float Likeness::foreign_colour() const {
   constexpr double kPlain = 100.0;  // variance of a and b that plain surfaces have in changing light
-  constexpr double kNeutral = 128.0;
-  constexpr double kPalest = 0.5;  // strengths over the remembered one
+  constexpr double kPalest = 0.5;   // strengths over the remembered one
   constexpr double kStrongest = 2.5;
   if (count_ < kFewest) return 0.0F;
   const double count = count_;
@@ -32,6 +32,25 @@ float Likeness::foreign_colour() const {
   const double a = mean(1, 1) - strength * mean(1, 0);
   const double b = mean(2, 1) - strength * mean(2, 0);
   return static_cast<float>(std::min(4.0, std::sqrt((a * a + b * b) / (kPlain + seen_variance(1) + seen_variance(2)))));
+}
+
+float Likeness::hue_conflict() const {
+  constexpr double kUnit = 100.0;
+  constexpr double kMost = 2.0;
+  if (count_ < kFewest) return 0.0F;
+  const double count = count_;
+  double product = 0.0;
+  double remembered_sq = 0.0;
+  double seen_sq = 0.0;
+  for (const std::size_t c : {std::size_t{1}, std::size_t{2}}) {  // about grey, not about the mean
+    const Sums& sums = channels_[c];
+    const double offset = count * kNeutral * kNeutral;
+    product += sums[4] - kNeutral * (static_cast<double>(sums[0]) + sums[1]) + offset;
+    remembered_sq += sums[2] - 2.0 * kNeutral * sums[0] + offset;
+    seen_sq += sums[3] - 2.0 * kNeutral * sums[1] + offset;
+  }
+  const double lacking = std::sqrt(remembered_sq * seen_sq) - product;
+  return static_cast<float>(std::clamp(lacking / (kUnit * count), 0.0, kMost));
 }
 
 float Likeness::correlation() const {

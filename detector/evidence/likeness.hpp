@@ -32,6 +32,11 @@ class Likeness {
   /// surfaces apart, which correlation cannot.
   float foreign_colour() const;
 
+  /// How far the hues differ, pair by pair, where both are strong: what the scalar product of the colours in the a*b*
+  /// plane lacks to the largest that colours of their strength can have, per pair, in hundreds of squared units; 0 to
+  /// 2, 0 for fewer than a dozen pairs. A purple can is no red one, however alike their print.
+  float hue_conflict() const;
+
  private:
   /// Sums of a, b, a * a, b * b and a * b.
   using Sums = std::array<std::int32_t, 5>;  // exact for 33 000 pairs, many times what a view has

@@ -43,7 +43,7 @@ ScoreTerms score_terms(const Evidence& evidence) {
           fit.unknown,
           fit.continued,
           fit.likeness,
-          foreign,
+          fit.hue_conflict,
           foreign * foreign,
           fit.unevenness};
 }

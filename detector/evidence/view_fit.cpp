@@ -113,14 +113,17 @@ cv::Rect2f visible_box(const Comparison& comparison, const Lines& columns, const
           static_cast<float>(bottom - top) * comparison.cell_height};
 }
 
-/// Share of the cells beside the outline whose depth is the object's.
+/// Share of the cells beside the outline whose surface goes on from the object's: a larger thing of the same shape
+/// comes nearer there before it turns away.
 float continued_share(const Comparison& comparison, float shift, float tolerance) {
+  constexpr float kNearer = 0.03F;
   int beside = 0;
   int continued = 0;
   for (std::size_t cell = 0; cell < comparison.beside.size(); ++cell) {
     if (!comparison.beside[cell]) continue;
     ++beside;
-    continued += std::abs(comparison.excess_beside[cell] - shift) <= tolerance ? 1 : 0;
+    const float e = comparison.excess_beside[cell] - shift;
+    continued += e >= -kNearer && e <= 2.0F * tolerance ? 1 : 0;
   }
   return static_cast<float>(continued) / static_cast<float>(std::max(beside, 1));
 }
@@ -212,6 +215,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   fit.continued = continued_share(comparison, shift, tolerance);
   fit.likeness = likeness.correlation();
   fit.foreign_colour = likeness.foreign_colour();
+  fit.hue_conflict = likeness.hue_conflict();
   fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
 }

@@ -25,9 +25,10 @@ struct ViewFit {
   float seen_through = 0.0F;    ///< what is there lies behind: the object cannot be there
   float unknown = 0.0F;         ///< no depth
   float unevenness = 0.0F;      ///< mean error of the visible depth over the tolerance, 0 to 1
-  float continued = 0.0F;       ///< of the rim beside the outline: the surface goes on where the object ends
+  float continued = 0.0F;       ///< of the rim beside the outline: the surface goes on, or comes nearer
   float likeness = 0.0F;        ///< correlation of the visible surface's colours with the remembered ones, -1 to 1
   float foreign_colour = 0.0F;  ///< see Likeness
+  float hue_conflict = 0.0F;    ///< see Likeness
   cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is
 };
 

@@ -48,14 +48,22 @@ TEST(Likeness, PlainSurfacesAndFewPairsSayNothing) {
   EXPECT_EQ(few.correlation(), 0.0F);
 }
 
-/// Foreign colour of plain surfaces, as a* and b* about neutral.
-float between_plain(cv::Point remembered, cv::Point seen) {
+/// Two plain surfaces, as a* and b* about neutral.
+Likeness of_plain(cv::Point remembered, cv::Point seen) {
   Likeness likeness;
   for (int i = 0; i < 100; ++i) {
     likeness.add({120, static_cast<std::uint8_t>(128 + remembered.x), static_cast<std::uint8_t>(128 + remembered.y)},
                  {120, static_cast<std::uint8_t>(128 + seen.x), static_cast<std::uint8_t>(128 + seen.y)});
   }
-  return likeness.foreign_colour();
+  return likeness;
+}
+
+float between_plain(cv::Point remembered, cv::Point seen) {
+  return of_plain(remembered, seen).foreign_colour();
+}
+
+float hue_conflict(cv::Point remembered, cv::Point seen) {
+  return of_plain(remembered, seen).hue_conflict();
 }
 
 TEST(ForeignColour, IsTheDistanceInTensThatNoStrengthExplains) {
@@ -83,6 +91,40 @@ TEST(ForeignColour, FewPairsSayNothing) {
   Likeness few;
   for (int i = 0; i < 5; ++i) few.add({120, 128, 128}, {120, 190, 128});
   EXPECT_EQ(few.foreign_colour(), 0.0F);
+}
+
+TEST(HueConflict, GrowsWithTheAngleAndTheStrengthOfBothColours) {
+  EXPECT_NEAR(hue_conflict({10, 0}, {0, 10}), 1.0F, 1e-3F);
+  EXPECT_NEAR(hue_conflict({10, 0}, {6, 8}), 0.4F, 1e-3F);
+  EXPECT_NEAR(hue_conflict({10, 0}, {0, 5}), 0.5F, 1e-3F);
+  EXPECT_EQ(hue_conflict({30, 20}, {30, -25}), 2.0F) << "red and purple: the most it can be";
+}
+
+TEST(HueConflict, HazeAndGreySurfacesAreNone) {
+  EXPECT_NEAR(hue_conflict({10, 20}, {5, 10}), 0.0F, 1e-3F);
+  EXPECT_NEAR(hue_conflict({10, 20}, {25, 50}), 0.0F, 1e-3F);
+  EXPECT_EQ(hue_conflict({0, 0}, {30, 20}), 0.0F);
+}
+
+TEST(HueConflict, RedPrintOnWhiteMeansAnotherThingThanPurplePrintOnWhite) {
+  const auto printed = [](std::uint8_t a, std::uint8_t b) {
+    Likeness likeness;
+    for (int i = 0; i < 100; ++i) {
+      const bool print = i % 2 == 0;
+      likeness.add(print ? std::array<std::uint8_t, 3>{80, 170, 150} : std::array<std::uint8_t, 3>{200, 128, 128},
+                   print ? cv::Vec3b(80, a, b) : cv::Vec3b(200, 128, 128));
+    }
+    return likeness;
+  };
+  EXPECT_GT(printed(150, 100).correlation(), 0.8F) << "lightness is alike";
+  EXPECT_GT(printed(150, 100).hue_conflict(), 1.0F);
+  EXPECT_EQ(printed(170, 150).hue_conflict(), 0.0F);
+}
+
+TEST(HueConflict, FewPairsSayNothing) {
+  Likeness few;
+  for (int i = 0; i < 5; ++i) few.add({120, 158, 128}, {120, 128, 158});
+  EXPECT_EQ(few.hue_conflict(), 0.0F);
 }
 
 }  // namespace

@@ -69,6 +69,20 @@ TEST(ViewFit, AWallGoesOnBesideTheOutline) {
   EXPECT_GT(fit(frame).continued, 0.5F);
 }
 
+TEST(ViewFit, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
+  const auto beside = [](float nearer) {
+    RgbdFrame frame = tile_frame();
+    cv::Mat around = frame.depth.clone();
+    around.setTo(kDistance - nearer);
+    frame.depth.copyTo(around, toy::training_views().front().mask);
+    frame.depth = around;
+    return fit(frame).continued;
+  };
+  EXPECT_GT(beside(0.02F), 0.5F);
+  EXPECT_EQ(beside(0.06F), 0.0F) << "something in front";
+  EXPECT_EQ(beside(-0.06F), 0.0F) << "what is behind";
+}
+
 TEST(ViewFit, LikenessIgnoresLightButNotPattern) {
   RgbdFrame dim = tile_frame();
   dim.colour.convertTo(dim.colour, -1, 0.5, 20.0);
