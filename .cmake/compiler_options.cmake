@@ -11,8 +11,8 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 find_program(CCACHE_PROGRAM ccache)
-if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+if(CCACHE_PROGRAM)  # it must be told that precompiled headers may be cached
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
 endif()
 
 set(HOUGHSTREAM_SUMMARY "" CACHE INTERNAL "")
@@ -47,12 +47,39 @@ function(houghstream_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
+# houghstream_share_headers(NAME [QUICKLY] HEADERS x ... LINK y ...): what nearly every source includes is read once, into
+# the target NAME, and not again by each: a third of the build time. Without HOUGHSTREAM_SHARED_HEADERS, as for sanitizers
+# and clang-tidy, a source that lives on headers which it does not include itself is noticed.
+function(houghstream_share_headers name)
+  cmake_parse_arguments(ARG "QUICKLY" "" "HEADERS;LINK" ${ARGN})
+  if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_SANITIZE)
+    return()
+  endif()
+  set(source "${CMAKE_BINARY_DIR}/${name}.cpp")
+  file(CONFIGURE OUTPUT "${source}" CONTENT "// ${name}: a target needs a source.\n")
+  add_library(${name} OBJECT "${source}")
+  target_link_libraries(${name} PRIVATE ${ARG_LINK})
+  houghstream_compile_options(${name})
+  if(ARG_QUICKLY)
+    houghstream_compile_quickly(${name})
+  endif()
+  target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
+endfunction()
+
+# The target's sources see the headers of houghstream_share_headers(SHARED).
+function(houghstream_use_shared_headers target shared)
+  if(TARGET ${shared})
+    target_precompile_headers(${target} REUSE_FROM ${shared})
+  endif()
+endfunction()
+
 # houghstream_library(NAME SOURCES a.cpp ... LINK x ...)
 function(houghstream_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC ${ARG_LINK})
   houghstream_compile_options(${name})
+  houghstream_use_shared_headers(${name} library_headers)
 endfunction()
 
 # houghstream_executable(NAME SOURCES a.cpp ... LINK x ...)
@@ -63,6 +90,7 @@ function(houghstream_executable name)
   target_compile_definitions(${name} PRIVATE HOUGHSTREAM_VERSION="${PROJECT_VERSION}")
   houghstream_compile_options(${name})
   houghstream_compile_quickly(${name})
+  houghstream_use_shared_headers(${name} main_headers)
 endfunction()
 
 # houghstream_test(FOO_TEST SOURCES foo_test.cpp ... LINK x ...): one GoogleTest binary, one CTest entry.
@@ -72,6 +100,7 @@ function(houghstream_test name)
   target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest_main)
   houghstream_compile_options(${name})
   houghstream_compile_quickly(${name})
+  houghstream_use_shared_headers(${name} test_headers)
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES TIMEOUT 300
     ENVIRONMENT "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/.cmake/leak_suppressions.txt:print_suppressions=0")
