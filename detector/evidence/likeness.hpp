@@ -33,8 +33,9 @@ class Likeness {
   float foreign_colour() const;
 
   /// How far the hues differ, pair by pair, where both are strong: what the scalar product of the colours in the a*b*
-  /// plane lacks to the largest that colours of their strength can have, per pair, in hundreds of squared units; 0 to
-  /// 2, 0 for fewer than a dozen pairs. A purple can is no red one, however alike their print.
+  /// plane lacks to the largest that colours of their strength can have, per pair, in hundreds of squared units,
+  /// without what a cast of the light explains; 0 to 2, 0 for fewer than a dozen pairs. A purple can is no red one,
+  /// however alike their print.
   float hue_conflict() const;
 
  private:

@@ -5,7 +5,8 @@
 namespace houghstream {
 
 float agreement(const ViewFit& fit) {
-  return fit.visible + 0.5F * fit.unknown - fit.seen_through + 0.5F * fit.likeness - 0.25F * fit.continued;
+  return fit.visible + 0.5F * fit.unknown - fit.seen_through + 0.5F * fit.likeness - 0.25F * fit.continued -
+         0.2F * fit.hue_conflict;
 }
 
 ViewFit align_view(const TrainedView& view, Eigen::Vector3f centre_camera, ViewFit fit, const LabFrame& frame) {

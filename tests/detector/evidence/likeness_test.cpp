@@ -94,13 +94,14 @@ TEST(ForeignColour, FewPairsSayNothing) {
 }
 
 TEST(HueConflict, GrowsWithTheAngleAndTheStrengthOfBothColours) {
-  EXPECT_NEAR(hue_conflict({10, 0}, {0, 10}), 1.0F, 1e-3F);
-  EXPECT_NEAR(hue_conflict({10, 0}, {6, 8}), 0.4F, 1e-3F);
-  EXPECT_NEAR(hue_conflict({10, 0}, {0, 5}), 0.5F, 1e-3F);
+  EXPECT_NEAR(hue_conflict({20, 0}, {0, 10}), 1.2F, 1e-3F);
+  EXPECT_NEAR(hue_conflict({25, 0}, {6, 8}), 0.2F, 1e-3F);
+  EXPECT_NEAR(hue_conflict({20, 0}, {0, 5}), 0.6F, 1e-3F);
   EXPECT_EQ(hue_conflict({30, 20}, {30, -25}), 2.0F) << "red and purple: the most it can be";
 }
 
-TEST(HueConflict, HazeAndGreySurfacesAreNone) {
+TEST(HueConflict, HazeACastAndGreySurfacesAreNone) {
+  EXPECT_EQ(hue_conflict({15, 0}, {15, 8}), 0.0F);
   EXPECT_NEAR(hue_conflict({10, 20}, {5, 10}), 0.0F, 1e-3F);
   EXPECT_NEAR(hue_conflict({10, 20}, {25, 50}), 0.0F, 1e-3F);
   EXPECT_EQ(hue_conflict({0, 0}, {30, 20}), 0.0F);
