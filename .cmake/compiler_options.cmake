@@ -15,6 +15,7 @@ if(CCACHE_PROGRAM)  # it must be told that precompiled headers may be cached
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
 endif()
 
+set(HOUGHSTREAM_LIBRARY_HEADERS library_headers)
 set(HOUGHSTREAM_SUMMARY "" CACHE INTERNAL "")
 function(houghstream_summary line)
   set(HOUGHSTREAM_SUMMARY "${HOUGHSTREAM_SUMMARY};${line}" CACHE INTERNAL "")
@@ -47,11 +48,13 @@ function(houghstream_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# houghstream_share_headers(NAME [QUICKLY] HEADERS x ... LINK y ...): what nearly every source includes is read once, into
-# the target NAME, and not again by each: a third of the build time. Without HOUGHSTREAM_SHARED_HEADERS, as for sanitizers
-# and clang-tidy, a source that lives on headers which it does not include itself is noticed.
+# houghstream_share_headers(NAME [QUICKLY] [OPTIONS x ...] HEADERS x ... LINK y ...): what nearly every source includes is
+# read once, into the target NAME, and not again by each: a third of the build time. g++ takes the optimisation options of
+# the precompiled headers for all that follows: they must be those of the targets that use them. Where
+# HOUGHSTREAM_SHARED_HEADERS is off, as for clang-tidy, or with sanitizers, a source that lives on headers which it does not
+# include itself is noticed.
 function(houghstream_share_headers name)
-  cmake_parse_arguments(ARG "QUICKLY" "" "HEADERS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "QUICKLY" "" "OPTIONS;HEADERS;LINK" ${ARGN})
   if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_SANITIZE)
     return()
   endif()
@@ -63,6 +66,7 @@ function(houghstream_share_headers name)
   if(ARG_QUICKLY)
     houghstream_compile_quickly(${name})
   endif()
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
   target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
@@ -73,13 +77,14 @@ function(houghstream_use_shared_headers target shared)
   endif()
 endfunction()
 
-# houghstream_library(NAME SOURCES a.cpp ... LINK x ...)
+# houghstream_library(NAME SOURCES a.cpp ... LINK x ...): of a folder whose libraries know messages,
+# HOUGHSTREAM_LIBRARY_HEADERS is message_headers.
 function(houghstream_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC ${ARG_LINK})
   houghstream_compile_options(${name})
-  houghstream_use_shared_headers(${name} library_headers)
+  houghstream_use_shared_headers(${name} ${HOUGHSTREAM_LIBRARY_HEADERS})
 endfunction()
 
 # houghstream_executable(NAME SOURCES a.cpp ... LINK x ...)
