@@ -15,7 +15,6 @@ if(CCACHE_PROGRAM)  # it must be told that precompiled headers may be cached
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
 endif()
 
-set(HOUGHSTREAM_LIBRARY_HEADERS library_headers)
 set(HOUGHSTREAM_SUMMARY "" CACHE INTERNAL "")
 function(houghstream_summary line)
   set(HOUGHSTREAM_SUMMARY "${HOUGHSTREAM_SUMMARY};${line}" CACHE INTERNAL "")
@@ -33,9 +32,11 @@ endfunction()
 # Our targets only: generated and third-party headers are system headers.
 function(houghstream_compile_options target)
   target_include_directories(${target} PUBLIC "${CMAKE_SOURCE_DIR}")
-  # Contraction to fused multiply-add would make results depend on the machine.
+  # Contraction to fused multiply-add would make results depend on the machine. lcm_coretypes.h reads doubles and floats
+  # through integer pointers; optimised under the aliasing rules, g++ 12 drops the stores and sends zeros: all of our code
+  # goes without them, as precompiled headers have one set of options.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                                           -Wno-float-conversion -Werror -ffp-contract=off)
+                                           -Wno-float-conversion -Werror -ffp-contract=off -fno-strict-aliasing)
   if(HOUGHSTREAM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer -g)
@@ -48,13 +49,13 @@ function(houghstream_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# houghstream_share_headers(NAME [QUICKLY] [OPTIONS x ...] HEADERS x ... LINK y ...): what nearly every source includes is
+# houghstream_share_headers(NAME [QUICKLY] HEADERS x ... LINK y ...): what nearly every source includes is
 # read once, into the target NAME, and not again by each: a third of the build time. g++ takes the optimisation options of
 # the precompiled headers for all that follows: they must be those of the targets that use them. Where
 # HOUGHSTREAM_SHARED_HEADERS is off, as for clang-tidy, or with sanitizers, a source that lives on headers which it does not
 # include itself is noticed.
 function(houghstream_share_headers name)
-  cmake_parse_arguments(ARG "QUICKLY" "" "OPTIONS;HEADERS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "QUICKLY" "" "HEADERS;LINK" ${ARGN})
   if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_SANITIZE)
     return()
   endif()
@@ -66,7 +67,6 @@ function(houghstream_share_headers name)
   if(ARG_QUICKLY)
     houghstream_compile_quickly(${name})
   endif()
-  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
   target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
 endfunction()
 
@@ -77,14 +77,13 @@ function(houghstream_use_shared_headers target shared)
   endif()
 endfunction()
 
-# houghstream_library(NAME SOURCES a.cpp ... LINK x ...): of a folder whose libraries know messages,
-# HOUGHSTREAM_LIBRARY_HEADERS is message_headers.
+# houghstream_library(NAME SOURCES a.cpp ... LINK x ...)
 function(houghstream_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC ${ARG_LINK})
   houghstream_compile_options(${name})
-  houghstream_use_shared_headers(${name} ${HOUGHSTREAM_LIBRARY_HEADERS})
+  houghstream_use_shared_headers(${name} library_headers)
 endfunction()
 
 # houghstream_executable(NAME SOURCES a.cpp ... LINK x ...)

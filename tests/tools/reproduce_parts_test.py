@@ -129,7 +129,7 @@ class Plan(unittest.TestCase):
             self.assertEqual(self.options(unit, *names), ["0.1", None, None], what)
         for what in ("paper", "realtime", "stride_4"):
             unit = full[f"evaluate/{what}/table_small_1/seed1"]
-            self.assertEqual(self.options(unit, *names), ["0", "0.05", variants.DEFAULT_THRESHOLD], what)
+            self.assertEqual(self.options(unit, *names), ["0", "0.05", None], what)
 
     def test_linemod_is_taught_the_distances_of_the_scenes(self):
         _, full = self.quick_and_full()

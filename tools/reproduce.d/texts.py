@@ -6,12 +6,11 @@ LEAD = """Haensch, Kaiser and Hellwich (VISAPP 2017) made a Hough Forest see dep
 PROTOCOL = """A detection is true if its box overlaps the object's by IoU 0.5 or more; repeated detections are false; up to
     250 detections of a class count, from a vote confidence of 0.1 on. For gall and its variants that is the score; the scores
     of paper and realtime are probabilities, so there everything counts that has as many votes, a twentieth of a whole
-    object's, ranked by probability (--min-mass 0.05 --threshold 0). Precision and recall at the default threshold, 0.65, come from the same runs.
-    AUC is the area
-    under the precision/recall curve over all frames of a scene, un-interpolated, mean over the objects in the scene and over
-    the training runs; whiskers reach from the worst run to the best. Objects of which less than a tenth is visible do not
-    count. The paper measured on camera pictures of the UW RGB-D datasets, on another machine: compare changes rather than
-    levels."""
+    object's, ranked by probability (--min-mass 0.05 --threshold 0). Precision and recall at the detector's default threshold
+    come from the same runs. AUC is the area under the precision/recall curve over all frames of a scene, un-interpolated,
+    mean over the objects in the scene and over the training runs; whiskers reach from the worst run to the best. Objects of
+    which less than a tenth is visible do not count. The paper measured on camera pictures of the UW RGB-D datasets, on
+    another machine: compare changes rather than levels."""
 QUICK = """A quick run: one training run; every third frame of a scene, every sixth by gall and its variants, which are
     slow."""
 LEFT_OUT = {
