@@ -35,9 +35,7 @@ float Likeness::foreign_colour() const {
 }
 
 float Likeness::hue_conflict() const {
-  constexpr double kUnit = 100.0;
-  constexpr double kMost = 2.0;
-  constexpr double kCast = 8.0;  // length in the a*b* plane of what the light adds to all colours
+  constexpr double kPale = 120.0;  // squared strength in the a*b* plane about which a hue begins to mean something
   if (count_ < kFewest) return 0.0F;
   const double count = count_;
   double product = 0.0;
@@ -50,9 +48,9 @@ float Likeness::hue_conflict() const {
     remembered_sq += sums[2] - 2.0 * kNeutral * sums[0] + offset;
     seen_sq += sums[3] - 2.0 * kNeutral * sums[1] + offset;
   }
-  const double lacking = (std::sqrt(remembered_sq * seen_sq) - product) / count;
-  const double by_light = kCast * std::sqrt(seen_sq / count);
-  return static_cast<float>(std::clamp((lacking - by_light) / kUnit, 0.0, kMost));
+  const double lacking = std::sqrt(remembered_sq * seen_sq) - product;
+  const double pale = kPale * count;
+  return static_cast<float>(std::max(lacking, 0.0) / std::sqrt((remembered_sq + pale) * (seen_sq + pale)));
 }
 
 float Likeness::correlation() const {

@@ -32,10 +32,10 @@ class Likeness {
   /// surfaces apart, which correlation cannot.
   float foreign_colour() const;
 
-  /// How far the hues differ, pair by pair, where both are strong: what the scalar product of the colours in the a*b*
-  /// plane lacks to the largest that colours of their strength can have, per pair, in hundreds of squared units,
-  /// without what a cast of the light explains; 0 to 2, 0 for fewer than a dozen pairs. A purple can is no red one,
-  /// however alike their print.
+  /// How far the hues differ, pair by pair, where both colours are strong: what the scalar product of the colours in
+  /// the a*b* plane lacks to the largest that colours of their strengths can have, over that largest, which pale
+  /// colours keep from reaching it. 0 for the same hues at any strength, as haze and exposure change it, 1 for hues at
+  /// right angles, at most 2; 0 for fewer than a dozen pairs. A purple can is no red one, however alike their print.
   float hue_conflict() const;
 
  private:

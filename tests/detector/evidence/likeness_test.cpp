@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pipeline/random.hpp"
 
 namespace houghstream {
@@ -94,17 +96,24 @@ TEST(ForeignColour, FewPairsSayNothing) {
 }
 
 TEST(HueConflict, GrowsWithTheAngleAndTheStrengthOfBothColours) {
-  EXPECT_NEAR(hue_conflict({20, 0}, {0, 10}), 1.2F, 1e-3F);
-  EXPECT_NEAR(hue_conflict({25, 0}, {6, 8}), 0.2F, 1e-3F);
-  EXPECT_NEAR(hue_conflict({20, 0}, {0, 5}), 0.6F, 1e-3F);
-  EXPECT_EQ(hue_conflict({30, 20}, {30, -25}), 2.0F) << "red and purple: the most it can be";
+  EXPECT_NEAR(hue_conflict({20, 0}, {0, 10}), 200.0 / std::sqrt(520.0 * 220.0), 1e-5);
+  EXPECT_NEAR(hue_conflict({25, 0}, {6, 8}), 100.0 / std::sqrt(745.0 * 220.0), 1e-5);
+  EXPECT_NEAR(hue_conflict({20, 0}, {0, 5}), 100.0 / std::sqrt(520.0 * 145.0), 1e-5);
+  EXPECT_GT(hue_conflict({30, 20}, {30, -25}), 0.6F) << "red and purple";
+  EXPECT_GT(hue_conflict({40, 0}, {-40, 0}), 1.8F) << "red and green";
 }
 
-TEST(HueConflict, HazeACastAndGreySurfacesAreNone) {
-  EXPECT_EQ(hue_conflict({15, 0}, {15, 8}), 0.0F);
+TEST(HueConflict, IsKnownInHazeToo) {
+  const float clear = hue_conflict({20, 0}, {0, 20});
+  EXPECT_GT(hue_conflict({9, 0}, {0, 20}), 0.7F * clear) << "taught in haze";
+  EXPECT_GT(hue_conflict({20, 0}, {0, 9}), 0.7F * clear) << "seen in haze";
+}
+
+TEST(HueConflict, OtherStrengthAndGreySurfacesAreNoneAndACastIsLittle) {
   EXPECT_NEAR(hue_conflict({10, 20}, {5, 10}), 0.0F, 1e-3F);
   EXPECT_NEAR(hue_conflict({10, 20}, {25, 50}), 0.0F, 1e-3F);
   EXPECT_EQ(hue_conflict({0, 0}, {30, 20}), 0.0F);
+  EXPECT_LT(hue_conflict({15, 0}, {15, 8}), 0.1F);
 }
 
 TEST(HueConflict, RedPrintOnWhiteMeansAnotherThingThanPurplePrintOnWhite) {
@@ -118,7 +127,7 @@ TEST(HueConflict, RedPrintOnWhiteMeansAnotherThingThanPurplePrintOnWhite) {
     return likeness;
   };
   EXPECT_GT(printed(150, 100).correlation(), 0.8F) << "lightness is alike";
-  EXPECT_GT(printed(150, 100).hue_conflict(), 1.0F);
+  EXPECT_GT(printed(150, 100).hue_conflict(), 0.6F);
   EXPECT_EQ(printed(170, 150).hue_conflict(), 0.0F);
 }
 
