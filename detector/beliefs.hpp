@@ -51,10 +51,6 @@ class PatchBeliefs {
   std::vector<Believers> believers_;  // [run * classes + class]
 };
 
-/// Of a patch's leaves, from which it votes for a class: min_class_share, and less where more classes than four are
-/// taught, of which each has a thinner share: n classes lower it by the fourth root of n / 4.
-float least_share(const DetectionSettings& settings, std::size_t classes);
-
 /// What the patches believe, by the engine that the settings name. `features`: one image per level. What `beliefs` held
 /// is overwritten and its memory used again.
 void classify(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,

@@ -9,6 +9,7 @@
 #include "detector/boxes.hpp"
 #include "detector/evidence/attitude_spread.hpp"
 #include "detector/evidence/view_alignment.hpp"
+#include "detector/maxima.hpp"
 #include "detector/scale_space_search.hpp"
 #include "detector/seen_patches.hpp"
 #include "detector/voting.hpp"
@@ -144,13 +145,15 @@ std::vector<std::size_t> by_work(const Forest& forest, const PatchBeliefs& belie
 /// Of all classes, class by class; `meanwhile` is done by a thread that finds no class left.
 std::vector<ClassHypothesis> all_hypotheses(const Forest& forest, const SeenPatches& seen,
                                             const DetectionSettings& settings, const std::function<void()>& meanwhile) {
+  DetectionSettings each = settings;
+  each.candidates_per_class = candidates_of_each(settings, forest.classes.size());
   const std::vector<std::size_t> order = by_work(forest, seen.beliefs);
   std::vector<std::vector<Hypothesis>> by_class(order.size());
   const auto classes = static_cast<int>(order.size());
   parallel_for(settings.threads, classes + 1, [&](int i) {
     if (i == classes) return meanwhile();
     const std::size_t c = order[static_cast<std::size_t>(i)];
-    by_class[c] = class_hypotheses(forest, c, seen, settings);
+    by_class[c] = class_hypotheses(forest, c, seen, each);
   });
   std::vector<ClassHypothesis> all;
   for (std::size_t c = 0; c < by_class.size(); ++c) {

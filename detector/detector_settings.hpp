@@ -79,13 +79,13 @@ struct DetectionSettings {
   /// A patch walks down so many trees first, and down the rest only if the mean of what their leaves are most certain
   /// of reaches min_first_share; 0 = every patch walks down all trees.
   int first_trees = 3;
-  float min_first_share = 0.03F;
+  float min_first_share = 0.1F;
   /// Smallest score that is reported: on sixteen development worlds 95 % of the detections from here on are true.
   float threshold = 0.65F;
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
-  float min_class_share = 0.1F;    ///< of its leaves, from which a patch votes for a class, see least_share
-  int candidates_per_class = 24;   ///< maxima of the Hough image that are looked at in 3-D
+  float min_class_share = 0.1F;    ///< of its leaves, from which a patch votes for a class
+  int candidates_per_class = 24;   ///< maxima of the Hough image that are looked at in 3-D, see candidates_of_each
   float min_relative_peak = 0.1F;  ///< of the Hough image's highest value, for a maximum to be looked at
   float hough_sigma_px = 3.0F;     ///< smoothing of the Hough image, working pixels
   float vote_sigma = 0.016F;       ///< bandwidth of the 3-D maximum, metres

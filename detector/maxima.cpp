@@ -64,6 +64,13 @@ float start_depth(const HoughSpace& space, const Cell& cell) {
 
 }  // namespace
 
+int candidates_of_each(const DetectionSettings& settings, std::size_t classes) {
+  constexpr int kFewClasses = 4;
+  constexpr int kLeast = 8;
+  const int shared = settings.candidates_per_class * kFewClasses / std::max(static_cast<int>(classes), kFewClasses);
+  return std::max(shared, std::min(settings.candidates_per_class, kLeast));
+}
+
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& working_camera,
                                          const DetectionSettings& settings) {
   std::vector<Eigen::Vector3f> centres;

@@ -84,14 +84,6 @@ TEST(Beliefs, AreForgottenByTheNextFrame) {
   EXPECT_EQ(beliefs_in(0, beliefs).size(), 1U);
 }
 
-TEST(Beliefs, OfManyClassesLessIsEnough) {
-  DetectionSettings settings;
-  settings.min_class_share = 0.1F;
-  EXPECT_FLOAT_EQ(least_share(settings, 1), 0.1F);
-  EXPECT_FLOAT_EQ(least_share(settings, 4), 0.1F);
-  EXPECT_FLOAT_EQ(least_share(settings, 64), 0.05F);
-}
-
 TEST(Beliefs, NobodyBelievesBeforeARunIsNoted) {
   const PatchBeliefs none;
   EXPECT_TRUE(beliefs_in(0, none).empty());

@@ -65,5 +65,16 @@ TEST(Maxima, LowOnesAndTooManyAreNotLookedAt) {
   EXPECT_TRUE(find_maxima(space_of({}), kCamera, {}).empty());
 }
 
+TEST(Maxima, OfManyClassesFewerOfEachAreLookedAt) {
+  DetectionSettings settings;
+  settings.candidates_per_class = 24;
+  EXPECT_EQ(candidates_of_each(settings, 1), 24);
+  EXPECT_EQ(candidates_of_each(settings, 4), 24);
+  EXPECT_EQ(candidates_of_each(settings, 6), 16);
+  EXPECT_EQ(candidates_of_each(settings, 40), 8);
+  settings.candidates_per_class = 5;
+  EXPECT_EQ(candidates_of_each(settings, 40), 5) << "no more than asked for";
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -106,5 +106,23 @@ TEST(TreeTrainer, TheBackgroundWeighsAsMuchAsAllObjects) {
   EXPECT_NEAR(leaf.leaf_classes[0].probability, 0.5F, 1e-4F);
 }
 
+TEST(TreeTrainer, WhatAPatchIsWorthToAnObjectDoesNotDependOnHowManyOthersWereTaught) {
+  const auto share_of_one_among = [](int objects) {
+    TrainingSet set = toy::planted_set();
+    set.classes.resize(static_cast<std::size_t>(objects));
+    TrainingSettings settings = quick();
+    settings.max_depth = 0;
+    settings.in_bag = 1.0;
+    for (std::size_t i = 0; i < set.samples.size(); ++i) {
+      if (set.samples[i].label != 0) set.samples[i].label = static_cast<std::uint16_t>(1 + i % objects);
+    }
+    const Forest leaf = grow_tree(set, {}, settings, 0);
+    const float all = leaf.leaf_classes[0].probability * static_cast<float>(objects);
+    return leaf.leaf_classes[0].probability / (1.0F - all);  // over the background's
+  };
+  EXPECT_NEAR(share_of_one_among(4), 0.25F, 1e-4F);
+  EXPECT_NEAR(share_of_one_among(16), share_of_one_among(4), 1e-4F);
+}
+
 }  // namespace
 }  // namespace houghstream
