@@ -2,8 +2,6 @@
 
 #include <hwy/cache_control.h>
 
-#include <algorithm>
-
 namespace houghstream {
 namespace {
 

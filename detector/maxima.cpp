@@ -66,7 +66,7 @@ float start_depth(const HoughSpace& space, const Cell& cell) {
 
 int candidates_of_each(const DetectionSettings& settings, std::size_t classes) {
   constexpr int kFewClasses = 4;
-  constexpr int kLeast = 8;
+  constexpr int kLeast = 6;
   const int shared = settings.candidates_per_class * kFewClasses / std::max(static_cast<int>(classes), kFewClasses);
   return std::max(shared, std::min(settings.candidates_per_class, kLeast));
 }

@@ -71,7 +71,7 @@ TEST(Maxima, OfManyClassesFewerOfEachAreLookedAt) {
   EXPECT_EQ(candidates_of_each(settings, 1), 24);
   EXPECT_EQ(candidates_of_each(settings, 4), 24);
   EXPECT_EQ(candidates_of_each(settings, 6), 16);
-  EXPECT_EQ(candidates_of_each(settings, 40), 8);
+  EXPECT_EQ(candidates_of_each(settings, 40), 6);
   settings.candidates_per_class = 5;
   EXPECT_EQ(candidates_of_each(settings, 40), 5) << "no more than asked for";
 }
