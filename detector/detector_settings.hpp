@@ -45,14 +45,17 @@ struct PatchSettings {
 /// How a forest is trained.
 struct TrainingSettings {
   int trees = 15;
-  int max_depth = 25;            ///< levels
-  int min_samples = 20;          ///< a node with fewer becomes a leaf
-  int tests_per_node = 2000;     ///< random pixel tests tried
-  double alone_share = 0.3;      ///< of the tests look at one pixel alone, see PixelTest::kAlone
-  int node_samples = 1500;       ///< at most so many samples choose a node's test; all are then split by it
-  int patches_per_view = 250;    ///< per training view, and per background frame
-  int composites_per_view = 3;   ///< pictures made of one view: other background, distance and light
-  int spare_background = 10;     ///< background patches looked through for each one drawn blindly, see hard_negatives
+  int max_depth = 25;           ///< levels
+  int min_samples = 20;         ///< a node with fewer becomes a leaf
+  int tests_per_node = 2000;    ///< random pixel tests tried
+  double alone_share = 0.3;     ///< of the tests look at one pixel alone, see PixelTest::kAlone
+  int node_samples = 1500;      ///< at most so many samples choose a node's test; all are then split by it
+  int patches_per_view = 250;   ///< per training view, and per background frame
+  int composites_per_view = 3;  ///< pictures made of one view: other background, distance and light
+  int spare_background = 10;    ///< background patches looked through for each one drawn blindly, see hard_negatives
+  /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object
+  /// does not depend on how many others were taught.
+  float most_background = 4.0F;
   double in_bag = 0.75;          ///< share of the pictures that a tree sees
   float min_distance = 0.35F;    ///< nearest distance taught, metres
   float max_distance = 2.6F;     ///< farthest distance taught, metres

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/forest.hpp"
@@ -42,6 +43,7 @@ Profile gall() {
   profile.patch.radius = 8;
   profile.training.alone_share = 0.0;  // differences only
   profile.training.spare_background = 0;
+  profile.training.most_background = std::numeric_limits<float>::infinity();
   profile.training.scoring = Scoring::kVotes;
   profile.training.max_leaf_votes = 32;
   profile.detection.stride = 1;

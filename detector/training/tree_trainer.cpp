@@ -48,15 +48,13 @@ class TreeGrower {
     return bag;
   }
 
-  /// Every object weighs the same, and the background as much as all objects together or as four, whichever is less:
-  /// what a patch is worth to an object does not depend on how many others were taught.
+  /// Every object weighs the same, see TrainingSettings::most_background.
   std::vector<float> weigh_labels() const {
-    constexpr float kMostObjects = 4.0F;
     std::vector<float> counts(set_.classes.size() + 1, 0.0F);
     for (const std::uint32_t s : bag_) counts[set_.samples[s].label] += 1.0F;
     std::vector<float> weights(counts.size(), 0.0F);
     const auto objects = static_cast<float>(set_.classes.size());
-    const float background = std::min(objects, kMostObjects);  // over one object's weight
+    const float background = std::min(objects, settings_.most_background);  // over one object's weight
     const auto scale = static_cast<float>(bag_.size()) / (objects + background);
     for (std::size_t l = 0; l < counts.size(); ++l) {
       if (counts[l] > 0.0F) weights[l] = scale * (l == 0 ? background : 1.0F) / counts[l];

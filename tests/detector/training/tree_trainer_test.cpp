@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "detector/profiles.hpp"
 #include "planted_set.hpp"
 
 namespace houghstream {
@@ -107,10 +108,9 @@ TEST(TreeTrainer, TheBackgroundWeighsAsMuchAsAllObjects) {
 }
 
 TEST(TreeTrainer, WhatAPatchIsWorthToAnObjectDoesNotDependOnHowManyOthersWereTaught) {
-  const auto share_of_one_among = [](int objects) {
+  const auto share_of_one_among = [](int objects, TrainingSettings settings = quick()) {
     TrainingSet set = toy::planted_set();
     set.classes.resize(static_cast<std::size_t>(objects));
-    TrainingSettings settings = quick();
     settings.max_depth = 0;
     settings.in_bag = 1.0;
     for (std::size_t i = 0; i < set.samples.size(); ++i) {
@@ -122,6 +122,7 @@ TEST(TreeTrainer, WhatAPatchIsWorthToAnObjectDoesNotDependOnHowManyOthersWereTau
   };
   EXPECT_NEAR(share_of_one_among(4), 0.25F, 1e-4F);
   EXPECT_NEAR(share_of_one_among(16), share_of_one_among(4), 1e-4F);
+  EXPECT_NEAR(share_of_one_among(16, make_profile("gall").training), 1.0F / 16.0F, 1e-4F) << "but in the original";
 }
 
 }  // namespace
