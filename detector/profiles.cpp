@@ -16,6 +16,12 @@ namespace {
 constexpr std::array<float, kMaxScales> kFiveScales = {0.33F, 0.66F, 1.0F, 1.66F, 2.33F};  // Section 4
 constexpr float kUsualFocal = 525.0F;  // pixels, of the 640x480 cameras that the paper's patches were counted in
 
+/// What each of so many objects and the background would have if nothing were known: the released detector of the
+/// paper's authors lets a patch vote for an object from there on (its threshold_hierarchy is 1).
+float even_share(std::size_t objects) {
+  return 1.0F / static_cast<float>(objects + 1);
+}
+
 Profile realtime() {
   Profile profile;
   profile.name = "realtime";
@@ -51,7 +57,7 @@ Profile gall() {
   profile.detection.first_trees = 0;
   profile.detection.threshold = 0.1F;
   profile.detection.min_mass_share = 0.05F;
-  profile.detection.min_class_share = 0.2F;
+  profile.detection.min_class_share = even_share(4);  // of the paper's objects
   set_scale_handling(profile, "five");
   return profile;
 }
@@ -74,6 +80,7 @@ DetectionSettings detection_settings(const Forest& forest) {
   profile.features.image_scale = forest.features.image_scale;
   const bool normalised = forest.features.handling == ScaleHandling::kDepthNormalised;
   set_scale_handling(profile, normalised ? "normalised" : "five");  // how many scales makes no difference here
+  if (profile.name == "gall") profile.detection.min_class_share = even_share(forest.classes.size());
   return profile.detection;
 }
 

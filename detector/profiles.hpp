@@ -22,6 +22,7 @@ struct Profile {
 ///
 /// gall      the original Hough Forest (Gall et al. 2011) with the parameters of the paper's Section 4: intensity only,
 ///           five scales of the image, patches of 16x16 pixels, every pixel; a detection's score is its votes' mass.
+///           A patch votes for the objects that it takes for likelier than one of so many by chance.
 /// paper     Section 6: final features, image scale 0.7, patches of 10x10 pixels (at 1 m), depth normalisation, every
 ///           pixel.
 /// realtime  the default: half the image size (full size for what is far), at most every other pixel and patches
@@ -33,7 +34,8 @@ Profile make_profile(const std::string& name);
 
 std::vector<std::string> profile_names();
 
-/// How a forest wants to be searched: the detection settings of the profile that it was trained by.
+/// How a forest wants to be searched: the detection settings of the profile that it was trained by, for as many objects
+/// as it knows.
 DetectionSettings detection_settings(const Forest& forest);
 
 /// Working size over frame size (paper, Section 5.1.1). What is counted in pixels, patches above all, is adjusted, so

@@ -16,6 +16,7 @@ Forest forest_of(const Profile& profile) {
   Forest forest;
   forest.profile = profile.name;
   forest.features = profile.features;
+  forest.classes.resize(4);
   return forest;
 }
 
@@ -120,6 +121,17 @@ TEST(ForestsSettings, AreThoseItWasTrainedBy) {
       EXPECT_EQ(settings.min_class_share, profile.detection.min_class_share);
     }
   }
+}
+
+TEST(ForestsSettings, GallsPatchesVoteForWhatIsLikelierThanByChance) {
+  Forest forest = forest_of(make_profile("gall"));
+  EXPECT_EQ(detection_settings(forest).min_class_share, 0.2F);  // four objects and the background
+  forest.classes.resize(7);
+  EXPECT_EQ(detection_settings(forest).min_class_share, 0.125F);
+  forest = forest_of(make_profile("realtime"));
+  const float ours = detection_settings(forest).min_class_share;
+  forest.classes.resize(20);
+  EXPECT_EQ(detection_settings(forest).min_class_share, ours);
 }
 
 float patch_reach(const Profile& profile) {
