@@ -95,7 +95,7 @@ void classify(const Forest& forest, const std::vector<FeatureImage>& features, c
   beliefs.reset(forest, runs.size(), settings.min_class_share);
   const auto note = [&](const RunLeaves& seen) { beliefs.note(seen); };
   if (settings.readable) {
-    find_leaves_readably(forest, features, patches, runs, early_end, note);
+    find_leaves_readably(forest, features, patches, runs, early_end, settings.threads, note);
   } else {
     find_leaves(forest, features, patches, runs, early_end, settings.threads, note);
   }

@@ -126,12 +126,14 @@ void find_leaves(const Forest& forest, const std::vector<FeatureImage>& features
 }
 
 void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                          const std::vector<PatchRun>& runs, const EarlyEnd& early_end, const LeafVisitor& visit) {
+                          const std::vector<PatchRun>& runs, const EarlyEnd& early_end, int threads,
+                          const LeafVisitor& visit) {
   const int trees = static_cast<int>(forest.roots.size());
-  for (std::size_t r = 0; r < runs.size(); ++r) {
+  parallel_for(threads, static_cast<int>(runs.size()), [&](int r) {
+    const PatchRun& run = runs[static_cast<std::size_t>(r)];
     std::vector<std::uint32_t> left;
     std::vector<std::vector<std::int32_t>> by_tree(forest.roots.size());
-    for (std::size_t p = runs[r].first; p < runs[r].first + runs[r].count; ++p) {
+    for (std::size_t p = run.first; p < run.first + run.count; ++p) {
       const PatchView patch = features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
       float certainty = 0.0F;
       for (int tree = 0; early_end.is_used(forest) && tree < early_end.trees; ++tree) {
@@ -144,8 +146,8 @@ void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>&
     std::vector<std::int32_t> leaves;
     for (const std::vector<std::int32_t>& of_tree : by_tree)
       leaves.insert(leaves.end(), of_tree.begin(), of_tree.end());
-    visit({r, left.size(), left.data(), leaves.data()});
-  }
+    visit({static_cast<std::size_t>(r), left.size(), left.data(), leaves.data()});
+  });
 }
 
 }  // namespace houghstream

@@ -35,8 +35,9 @@ using LeafVisitor = std::function<void(const RunLeaves&)>;
 void find_leaves(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
                  const std::vector<PatchRun>& runs, const EarlyEnd& early_end, int threads, const LeafVisitor& visit);
 
-/// The same leaves, found one after another by find_leaf.
+/// The same leaves, found one after another by find_leaf; with more than one thread, runs are visited at the same time.
 void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                          const std::vector<PatchRun>& runs, const EarlyEnd& early_end, const LeafVisitor& visit);
+                          const std::vector<PatchRun>& runs, const EarlyEnd& early_end, int threads,
+                          const LeafVisitor& visit);
 
 }  // namespace houghstream

@@ -12,8 +12,8 @@
 namespace houghstream {
 namespace {
 
-/// All leaves of a grid, patch by patch, as find_leaves and as find_leaves_readably tell them; 0 threads = readably.
-/// -1 for patches that were given up.
+/// All leaves of a grid, patch by patch, as find_leaves and, with a number of threads below 0, find_leaves_readably
+/// tell them. -1 for patches that were given up.
 std::vector<std::int32_t> leaves_of(const Forest& forest, const std::vector<FeatureImage>& features,
                                     const PatchGrid& patches, int threads, const EarlyEnd& early_end = {}) {
   const std::size_t trees = forest.roots.size();
@@ -31,14 +31,14 @@ std::vector<std::int32_t> leaves_of(const Forest& forest, const std::vector<Feat
   if (threads > 0) {
     find_leaves(forest, features, patches, runs, early_end, threads, visit);
   } else {
-    find_leaves_readably(forest, features, patches, runs, early_end, visit);
+    find_leaves_readably(forest, features, patches, runs, early_end, -threads, visit);
   }
   return leaves;
 }
 
 void expect_leaves_of_find_leaf(const Forest& forest, const std::vector<FeatureImage>& features,
                                 const PatchGrid& patches) {
-  for (const int threads : {0, 1, 2}) {
+  for (const int threads : {-2, -1, 1, 2}) {
     const std::vector<std::int32_t> leaves = leaves_of(forest, features, patches, threads);
     for (std::size_t p = 0; p < patches.size(); ++p) {
       for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
@@ -71,7 +71,7 @@ class Traversal : public ::testing::Test {
     }
     EXPECT_EQ(given_up > 0, share > 0.0F);
     EXPECT_LT(given_up, patches.size());
-    for (const int threads : {0, 1, 2, 3}) {
+    for (const int threads : {-3, -1, 1, 2, 3}) {
       EXPECT_EQ(leaves_of(forest, features, patches, threads, {trees, share}), expected) << threads << " threads";
     }
   }
