@@ -122,7 +122,7 @@ constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
 // Tables on which most things have the taught objects' colours: only shape tells them apart.
 constexpr double kAlike = 0.85;
 
-constexpr std::array<Plan, 16> kPlans = {
+constexpr std::array<Plan, 20> kPlans = {
     {{kTestScenes[0], kTest, 0, RoomStyle::kTable, kDay, {true, 1, 3, 14, kNone, kAlike}},
      {kTestScenes[1], kTest, 1, RoomStyle::kTable, kEvening, {true, 2, 8, 10, kNone, kAlike}},
      {kTestScenes[2], kTest, 2, RoomStyle::kDesk, kDay, {true, 1, 8, 8, kNone, kAlike}},
@@ -131,6 +131,10 @@ constexpr std::array<Plan, 16> kPlans = {
      {kTestScenes[5], kTest, 5, RoomStyle::kMeeting, kEvening, {true, 1, 8, 10, kNone, kAlike}},
      {kTwentyClassScenes[0], kTest, 20, RoomStyle::kTable, kDay, {true, 1, 0, 12, kOdd}},
      {kTwentyClassScenes[1], kTest, 21, RoomStyle::kMeeting, kDay, {true, 1, 0, 14, kEven}},
+     {kTwentyClassScenes[2], kTest, 22, RoomStyle::kDesk, kDay, {true, 1, 0, 12, kOdd}},
+     {kTwentyClassScenes[3], kTest, 23, RoomStyle::kKitchen, kDay, {true, 1, 0, 14, kEven}},
+     {kTwentyClassScenes[4], kTest, 24, RoomStyle::kMeeting, kDay, {true, 1, 0, 12, kOdd}},
+     {kTwentyClassScenes[5], kTest, 25, RoomStyle::kTable, kDay, {true, 1, 0, 14, kEven}},
      {kDevelopmentScenes[0], kTraining, kDevelopment, RoomStyle::kTable, kDay, {true, 2, 3, 16, kNone, kAlike}},
      {kDevelopmentScenes[1], kTraining, kDevelopment + 1, RoomStyle::kDesk, kEvening, {true, 1, 8, 10, kNone}},
      {kDevelopmentScenes[2], kTraining, kDevelopment + 2, RoomStyle::kKitchen, kDay, {true, 1, 8, 12, kNone}},

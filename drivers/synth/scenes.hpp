@@ -46,8 +46,10 @@ inline constexpr std::array<const char*, 3> kDevelopmentScenes = {"development_t
 /// As many more of them as a fit needs: this name with a number from 0 to 999.
 inline constexpr const char* kDevelopmentWorld = "development_world_";
 
-/// Test scenes of the twenty classes: each holds the four and eight of the sixteen others, both together all of them.
-inline constexpr std::array<const char*, 2> kTwentyClassScenes = {"objects_20_a", "objects_20_b"};
+/// Test scenes of the twenty classes: each holds the four and eight of the sixteen others, in turn one half of them
+/// and the other: each of the sixteen is seen on three tables.
+inline constexpr std::array<const char*, 6> kTwentyClassScenes = {"objects_20_a", "objects_20_b", "objects_20_c",
+                                                                  "objects_20_d", "objects_20_e", "objects_20_f"};
 
 /// Their like to choose settings on.
 inline constexpr std::array<const char*, 2> kTwentyClassDevelopmentScenes = {"development_objects_20_a",

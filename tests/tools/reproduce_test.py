@@ -175,7 +175,10 @@ class Choosing(Case):
     def test_twenty_objects_are_compared_with_four_on_the_same_frames(self):
         for only in ("evaluate/realtime/objects_20", "evaluate/objects_20_realtime"):
             self.assertEqual(self.run_it("--only", only).returncode, 0)
-        self.assertEqual(self.summary()["objects_20"]["time_ratio"], 1.0)
+        found = self.summary()["objects_20"]
+        self.assertEqual(found["time_ratio"], 1.0)
+        self.assertAlmostEqual(found["auc_mean_of_four"], 0.9, delta=0.1)
+        self.assertEqual(found["auc_same_four"], found["auc_mean"])  # the stand-in knows four objects only
 
     def test_list_runs_nothing(self):
         listed = self.run_it("--list")

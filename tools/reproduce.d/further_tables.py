@@ -14,6 +14,8 @@ def twenty(summary):
         ("time of a frame, twenty objects taught", milliseconds(found["ms_20"])),
         ("ratio (five times the objects)", show(found["time_ratio"], "{:.2f}")),
         ("mean AUC of the twenty", show(found["auc_mean"])),
+        ("mean AUC of four, taught alone", show(found["auc_mean_of_four"])),
+        ("mean AUC of these four among the twenty", show(found["auc_same_four"])),
     ]
     return table(("", ""), rows)
 

@@ -41,22 +41,31 @@ def real(results):
     }
 
 
-def auc_of_twenty(results, what):
-    """Each object counts once, whether it is in one of the scenes or in both."""
+def auc_by_object(results, what):
+    """Mean over the scenes that hold the object: each counts once, however many those are."""
     found = {}
     for scene in SCENES_20:
         for name in results.objects(what, scene):
             found.setdefault(name, []).append(results.auc(what, scene, name))
-    return mean_of(mean_of(values) for values in found.values())
+    return {name: mean_of(values) for name, values in found.items()}
 
 
 def twenty_objects(results):
-    """All None until both scenes are measured."""
-    what = "objects_20_realtime"
-    many = mean_of(results.milliseconds(what, scene) for scene in SCENES_20)
-    few = mean_of(results.milliseconds("realtime", scene) for scene in SCENES_20)
-    auc = None if many is None else auc_of_twenty(results, what)
-    return {"time_ratio": ratio(many, few), "auc_mean": auc, "ms_20": many, "ms_4": few}
+    """Of a forest of twenty and one of four, on the same frames. All None until all scenes are measured by both."""
+    ms_20 = mean_of(results.milliseconds("objects_20_realtime", scene) for scene in SCENES_20)
+    ms_4 = mean_of(results.milliseconds("realtime", scene) for scene in SCENES_20)
+    is_complete = ms_20 is not None and ms_4 is not None
+    twenty = auc_by_object(results, "objects_20_realtime") if is_complete else {}
+    four = auc_by_object(results, "realtime") if is_complete else {}
+    return {
+        "time_ratio": ratio(ms_20, ms_4),
+        "auc_mean": mean_of(twenty.values()),
+        "auc_mean_of_four": mean_of(four.values()),
+        "auc_same_four": mean_of(twenty.get(name) for name in four),
+        "auc": twenty or None,
+        "ms_20": ms_20,
+        "ms_4": ms_4,
+    }
 
 
 def strides(results):

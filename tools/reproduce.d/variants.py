@@ -41,7 +41,7 @@ NOT_IN_QUICK = (
 SAME_FOREST = {"intensity": "gall", "five": "gall"}
 
 SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1", "meeting_small_1")
-SCENES_20 = ("objects_20_a", "objects_20_b")  # each holds the four and half of sixteen others
+SCENES_20 = tuple(f"objects_20_{letter}" for letter in "abcdef")  # each holds the four and half of sixteen others
 FEATURE_SCENE = "table_small_1"
 SCALE_SCENES = ("table_small_1", "desk_2", "table_small_2")
 STRIDES = (1, 2, 3, 4, 6, 8)
