@@ -11,6 +11,7 @@ Forest forest_of(const std::string& profile) {
   Forest forest;
   forest.profile = profile;
   forest.features = make_profile(profile).features;
+  forest.classes.resize(4);  // as the profiles have in mind
   return forest;
 }
 
