@@ -41,7 +41,7 @@ Profile paper() {
   return profile;
 }
 
-Profile gall() {
+Profile gall(std::size_t objects) {
   Profile profile;
   profile.name = "gall";
   profile.features.families = kIntensity;
@@ -57,7 +57,7 @@ Profile gall() {
   profile.detection.first_trees = 0;
   profile.detection.threshold = 0.1F;
   profile.detection.min_mass_share = 0.05F;
-  profile.detection.min_class_share = even_share(4);  // of the paper's objects
+  profile.detection.min_class_share = even_share(objects);
   set_scale_handling(profile, "five");
   return profile;
 }
@@ -68,19 +68,18 @@ std::vector<std::string> profile_names() {
   return {"gall", "paper", "realtime"};
 }
 
-Profile make_profile(const std::string& name) {
-  if (name == "gall") return gall();
+Profile make_profile(const std::string& name, std::size_t objects) {
+  if (name == "gall") return gall(objects);
   if (name == "paper") return paper();
   if (name == "realtime") return realtime();
   fail("profile '{}', expected one of {}", name, fmt::join(profile_names(), ", "));
 }
 
 DetectionSettings detection_settings(const Forest& forest) {
-  Profile profile = make_profile(forest.profile);
+  Profile profile = make_profile(forest.profile, forest.classes.size());
   profile.features.image_scale = forest.features.image_scale;
   const bool normalised = forest.features.handling == ScaleHandling::kDepthNormalised;
   set_scale_handling(profile, normalised ? "normalised" : "five");  // how many scales makes no difference here
-  if (profile.name == "gall") profile.detection.min_class_share = even_share(forest.classes.size());
   return profile.detection;
 }
 

@@ -29,8 +29,8 @@ struct Profile {
 ///           at most 25 mm apart, and what the first trees take for background is not shown to the others.
 ///
 /// paper and realtime share what goes beyond the paper: 3-D votes, occluders in training, evidence, calibrated scores.
-/// Throws InputError that lists the names for an unknown one.
-Profile make_profile(const std::string& name);
+/// `objects`: how many are taught; the paper teaches four. Throws InputError that lists the names for an unknown name.
+Profile make_profile(const std::string& name, std::size_t objects = 4);
 
 std::vector<std::string> profile_names();
 
