@@ -45,10 +45,13 @@ struct PatchSettings {
 /// How a forest is trained.
 struct TrainingSettings {
   int trees = 15;
-  int max_depth = 25;           ///< levels
-  int min_samples = 20;         ///< a node with fewer becomes a leaf
-  int tests_per_node = 2000;    ///< random pixel tests tried
-  double alone_share = 0.3;     ///< of the tests look at one pixel alone, see PixelTest::kAlone
+  int max_depth = 25;         ///< levels
+  int min_samples = 20;       ///< a node with fewer becomes a leaf
+  int tests_per_node = 2000;  ///< random pixel tests tried
+  double alone_share = 0.3;   ///< of the tests look at one pixel alone, see PixelTest::kAlone
+  /// Of the nodes look at point feature histograms, and only at those; the others never. What is shaped like an object
+  /// stands in no room that is learnt from: they would win nearly every node, and the object's colours go unlearnt.
+  double histogram_share = 0.3;
   int node_samples = 1500;      ///< at most so many samples choose a node's test; all are then split by it
   int patches_per_view = 250;   ///< per training view, and per background frame
   int composites_per_view = 3;  ///< pictures made of one view: other background, distance and light

@@ -21,6 +21,9 @@ enum FeatureFamily : std::uint32_t {
   kFastHistogram = 128,   ///< 33 planes: fast point feature histogram, FPFH (Rusu et al. 2009)
 };
 
+/// Those that are worked out from surface normals, and so from differences of depth over a few pixels.
+constexpr std::uint32_t kNormalFamilies = kHonv | kCurvature | kPointHistogram | kFastHistogram;
+
 /// Names for the command line and for reports, in the order of the planes.
 struct FamilyName {
   FeatureFamily family;
@@ -57,6 +60,7 @@ enum class PlaneKind : std::uint8_t {
   kWrappedDepth,  ///< depth / kWrapStep modulo 256: only differences mean something, and they wrap too
   kScaledDepth,   ///< depth * object scale / kScaledStep: the same for an object at every distance (Section 3.2)
   kSurface,       ///< shape of the surface
+  kHistogram,     ///< one of the many that together tell how the surface around a point is shaped
 };
 
 /// Which plane is which in a FeatureImage.

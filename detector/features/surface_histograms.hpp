@@ -8,15 +8,17 @@
 namespace houghstream {
 
 /// (Fast) Point Feature Histograms (Rusu et al. 2008 and 2009; paper, Section 3, item 7): PCL's functions, given the
-/// neighbours that the organised image knows instead of those of a search. They see a cloud of every step_px-th pixel
-/// both ways, the middle one of each cell; its points have neighbours / step_px^2 neighbours, so that the support stays
-/// that of `neighbours` pixels.
+/// neighbours that the organised image knows instead of those of a search. Neighbours are counted as in a cloud with
+/// a point every `spacing` metres: with the image's own, supports would grow with the distance, and a larger object
+/// farther away would look the same.
 struct PointHistogramSettings {
-  int step_px = 2;              ///< pixels; the cost of FPFH falls with its 4th power, that of PFH with its 6th
-  int neighbours = 200;         ///< pixels; the nearest in the picture that lie on the same surface (Section 4)
-  int normal_neighbours = 100;  ///< pixels, for the normals (Section 4)
-  int fpfh_bins = 11;           ///< per angle; PCL's default. The paper's histogram size is 7
-  int pfh_bins = 5;             ///< per angle; PCL's default
+  float spacing = 0.0035F;      ///< metres; supports are disks of 28 and 20 mm then
+  int neighbours = 200;         ///< those that lie on the same surface (Section 4)
+  int normal_neighbours = 100;  ///< for the normals (Section 4)
+  int given = 48;   ///< neighbours that stand for all; the cost of FPFH grows with them, that of PFH with their square
+  int step_px = 4;  ///< pixels from one point that gets a histogram to the next
+  int fpfh_bins = 11;  ///< per angle; PCL's default. The paper's histogram size is 7
+  int pfh_bins = 5;    ///< per angle; PCL's default
 };
 
 /// CV_8UC1 planes of the frame's size, each pixel with the values of its cell, 255 for 100 percent. All are 0 where the

@@ -29,14 +29,18 @@ SurfaceVectors points_of(const WorkingFrame& frame) {
 
 cv::Vec3f normal_of(const WindowMoments& moments, const Eigen::Vector3d& ray, int least_points) {
   if (moments.count < least_points) return {kNone, kNone, kNone};
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(moments.covariance);
-  Eigen::Vector3d normal = solver.eigenvectors().col(0);
-  if (normal.dot(ray) > 0.0) normal = -normal;
+  const Eigen::Vector3d normal = facing_normal(moments.covariance, ray);
   return {static_cast<float>(normal.x()), static_cast<float>(normal.y()), static_cast<float>(normal.z())};
 }
 
 }  // namespace
+
+Eigen::Vector3d facing_normal(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
+  return normal.dot(ray) > 0.0 ? Eigen::Vector3d(-normal) : normal;
+}
 
 cv::Mat surface_normals(const WorkingFrame& frame, int neighbours, int threads) {
   const int radius = surface_window_radius(neighbours);

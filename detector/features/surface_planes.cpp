@@ -7,13 +7,13 @@
 namespace houghstream {
 
 std::vector<cv::Mat> surface_planes(FeatureFamily family, const WorkingFrame& frame, int threads) {
-  PointHistogramSettings histograms;
-  histograms.step_px = 4;  // of every pixel they would take minutes a frame
+  PointHistogramSettings pfh;
+  pfh.given = 20;  // all pairs of them are looked at
   switch (family) {
     case kHonv: return honv_planes(frame, threads);
     case kCurvature: return curvature_planes(frame, threads);
-    case kPointHistogram: return pfh_planes(frame, histograms, threads);
-    case kFastHistogram: return fpfh_planes(frame, histograms, threads);
+    case kPointHistogram: return pfh_planes(frame, pfh, threads);
+    case kFastHistogram: return fpfh_planes(frame, {}, threads);
     default: return {};
   }
 }

@@ -65,9 +65,13 @@ int surface_window_radius(int neighbours) {
 }
 
 float same_surface_limit(const Camera& camera, float depth, int radius_px) {
+  return same_surface_limit(radius_px * camera.metres_per_px(depth));
+}
+
+float same_surface_limit(double radius_m) {
   constexpr double kSteepest = 1.5;  // metres of depth per metre across
   constexpr float kLeast = 0.02F;
-  const auto limit = static_cast<float>(kSteepest * radius_px * camera.metres_per_px(depth));
+  const auto limit = static_cast<float>(kSteepest * radius_m);
   return limit < kLeast ? kLeast : limit;
 }
 

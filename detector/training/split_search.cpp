@@ -14,6 +14,10 @@ SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, con
       settings_(settings),
       label_weights_(std::move(label_weights)),
       trusts_light_(trusts_light) {
+  for (int plane = 0; plane < set.layout.planes(); ++plane) {
+    const bool is_histogram = set.layout.kind(plane) == PlaneKind::kHistogram;
+    (is_histogram ? histograms_ : others_).push_back(static_cast<std::uint8_t>(plane));
+  }
   tests_.resize(static_cast<std::size_t>(settings.tests_per_node));
   bins_.resize(kBins * label_weights_.size());
   label_counts_.resize(bins_.size());
@@ -21,20 +25,27 @@ SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, con
   all_.resize(label_weights_.size());
 }
 
+const SplitSearch::Planes& SplitSearch::draw_planes(Random& random) const {
+  if (histograms_.empty()) return others_;
+  if (others_.empty()) return histograms_;
+  return random.uniform() < settings_.histogram_share ? histograms_ : others_;
+}
+
 void SplitSearch::draw_tests(std::size_t test_count, Random& random) {
   const auto coordinate = [&] { return static_cast<std::int8_t>(random.between(-patch_.radius, patch_.radius)); };
   for (Place& place : places_) place = {coordinate(), coordinate()};
+  const Planes& planes = draw_planes(random);
   drawn_.resize(test_count);
   for (std::size_t t = 0; t < test_count; ++t) {
     drawn_[t].first = static_cast<std::uint8_t>(random.below(kPlaces));
     drawn_[t].second = static_cast<std::uint8_t>(random.below(kPlaces));
-    tests_[t] = random_test(drawn_[t], random);
+    tests_[t] = random_test(planes, drawn_[t], random);
   }
 }
 
-PixelTest SplitSearch::random_test(PlacePair& pair, Random& random) const {
+PixelTest SplitSearch::random_test(const Planes& planes, PlacePair& pair, Random& random) const {
   PixelTest test;
-  test.plane = static_cast<std::uint8_t>(random.below(set_.layout.planes()));
+  test.plane = planes[static_cast<std::size_t>(random.below(static_cast<int>(planes.size())))];
   const PlaneKind kind = set_.layout.kind(test.plane);
   // The scaled depth rules out what has the wrong size for its distance, which a difference cannot do.
   const double alone_share = kind == PlaneKind::kScaledDepth ? 0.5 : settings_.alone_share;

@@ -72,8 +72,11 @@ class SplitSearch {
     std::uint16_t mask = 0;  // of the second pixel
   };
 
+  using Planes = std::vector<std::uint8_t>;
+  /// Among which planes a node's tests choose: the point histograms or all others, where there are both.
+  const Planes& draw_planes(Random& random) const;
   void draw_tests(std::size_t test_count, Random& random);
-  PixelTest random_test(PlacePair& pair, Random& random) const;
+  PixelTest random_test(const Planes& planes, PlacePair& pair, Random& random) const;
   void prepare_tests(std::size_t test_count, int pixel_stride);
   void load_pixels(const PatchView& patch, const PatchView& next);
   void keep_finalists(const std::vector<Judged>& judged, std::size_t count);
@@ -92,6 +95,8 @@ class SplitSearch {
   const PatchSettings& patch_;
   const TrainingSettings& settings_;
   std::vector<float> label_weights_;
+  Planes histograms_;
+  Planes others_;
   bool trusts_light_;  // whether a single pixel's lightness and colour may decide
   std::vector<PixelTest> tests_;
   std::vector<Prepared> prepared_;

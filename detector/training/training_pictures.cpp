@@ -7,6 +7,7 @@
 
 #include "detector/features/features.hpp"
 #include "detector/training/composites.hpp"
+#include "detector/training/far_noise.hpp"
 
 namespace houghstream {
 namespace {
@@ -144,6 +145,11 @@ TrainingPicture object_picture(const TrainingView& view, int label, std::uint32_
   }
   if (!composite) return picture;
 
+  if (in_scale_space(profile) && (profile.features.families & kNormalFamilies) != 0) {
+    const auto& scales = profile.features.scales;
+    const double farthest = std::max(1.0F, *std::max_element(scales.begin(), scales.end()));
+    add_far_noise(distance, std::exp(random.uniform(0.0, std::log(farthest))), composite->frame.depth, random);
+  }
   const FeatureLevel level = level_for(distance, profile, random);
   const Canvas canvas = make_canvas(*composite, level, profile);
   picture.features = compute_features(canvas.frame, profile.features, 1);

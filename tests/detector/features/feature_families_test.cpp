@@ -80,9 +80,10 @@ TEST(FeatureLayout, DepthWrapsUnlessTheImageIsSearchedInSizes) {
     const FeatureLayout layout = layout_of(255, handling);
     const PlaneKind depth = handling == ScaleHandling::kScaleSpace ? PlaneKind::kScaledDepth : PlaneKind::kWrappedDepth;
     for (const FeatureBlock& block : layout.blocks()) {
-      const PlaneKind expected = block.family == kIntensity    ? PlaneKind::kLight
-                                 : block.family == kDepthValue ? depth
-                                                               : PlaneKind::kSurface;
+      PlaneKind expected = PlaneKind::kSurface;
+      if (block.family == kIntensity) expected = PlaneKind::kLight;
+      if (block.family == kDepthValue) expected = depth;
+      if (block.family == kPointHistogram || block.family == kFastHistogram) expected = PlaneKind::kHistogram;
       for (int p = block.first; p < block.first + block.planes(); ++p) ASSERT_EQ(layout.kind(p), expected) << p;
     }
   }

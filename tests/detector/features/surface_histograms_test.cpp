@@ -24,9 +24,11 @@ int sum(const Values& values, std::size_t first, std::size_t last) {
   return total;
 }
 
+/// Few neighbours, and as far apart as at 1 m the pixels of these frames.
 PointHistogramSettings coarse() {
   PointHistogramSettings settings;
-  settings.step_px = 4;
+  settings.given = 16;
+  settings.spacing = 0.004F;
   return settings;
 }
 
@@ -78,12 +80,43 @@ TEST(SurfaceHistograms, TheNumberOfBinsIsAsAsked) {
 }
 
 TEST(SurfaceHistograms, AThinnerCloudKeepsItsSupport) {
-  const WorkingFrame frame = scene::ball_on_table(120, 90);
+  const WorkingFrame frame = noisy_ball();
   PointHistogramSettings full;
   full.step_px = 1;
   const Values dense = at(fpfh_planes(frame, full, 1), 61, 45);
-  const Values thin = at(fpfh_planes(frame, {}, 1), 61, 45);
+  PointHistogramSettings half;
+  half.step_px = 2;
+  const Values thin = at(fpfh_planes(frame, half, 1), 61, 45);
   for (std::size_t i = 0; i < dense.size(); ++i) EXPECT_NEAR(thin[i], dense[i], 40) << i;
+}
+
+/// A ball before nothing, in the middle of a picture.
+WorkingFrame ball_at(double distance, double radius, double enlarged) {
+  WorkingFrame frame = scene::see(80, 60, [](const Eigen::Vector3d&) { return 0.0; });
+  frame.camera.fx *= enlarged;
+  frame.camera.fy *= enlarged;
+  const scene::Round ball{Eigen::Vector3d(0.0, 0.0, distance), radius};
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 80; ++x) {
+      frame.filled_depth.at<float>(y, x) = static_cast<float>(ball(frame.camera.backproject(x, y, 1.0)));
+    }
+  }
+  return frame;
+}
+
+int difference(const Values& a, const Values& b) {
+  int sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+  return sum;
+}
+
+TEST(SurfaceHistograms, ABallFarAwayInALargerPictureIsTheSameALargerOneIsNot) {
+  for (const Family family : {&fpfh_planes, &pfh_planes}) {
+    const Values near = at(family(ball_at(0.7, 0.05, 1.0), coarse(), 1), 42, 30);
+    const Values far = at(family(ball_at(1.4, 0.05, 2.0), coarse(), 1), 42, 30);
+    const Values large = at(family(ball_at(1.4, 0.1, 1.0), coarse(), 1), 42, 30);
+    EXPECT_LT(2 * difference(near, far), difference(near, large));
+  }
 }
 
 TEST(SurfaceHistograms, PixelsWithoutASurfaceOrOnAnotherOneThanTheirCellAreNeutral) {

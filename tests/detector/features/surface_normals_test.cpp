@@ -34,6 +34,13 @@ TEST(SurfaceNormals, APlaneHasItsNormalEverywhereTowardsTheCamera) {
   }
 }
 
+TEST(SurfaceNormals, APlanesNormalIsTurnedAgainstTheRay) {
+  const Eigen::Matrix3d flat = Eigen::Vector3d(1.0, 1e-4, 1.0).asDiagonal();
+  const Eigen::Vector3d up(0.0, 1.0, 0.0);
+  EXPECT_NEAR(facing_normal(flat, {0.3, -0.1, 1.0}).dot(up), 1.0, 1e-6);
+  EXPECT_NEAR(facing_normal(flat, {0.3, 0.1, 1.0}).dot(up), -1.0, 1e-6);
+}
+
 TEST(SurfaceNormals, NoiseIsAveraged) {
   const Eigen::Vector3d normal = Eigen::Vector3d(0.3, -0.5, -1.0).normalized();
   WorkingFrame frame = scene::see(48, 36, scene::Plane{normal, normal.z()});

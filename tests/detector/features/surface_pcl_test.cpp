@@ -152,8 +152,10 @@ TEST(SurfacePcl, HistogramsAgree) {
   const Points::Ptr cloud = cloud_of(frame);
   PointHistogramSettings settings;
   settings.step_px = 1;
+  settings.spacing = static_cast<float>(frame.camera.metres_per_px(0.77));
   settings.normal_neighbours = 49;
   settings.neighbours = 64;
+  settings.given = 64;
   const Normals::Ptr normals = searched_normals(cloud, settings.normal_neighbours);
   const auto fpfh =
       search_features<pcl::FPFHEstimation<pcl::PointXYZ, pcl::Normal, pcl::FPFHSignature33>, pcl::FPFHSignature33>(

@@ -33,12 +33,12 @@ TEST(SurfacePlanes, EachSurfaceFamilyHasThePlanesOfItsBlock) {
 
 TEST(SurfacePlanes, AreThoseOfTheirFamilyForAnyNumberOfThreads) {
   const WorkingFrame frame = scene::ball_on_table(60, 44);
-  PointHistogramSettings coarse;
-  coarse.step_px = 4;
+  PointHistogramSettings few;
+  few.given = 20;
   EXPECT_TRUE(same_planes(surface_planes(kHonv, frame, 3), honv_planes(frame, 1)));
   EXPECT_TRUE(same_planes(surface_planes(kCurvature, frame, 3), curvature_planes(frame, 1)));
-  EXPECT_TRUE(same_planes(surface_planes(kPointHistogram, frame, 3), pfh_planes(frame, coarse, 1)));
-  EXPECT_TRUE(same_planes(surface_planes(kFastHistogram, frame, 3), fpfh_planes(frame, coarse, 1)));
+  EXPECT_TRUE(same_planes(surface_planes(kPointHistogram, frame, 3), pfh_planes(frame, few, 1)));
+  EXPECT_TRUE(same_planes(surface_planes(kFastHistogram, frame, 3), fpfh_planes(frame, {}, 1)));
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ TEST(SurfaceWindow, TheDepthLimitGrowsWithTheWindowsSizeInMetres) {
   EXPECT_FLOAT_EQ(same_surface_limit(camera, 0.4F, 5), 0.02F);
   EXPECT_FLOAT_EQ(same_surface_limit(camera, 2.0F, 5), 1.5F * 5 * 2.0F / 260.0F);
   EXPECT_TRUE(std::isnan(same_surface_limit(camera, scene::kNone, 5)));
+  EXPECT_FLOAT_EQ(same_surface_limit(0.01), 0.02F);
+  EXPECT_FLOAT_EQ(same_surface_limit(0.1), 0.15F);
 }
 
 TEST(SurfaceWindow, EveryNeighbourIsVisitedOnce) {

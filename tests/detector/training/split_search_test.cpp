@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "planted_set.hpp"
 
@@ -93,6 +94,40 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
         SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
     ASSERT_TRUE(trusting);
     EXPECT_EQ(trusting->kind, PixelTest::kAlone);
+  }
+}
+
+TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
+  FeatureSettings features;
+  features.families = kIntensity | kFastHistogram;
+  TrainingSet set = toy::planted_set();
+  set.layout = FeatureLayout(features);
+  const int first = set.layout.block(kFastHistogram).first;
+  for (FeatureImage& picture : set.pictures) {
+    FeatureImage wide(32, 32, set.layout.pixel_stride());
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) {
+        wide.at(x, y)[toy::kClassPlane] = picture.at(x, y)[toy::kClassPlane];
+        wide.at(x, y)[first] = picture.at(x, y)[toy::kClassPlane];
+      }
+    }
+    wide.replicate_border();
+    picture = wide;
+  }
+  TrainingSettings settings;
+  const PatchSettings patch;
+  for (const auto& [share, least, most] : {std::tuple{0.0, 0, 0}, {0.3, 5, 27}, {1.0, 50, 50}}) {
+    settings.histogram_share = share;
+    SplitSearch search(set, patch, settings, {1.0F, 1.0F}, true);
+    Random random(6);
+    int histograms = 0;
+    for (int i = 0; i < 50; ++i) {
+      const auto test = search.best_test(every_sample(set), Objective::kClass, random);
+      ASSERT_TRUE(test);
+      histograms += test->plane == first ? 1 : 0;
+    }
+    EXPECT_GE(histograms, least) << share;
+    EXPECT_LE(histograms, most) << share;
   }
 }
 

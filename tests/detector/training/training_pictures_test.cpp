@@ -93,6 +93,35 @@ TEST(TrainingPictures, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
   }
 }
 
+/// How much the object's values change from pixel to pixel.
+double roughness(const TrainingPicture& picture) {
+  double sum = 0.0;
+  int count = 0;
+  for (const TrainingSample& sample : picture.samples) {
+    if (sample.label == 0) continue;
+    for (int plane = 0; plane < 12; ++plane) {
+      sum +=
+          std::abs(picture.features.at(sample.x, sample.y)[plane] - picture.features.at(sample.x + 1, sample.y)[plane]);
+    }
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(TrainingPictures, NormalsInAScaleSpaceAreTaughtWithTheNoiseOfItsDistances) {
+  Profile profile = open_profile("gall");
+  profile.features.families = kHonv;
+  Profile one_size = profile;
+  set_scale_handling(one_size, "single");
+  double far = 0.0;
+  double near = 0.0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    far += roughness(picture_of(round_view(), profile, seed));
+    near += roughness(picture_of(round_view(), one_size, seed));
+  }
+  EXPECT_GT(far, 1.1 * near);
+}
+
 TEST(TrainingPictures, NoPixelIsDrawnTwice) {
   const TrainingPicture picture = picture_of(round_view(), open_profile("gall"), 4);
   std::vector<std::pair<int, int>> places;

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "pipeline/random.hpp"
+
+namespace houghstream {
+
+/// A scale space shows an object `ratio` times as far away as taught in an enlarged image: its size is the same then,
+/// but not the sensor's noise, which is that of the larger distance and as much coarser. Adds what is missing of it to
+/// a picture taken at `distance` metres; `depth` is CV_32FC1, metres. From the surface normals of what was taught
+/// nearby nothing would be learnt that is true farther away.
+void add_far_noise(double distance, double ratio, cv::Mat& depth, Random& random);
+
+}  // namespace houghstream
