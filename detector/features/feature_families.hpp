@@ -21,9 +21,6 @@ enum FeatureFamily : std::uint32_t {
   kFastHistogram = 128,   ///< 33 planes: fast point feature histogram, FPFH (Rusu et al. 2009)
 };
 
-/// Those that are worked out from surface normals, and so from differences of depth over a few pixels.
-constexpr std::uint32_t kNormalFamilies = kHonv | kCurvature | kPointHistogram | kFastHistogram;
-
 /// Names for the command line and for reports, in the order of the planes.
 struct FamilyName {
   FeatureFamily family;

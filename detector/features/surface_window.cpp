@@ -7,6 +7,15 @@ namespace houghstream {
 
 namespace {
 
+constexpr double kSteepest = 1.5;  // metres of depth per metre across
+
+/// NaN for NaN.
+float at_least_noise(double metres) {
+  constexpr float kLeast = 0.02F;
+  const auto limit = static_cast<float>(metres);
+  return limit < kLeast ? kLeast : limit;
+}
+
 enum Sum : std::size_t { kCount, kX, kY, kZ, kXX, kXY, kXZ, kYY, kYZ, kZZ, kSums };
 using RowSums = std::array<std::vector<float>, kSums>;
 
@@ -65,14 +74,11 @@ int surface_window_radius(int neighbours) {
 }
 
 float same_surface_limit(const Camera& camera, float depth, int radius_px) {
-  return same_surface_limit(radius_px * camera.metres_per_px(depth));
+  return at_least_noise(kSteepest * radius_px * camera.metres_per_px(depth));
 }
 
 float same_surface_limit(double radius_m) {
-  constexpr double kSteepest = 1.5;  // metres of depth per metre across
-  constexpr float kLeast = 0.02F;
-  const auto limit = static_cast<float>(kSteepest * radius_m);
-  return limit < kLeast ? kLeast : limit;
+  return at_least_noise(kSteepest * radius_m);
 }
 
 std::vector<WindowMoments> row_moments(const SurfaceVectors& vectors, int y, int radius_px) {

@@ -16,6 +16,12 @@ bool in_scale_space(const Profile& profile) {
   return profile.features.handling == ScaleHandling::kScaleSpace;
 }
 
+/// Point histograms compare single normals, which noise turns most; the other families' values are sums over many
+/// pixels or slopes over several.
+bool needs_far_noise(const Profile& profile) {
+  return in_scale_space(profile) && (profile.features.families & (kPointHistogram | kFastHistogram)) != 0;
+}
+
 /// Whether a level is taught a surface at this depth: a little beyond what it holds, since detection decides by noisy
 /// depth; anything in a scale space.
 bool teaches(const FeatureLevel& level, const Profile& profile, float depth) {
@@ -145,9 +151,8 @@ TrainingPicture object_picture(const TrainingView& view, int label, std::uint32_
   }
   if (!composite) return picture;
 
-  if (in_scale_space(profile) && (profile.features.families & kNormalFamilies) != 0) {
-    const auto& scales = profile.features.scales;
-    const double farthest = std::max(1.0F, *std::max_element(scales.begin(), scales.end()));
+  if (needs_far_noise(profile)) {
+    const double farthest = *std::max_element(profile.features.scales.begin(), profile.features.scales.end());
     add_far_noise(distance, std::exp(random.uniform(0.0, std::log(farthest))), composite->frame.depth, random);
   }
   const FeatureLevel level = level_for(distance, profile, random);
