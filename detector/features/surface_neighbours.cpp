@@ -32,6 +32,7 @@ std::vector<cv::Point2f> disk(int count) {
 /// The points of the cloud that these places fall on, nearest first.
 std::vector<cv::Point> shifts_of(const std::vector<cv::Point2f>& places, float reach) {
   std::vector<cv::Point> shifts;
+  shifts.reserve(places.size());
   for (const cv::Point2f& place : places) shifts.emplace_back(place * reach);
   const auto rank = [](const cv::Point& p) { return std::make_tuple(p.dot(p), p.y, p.x); };
   std::sort(shifts.begin(), shifts.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
