@@ -32,7 +32,7 @@ std::vector<cv::Mat> spread(const HistogramCloud& cloud, const Eigen::MatrixXf& 
     const auto* z = depth.ptr<float>(y);
     for (int x = 0; x < depth.cols; ++x) {
       const std::size_t i = cloud.index(x / cloud.step_px, y / cloud.step_px);
-      if (!(std::fabs(z[x] - cloud.points[i].z) < cloud.limits[i])) continue;
+      if (!(std::fabs(z[x] - cloud.points[i].z) < cloud.limit)) continue;
       for (std::size_t p = 0; p < planes.size(); ++p) {
         const float value = percent(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(i));
         planes[p].ptr<std::uint8_t>(y)[x] = cv::saturate_cast<std::uint8_t>(2.55F * value);

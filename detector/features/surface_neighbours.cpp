@@ -82,7 +82,6 @@ HistogramCloud empty_cloud(cv::Size pixels, const PointHistogramSettings& settin
   cloud.points.assign(static_cast<pcl::index_t>(count), pcl::PointXYZ(kNone, kNone, kNone));
   cloud.normals.resize(count);
   cloud.reaches.resize(count, 0.0F);
-  cloud.limits.resize(count, kNone);
   const std::vector<cv::Point2f> places = disk(settings.given);
   const int steps = static_cast<int>(HistogramCloud::kFarthest / HistogramCloud::kReachStep);
   for (int i = 0; i <= steps; ++i) {  // where surfaces are far away, the points beside still are neighbours
@@ -100,6 +99,7 @@ HistogramCloud make_histogram_cloud(const WorkingFrame& frame, const PointHistog
   const std::vector<cv::Point2f> normal_places = disk(settings.normal_neighbours);
   const float normal_radius = support_radius(settings, settings.normal_neighbours);
   const float radius = support_radius(settings, settings.neighbours);
+  cloud.limit = same_surface_limit(radius);
   parallel_for(threads, cloud.size.height, [&](int gy) {
     for (int gx = 0; gx < cloud.size.width; ++gx) {
       const cv::Point at(std::min(gx * cloud.step_px + cloud.step_px / 2, pixels.width - 1),
@@ -113,7 +113,6 @@ HistogramCloud make_histogram_cloud(const WorkingFrame& frame, const PointHistog
       cloud.normals[i].getNormalVector3fMap() = normal;
       const auto reach_px = radius / static_cast<float>(frame.camera.metres_per_px(depth));
       cloud.reaches[i] = std::min(HistogramCloud::kFarthest, reach_px / static_cast<float>(cloud.step_px));
-      cloud.limits[i] = same_surface_limit(radius);
     }
   });
   return cloud;
@@ -122,7 +121,7 @@ HistogramCloud make_histogram_cloud(const WorkingFrame& frame, const PointHistog
 CloudNeighbours neighbours_of(const HistogramCloud& cloud, int x, int y) {
   CloudNeighbours found;
   const std::size_t middle = cloud.index(x, y);
-  if (std::isnan(cloud.limits[middle])) return found;
+  if (std::isnan(cloud.points[middle].z)) return found;
   const auto reach = static_cast<std::size_t>(std::lround(cloud.reaches[middle] / HistogramCloud::kReachStep));
   const cv::Rect inside({0, 0}, cloud.size);
   for (const cv::Point& shift : cloud.shifts[reach]) {
@@ -130,7 +129,7 @@ CloudNeighbours neighbours_of(const HistogramCloud& cloud, int x, int y) {
     if (!inside.contains(at)) continue;
     const std::size_t i = cloud.index(at.x, at.y);
     const Eigen::Vector3f apart = cloud.points[i].getVector3fMap() - cloud.points[middle].getVector3fMap();
-    if (!(std::fabs(apart.z()) < cloud.limits[middle])) continue;
+    if (!(std::fabs(apart.z()) < cloud.limit)) continue;  // also where there is no point
     found.indices.push_back(static_cast<pcl::index_t>(i));
     found.distances_sq.push_back(apart.squaredNorm());
   }

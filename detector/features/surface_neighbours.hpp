@@ -14,9 +14,9 @@ namespace houghstream {
 struct HistogramCloud {
   cv::Size size;  ///< points
   int step_px = 1;
-  std::vector<float> reaches;  ///< how far neighbours lie in the picture, points
-  std::vector<float> limits;   ///< see same_surface_limit; NaN where there is no surface
-  pcl::PointCloud<pcl::PointXYZ> points;
+  std::vector<float> reaches;             ///< how far neighbours lie in the picture, points
+  float limit = 0.0F;                     ///< see same_surface_limit
+  pcl::PointCloud<pcl::PointXYZ> points;  ///< NaN where there is no surface
   pcl::PointCloud<pcl::Normal> normals;
   std::vector<std::vector<cv::Point>> shifts;  ///< to the neighbours, for each reach in steps of kReachStep
 

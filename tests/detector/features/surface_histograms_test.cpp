@@ -92,15 +92,12 @@ TEST(SurfaceHistograms, AThinnerCloudKeepsItsSupport) {
 
 /// A ball before nothing, in the middle of a picture.
 WorkingFrame ball_at(double distance, double radius, double enlarged) {
-  WorkingFrame frame = scene::see(80, 60, [](const Eigen::Vector3d&) { return 0.0; });
+  const scene::Round ball{Eigen::Vector3d(0.0, 0.0, distance), radius};
+  WorkingFrame frame = scene::see(80, 60, [&](const Eigen::Vector3d& ray) {
+    return ball({ray.x() / enlarged, ray.y() / enlarged, 1.0});
+  });
   frame.camera.fx *= enlarged;
   frame.camera.fy *= enlarged;
-  const scene::Round ball{Eigen::Vector3d(0.0, 0.0, distance), radius};
-  for (int y = 0; y < 60; ++y) {
-    for (int x = 0; x < 80; ++x) {
-      frame.filled_depth.at<float>(y, x) = static_cast<float>(ball(frame.camera.backproject(x, y, 1.0)));
-    }
-  }
   return frame;
 }
 
