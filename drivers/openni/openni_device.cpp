@@ -3,12 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
-#include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
 #include "drivers/openni/openni_listeners.hpp"
 #include "drivers/openni/openni_parts.hpp"
+#include "drivers/openni/openni_recording.hpp"
 #include "pipeline/checks.hpp"
 
 namespace houghstream {
@@ -41,7 +41,7 @@ std::shared_ptr<const void> keep_openni_running() {
   return std::make_shared<OpenniLibrary>();
 }
 
-// Destroyed from the last member up: recorder and listeners end before the streams, these before the device.
+// What OpenNI2 has made ends in turn: recorder and listeners before the streams, these before the device.
 struct OpenniDevice::State {
   explicit State(const std::string& name) : uri(name), departure(name) {}
 
@@ -58,10 +58,10 @@ struct OpenniDevice::State {
   Inbox inbox;
   Listener depth_listener{inbox, Sensor::kDepth};
   Listener colour_listener{inbox, Sensor::kColour};
-  openni::Recorder recorder;
+  std::optional<OpenniRecording> recording;
 
   ~State() {
-    recorder.destroy();
+    if (recording) recording->stop();
     depth.removeNewFrameListener(&depth_listener);
     colour.removeNewFrameListener(&colour_listener);
     depth.stop();
@@ -71,6 +71,7 @@ struct OpenniDevice::State {
     depth.destroy();
     colour.destroy();
     device.close();
+    if (recording && recording->started()) recording->mend_times();
   }
 
   void open() {
@@ -124,14 +125,6 @@ struct OpenniDevice::State {
     check_openni(colour.start(), uri + ": colour does not start");
   }
 
-  void record(const std::string& file, bool jpeg) {
-    // OpenNI2 would crash later.
-    require(std::ofstream(file).good(), "{}: cannot be written, expected a place for a recording", file);
-    check_openni(recorder.create(file.c_str()), file + ": cannot be recorded to");
-    check_openni(recorder.attach(depth, false), file + ": depth");
-    check_openni(recorder.attach(colour, jpeg), file + ": colour");
-  }
-
   /// Depth from before registration is of the same size and looks like any other, so it is told by its turn. A
   /// recording starts behind it.
   void await_modes() {
@@ -141,9 +134,7 @@ struct OpenniDevice::State {
   std::optional<SensorImage> read_camera(milliseconds patience) {
     std::optional<SensorImage> image = inbox.take(patience);
     while (image && depth_to_skip > 0) {
-      if (image->sensor == Sensor::kDepth && --depth_to_skip == 0 && recorder.isValid()) {
-        check_openni(recorder.start(), uri + ": recording");
-      }
+      if (image->sensor == Sensor::kDepth && --depth_to_skip == 0 && recording) recording->start();
       image = inbox.take(patience);
     }
     return image;
@@ -175,7 +166,9 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, 
   state->start();
   require(at_once || state->registered(),
           "{}: cannot register depth to colour; give --assume-registered if its depth comes registered anyhow", uri);
-  if (!options.record.empty()) state->record(options.record, options.record_jpeg);
+  if (!options.record.empty()) {
+    state->recording.emplace(options.record, options.record_jpeg, state->depth, state->colour);
+  }
   state->await_modes();
   return std::unique_ptr<OpenniDevice>(new OpenniDevice(std::move(state)));
 }
@@ -203,6 +196,7 @@ std::optional<SensorImage> OpenniDevice::wait(milliseconds patience) {
   if (!image) return std::nullopt;
   const bool whole = image->image.cols == state_->mode.width && image->image.rows == state_->mode.height;
   if (whole && image->sensor == Sensor::kColour) cv::cvtColor(image->image, image->image, cv::COLOR_RGB2BGR);
+  if (whole && state_->recording) state_->recording->note(*image);
   if (whole) return image;
   require(!state_->is_file, "{}: an image of {}x{}, expected {}", state_->uri, image->image.cols, image->image.rows,
           mode_text(state_->mode));

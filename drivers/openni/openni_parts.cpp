@@ -19,11 +19,6 @@ std::string openni_error() {
                                     : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-std::int64_t host_now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
-
 bool is_usable(const openni::VideoMode& mode, Sensor sensor) {
   const openni::PixelFormat format = mode.getPixelFormat();
   if (sensor == Sensor::kColour) return format == openni::PIXEL_FORMAT_RGB888;
@@ -58,6 +53,11 @@ OpenniLibrary::OpenniLibrary() {
 
 OpenniLibrary::~OpenniLibrary() {
   openni::OpenNI::shutdown();
+}
+
+std::int64_t host_now_us() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
 }
 
 void check_openni(openni::Status status, const std::string& what) {

@@ -124,9 +124,9 @@ def check_import(tools, folder, events):
     assert info.returncode == 0 and "OPENNI_FRAME" in info.stdout and "images_t" in info.stdout, info
 
 
-def check_recording(tools, camera, folder):
+def check_recording(tools, camera, folder, script):
     """What is replayed from a .oni file is, message by message, what went out live."""
-    camera.write("")
+    camera.write(script)
     live = run(tools / "hs-capture", "--source", "openni2", "--frames", LIVE_FRAMES, "--log", folder / "live.log", "--record", folder / "live.oni")
     assert live.returncode == 0, live
     replay = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--log", folder / "replay.log")
@@ -155,7 +155,8 @@ def main():
     camera = Camera(folder)
     check_listing(tools, camera)
     check_unplugging(tools, camera, folder)
-    check_recording(tools, camera, folder)
+    for script in ("", "can_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n"):
+        check_recording(tools, camera, folder, script)
     print("live capture: frames, gap and recording are as they should be")
 
 

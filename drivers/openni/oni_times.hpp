@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace houghstream {
+
+/// The streams of a .oni file in the order in which they were attached to OpenNI2's recorder.
+enum class OniNode : std::uint32_t { kFirst = 1, kSecond = 2 };
+
+/// Adds `delay_us`, which is not negative, to all times of one stream in a finished .oni file: those of its images, of
+/// its seek table and of its range. OpenNI2's recorder begins each stream at zero (OniRecorder.cpp), whenever its first
+/// image was taken, so what two streams have to do with each other must be said afterwards. Throws InputError where the
+/// file is not a whole recording of OpenNI2's (version 1.0.1), and then leaves it as it was.
+void delay_oni_node(const std::filesystem::path& file, OniNode node, std::int64_t delay_us);
+
+}  // namespace houghstream
