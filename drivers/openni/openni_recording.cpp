@@ -64,7 +64,7 @@ void OpenniRecording::mend_times() noexcept {
     const std::int64_t colour_later_us =
         device_start_us(file_, Sensor::kColour, colour_, jpeg_) - device_start_us(file_, Sensor::kDepth, depth_, false);
     const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
-    delay_oni_node(file_, later, std::abs(colour_later_us));
+    if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
   } catch (const std::exception& error) {
     spdlog::warn("{}; in the recording colour may lie beside its depth", error.what());
   }
