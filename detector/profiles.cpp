@@ -96,7 +96,7 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
   FeatureSettings& features = profile.features;
   if (handling == "normalised") {
     if (features.handling == ScaleHandling::kDepthNormalised) return;
-    constexpr float kTaughtDistance = 0.7F;  // metres: about where turntables stand
+    constexpr float kTaughtDistance = 1.0F;  // metres: about where turntables stand (Lai et al. 2011)
     features.handling = ScaleHandling::kDepthNormalised;
     features.scales = {};
     features.far_distance = features.max_distance;

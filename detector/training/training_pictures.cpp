@@ -16,10 +16,9 @@ bool in_scale_space(const Profile& profile) {
   return profile.features.handling == ScaleHandling::kScaleSpace;
 }
 
-/// Point histograms compare single normals, which noise turns most; the other families' values are sums over many
-/// pixels or slopes over several.
+/// Whether features look at the depth that a scale space's enlarged images show, see add_far_noise.
 bool needs_far_noise(const Profile& profile) {
-  return in_scale_space(profile) && (profile.features.families & (kPointHistogram | kFastHistogram)) != 0;
+  return in_scale_space(profile) && profile.features.families != kIntensity;
 }
 
 /// Whether a level is taught a surface at this depth: a little beyond what it holds, since detection decides by noisy

@@ -86,8 +86,8 @@ TEST(ScaleHandling, NormalisedPatchesAreAsLargeWhereObjectsAreTaught) {
   const int in_scale_space = limited_scale(profile.patch, profile.patch.unit);
   set_scale_handling(profile, "normalised");
   EXPECT_EQ(profile.features.handling, ScaleHandling::kDepthNormalised);
-  EXPECT_NEAR(patch_scale(profile.patch, kFocal, 0.7F), in_scale_space, 1);
-  EXPECT_NEAR(patch_scale(profile.patch, kFocal, 1.4F), 0.5 * in_scale_space, 1);
+  EXPECT_NEAR(patch_scale(profile.patch, kFocal, 1.0F), in_scale_space, 1);
+  EXPECT_NEAR(patch_scale(profile.patch, kFocal, 2.0F), 0.5 * in_scale_space, 1);
   EXPECT_EQ(feature_levels(profile.features).size(), 1U);
   EXPECT_EQ(profile.detection.vote_sigma, DetectionSettings{}.vote_sigma);
   EXPECT_EQ(profile.training.merge_radius, TrainingSettings{}.merge_radius);

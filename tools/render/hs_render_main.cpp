@@ -37,6 +37,9 @@ void add_commands(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   training->add_option("--azimuths", arguments.turntable.azimuths, "views a turn")->capture_default_str();
   training->add_option("--pitches", arguments.turntable.pitches, "camera heights")->capture_default_str();
+  training->add_option("--distance", arguments.turntable.distance_m, "from the camera to the object, metres")
+      ->capture_default_str()
+      ->check(CLI::Range(0.3, 3.0));
   training
       ->add_option("--attitudes", arguments.attitudes,
                    "upright, tilted (as if held) and lying (on its sides or upside down; half a turn's views for each)")

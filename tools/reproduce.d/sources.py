@@ -8,6 +8,7 @@ from variants import SCENES, SCENES_20
 
 RENDERED_DISTANCES = ("--min-distance", "0.75", "--max-distance", "2.1")
 RECORDED_DISTANCES = ("--min-distance", "0.3", "--max-distance", "0.8")
+TAUGHT_AT = ("--distance", "1")  # metres: about where UW's cameras stood from the turntable (Lai et al. 2011)
 CAMERA = "640x480,525,525,319.5,239.5"
 WAY, FRAMES = 300, 60  # frames along the camera's way, and those that are looked at
 REAL_INSTANCES = "ornament_3,ornament_1,koaramarch_1,pack_2,bottle_2,can_1,can_2"
@@ -33,7 +34,7 @@ def rendered_scenes(units, names, figure):
 
 def rendered(units):
     """Four objects."""
-    views = units.add("data/training", "data", "hs-render", "training", "--out", "{out}")
+    views = units.add("data/training", "data", "hs-render", "training", *TAUGHT_AT, "--out", "{out}")
     rooms = units.add("data/background", "data", "hs-render", "background", "--count", "215", "--out", "{out}")
     training = ("--views", f"bop:{{{views}}}", "--background", f"bop:{{{rooms}}}")
     return Source(training, RENDERED_DISTANCES, rendered_scenes(units, SCENES, "data"))
@@ -41,7 +42,8 @@ def rendered(units):
 
 def twenty(units, few):
     """The few objects and twenty, each with the scenes in which the twenty stand."""
-    views = units.add("data/training_20", "objects", "hs-render", "training", "--objects", "all_20", "--out", "{out}")
+    turntable = ("--objects", "all_20", *TAUGHT_AT)
+    views = units.add("data/training_20", "objects", "hs-render", "training", *turntable, "--out", "{out}")
     scenes = rendered_scenes(units, SCENES_20, "objects")
     training = ("--views", f"bop:{{{views}}}", *few.training[2:])
     return dataclasses.replace(few, scenes=scenes), dataclasses.replace(few, training=training, scenes=scenes)

@@ -36,6 +36,13 @@ TEST(TrainingViews, ShowOneObjectFromAllRoundAtSeveralPitches) {
   }
 }
 
+TEST(TrainingViews, TheCameraStandsAsFarAwayAsAsked) {
+  TurntableSettings settings;
+  settings.distance_m = 1.3;
+  const SceneFrame view = Turntable(settings, 1).render(make_taught_object(3), nullptr, 0);
+  EXPECT_NEAR(view.objects.at(0).T_camera_object.translation().norm(), 1.3, 0.08);
+}
+
 TurntableSettings few_views(const std::vector<Attitude>& attitudes) {
   TurntableSettings settings;
   settings.azimuths = 5;
