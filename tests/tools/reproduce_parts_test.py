@@ -1,4 +1,4 @@
-"""Tests of the parts of tools/reproduce: plan, verdicts, views of the UW dataset, bars.
+"""Tests of the parts of tools/reproduce: plan, verdicts, views of the UW dataset, charts.
 
 Usage: reproduce_parts_test.py REPOSITORY"""
 
@@ -13,6 +13,7 @@ tools = pathlib.Path(sys.argv.pop(1), "tools").resolve()
 sys.path[:0] = [str(tools / "reproduce.d"), str(tools / "report_kit")]
 
 import bars
+import charts
 import plan
 import planner
 import reliability
@@ -160,6 +161,14 @@ class Bars(unittest.TestCase):
         drawing = bars.row_bars([("a", None, None, 0.5), ("b", 0.25, None, None)], "AUC", "ours", "theirs")
         self.assertEqual(len(xml.etree.ElementTree.fromstring(drawing).findall(".//rect")), 1)
         self.assertIn("not measured (paper 0.500)", drawing)
+
+    def test_a_label_near_the_right_edge_stands_on_the_points_left(self):
+        chart = charts.Chart("score", "share", 1.0, 1.0)
+        chart.label(0.5, 0.5, "3692")
+        chart.label(1.0, 0.5, "3693")
+        root = xml.etree.ElementTree.fromstring(chart.svg())
+        anchors = {element.text: element.get("text-anchor") for element in root.findall(".//text")}
+        self.assertEqual((anchors["3692"], anchors["3693"]), (None, "end"))
 
     def test_a_figure_becomes_a_file_of_its_own_with_title_and_legend(self):
         chart = bars.GroupedBars(["a"], "AUC", title="gain & loss")

@@ -58,8 +58,9 @@ class GroupedBars:
         if spread and spread[0] != spread[1]:
             high = self._y(spread[1])
             parts.append(line("whisker", x + width / 2, self._y(spread[0]), x + width / 2, high))
+        words = f"{value:.2f}".lstrip("0")  # .95: bars are narrower than 0.95
         return parts + [
-            f'<text class="value" x="{x + width / 2:.1f}" y="{high - 4:.1f}" text-anchor="middle">{value:.2f}</text>'
+            f'<text class="value" x="{x + width / 2:.1f}" y="{high - 4:.1f}" text-anchor="middle">{words}</text>'
         ]
 
     def svg(self):

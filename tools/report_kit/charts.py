@@ -6,6 +6,7 @@ import html
 COLOURS = ["#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#a09000", "#666666"]
 WIDTH, HEIGHT = 560, 340
 LEFT, RIGHT, TOP, BOTTOM = 56, 12, 22, 44
+CHARACTER = 7  # width of a figure in the text
 
 
 def nice_step(span, most_ticks=6):
@@ -110,7 +111,11 @@ class Chart:
         self.parts.append(f'<line class="whisker" {at} y1="{self._y(low):.1f}" y2="{self._y(high):.1f}"/>')
 
     def label(self, x, y, text):
-        self.parts.append(f'<text x="{self._x(x) + 7:.1f}" y="{self._y(y) - 6:.1f}">{html.escape(text)}</text>')
+        """Beside a point: on its right, or on its left where the text would leave the drawing."""
+        at = self._x(x)
+        fits = at + 7 + CHARACTER * len(text) <= WIDTH
+        place = f'x="{at + 7:.1f}"' if fits else f'x="{at - 7:.1f}" text-anchor="end"'
+        self.parts.append(f'<text {place} y="{self._y(y) - 6:.1f}">{html.escape(text)}</text>')
 
     def svg(self):
         return figure(WIDTH, HEIGHT, self.parts, self.legend, self.title)
