@@ -25,9 +25,9 @@ TEST(SurfaceNormals, APlaneHasItsNormalEverywhereTowardsTheCamera) {
       const cv::Mat normals = surface_normals(frame, kNeighbours, 1);
       ASSERT_EQ(normals.type(), CV_32FC3);
       double worst = 0.0;
-      for (auto it = normals.begin<cv::Vec3f>(); it != normals.end<cv::Vec3f>(); ++it) {
-        EXPECT_NEAR(cv::norm(*it), 1.0, 1e-5);
-        worst = std::max(worst, angle_deg(*it, normal));
+      for (const cv::Vec3f& found : cv::Mat_<cv::Vec3f>(normals)) {
+        EXPECT_NEAR(cv::norm(found), 1.0, 1e-5);
+        worst = std::max(worst, angle_deg(found, normal));
       }
       EXPECT_LT(worst, 0.1) << distance;
     }
@@ -47,7 +47,7 @@ TEST(SurfaceNormals, NoiseIsAveraged) {
   scene::add_noise(frame, 0.002, 1);
   const cv::Mat normals = surface_normals(frame, kNeighbours, 1);
   double sum = 0.0;
-  for (auto it = normals.begin<cv::Vec3f>(); it != normals.end<cv::Vec3f>(); ++it) sum += angle_deg(*it, normal);
+  for (const cv::Vec3f& found : cv::Mat_<cv::Vec3f>(normals)) sum += angle_deg(found, normal);
   EXPECT_LT(sum / static_cast<double>(normals.total()), 3.0);
 }
 
@@ -81,7 +81,7 @@ TEST(SurfaceNormals, WhereThereIsNoSurfaceThereIsNoNormal) {
   const cv::Mat normals = surface_normals(frame, kNeighbours, 1);
   for (int y = 0; y < 36; ++y) {
     for (int x = 0; x < 48; ++x) {
-      const auto normal = normals.at<cv::Vec3f>(y, x);
+      const auto& normal = normals.at<cv::Vec3f>(y, x);
       const bool expected = x < 24 && !(x == 10 && y == 10);
       for (int i = 0; i < 3; ++i) EXPECT_EQ(normal[i] == normal[i], expected) << x << "," << y;
       EXPECT_LT(expected ? angle_deg(normal, {0, 0, -1}) : 0.0, 0.1);

@@ -50,7 +50,7 @@ SurfaceVectors random_vectors() {
   std::uniform_real_distribution<float> value(-1.0F, 1.0F);
   for (cv::Mat& plane : vectors.xyz) {
     plane.create(10, 24, CV_32FC1);
-    for (auto it = plane.begin<float>(); it != plane.end<float>(); ++it) *it = value(random);
+    for (float& element : cv::Mat_<float>(plane)) element = value(random);
   }
   for (const cv::Point hole : {cv::Point(3, 3), cv::Point(4, 5), cv::Point(12, 6)}) {
     vectors.depth.at<float>(hole) = scene::kNone;

@@ -205,7 +205,7 @@ TEST(SplitSearch, TestsStayInsideThePatchAndWrapDepthOnly) {
   for (const std::uint64_t seed : {5, 6, 7, 8}) {
     const auto test = search(set, every_sample(set), Objective::kOffset, seed);
     ASSERT_TRUE(test);
-    for (const int step : {test->dx1, test->dy1, test->dx2, test->dy2}) EXPECT_LE(std::abs(step), 10);
+    for (const std::int8_t step : {test->dx1, test->dy1, test->dx2, test->dy2}) EXPECT_LE(std::abs(step), 10);
     EXPECT_NE(test->kind, PixelTest::kWrapping);
   }
 }
