@@ -1,7 +1,6 @@
 #include "drivers/openni/oni_times.hpp"
 
 #include <array>
-#include <cstring>
 #include <fstream>
 #include <vector>
 

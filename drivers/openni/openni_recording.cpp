@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
@@ -13,27 +14,25 @@
 namespace houghstream {
 namespace {
 
-using Sensor = SensorImage::Sensor;
-
 constexpr std::size_t kRemembered = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
 constexpr std::size_t kCompared = 8;      // recorded images of a stream
 constexpr std::chrono::seconds kPatience(5);
 
-/// The first images of a stream; fewer where a recording is shorter.
-std::vector<Remembered> first_recorded(const std::string& file, Sensor sensor) {
+/// Fewer where a recording is shorter.
+FirstImages first_recorded(const std::string& file) {
   const auto device = OpenniDevice::open_file(file);
-  std::vector<Remembered> first;
-  while (first.size() < kCompared && !device->ended()) {
+  FirstImages first;
+  while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
     const std::optional<SensorImage> image = device->wait(kPatience);
-    if (image && image->sensor == sensor) first.push_back(remember(*image));
+    if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
   }
   return first;
 }
 
-std::int64_t device_start_us(const std::string& file, Sensor sensor, const std::vector<Remembered>& live, bool loses) {
-  const std::optional<RecordedStart> start = find_recorded_start(first_recorded(file, sensor), live);
-  require(start && (loses || start->difference == 0.0), "{}: its first {} images are not among those seen", file,
-          sensor == Sensor::kDepth ? "depth" : "colour");
+std::int64_t device_start_us(const std::string& stream, const std::vector<Remembered>& recorded,
+                             const std::vector<Remembered>& live, bool loses) {
+  const std::optional<RecordedStart> start = find_recorded_start(recorded, live);
+  require(start && (loses || start->difference == 0.0), "{}: its first images are not among those seen", stream);
   return start->device_us;
 }
 
@@ -54,15 +53,16 @@ void OpenniRecording::start() {
 }
 
 void OpenniRecording::note(const SensorImage& image) {
-  std::vector<Remembered>& own = image.sensor == Sensor::kDepth ? depth_ : colour_;
+  std::vector<Remembered>& own = live_.of(image.sensor);
   const bool may_be_recorded = started() && image.host_us >= started_us_;
   if (may_be_recorded && own.size() < kRemembered) own.push_back(remember(image));
 }
 
 void OpenniRecording::mend_times() noexcept {
   try {
-    const std::int64_t colour_later_us =
-        device_start_us(file_, Sensor::kColour, colour_, jpeg_) - device_start_us(file_, Sensor::kDepth, depth_, false);
+    const FirstImages recorded = first_recorded(file_);
+    const std::int64_t colour_later_us = device_start_us(file_ + ", colour", recorded.colour, live_.colour, jpeg_) -
+                                         device_start_us(file_ + ", depth", recorded.depth, live_.depth, false);
     const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
     if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
   } catch (const std::exception& error) {

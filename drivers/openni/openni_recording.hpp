@@ -12,6 +12,15 @@
 
 namespace houghstream {
 
+/// The first images of a camera's two streams.
+struct FirstImages {
+  std::vector<Remembered> depth;
+  std::vector<Remembered> colour;
+  std::vector<Remembered>& of(SensorImage::Sensor sensor) {
+    return sensor == SensorImage::Sensor::kDepth ? depth : colour;
+  }
+};
+
 /// OpenNI2's recorder lets each stream begin at zero, so that colour and depth that were taken together lie apart in
 /// the file wherever their first images were not. What was seen live tells when those were taken, and with it the times
 /// in the file are mended once it is finished.
@@ -38,8 +47,7 @@ class OpenniRecording {
   bool jpeg_;
   openni::Recorder recorder_;
   std::int64_t started_us_ = 0;  // host's time, 0 before
-  std::vector<Remembered> depth_;
-  std::vector<Remembered> colour_;
+  FirstImages live_;
 };
 
 }  // namespace houghstream

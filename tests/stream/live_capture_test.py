@@ -12,6 +12,7 @@ from lcm_messages import images_of, read_log, status_of, utime_of
 
 LIVE_FRAMES = 90
 LEFT, DEPTH_MM_ZIPPED = 0, 6
+LATE_COLOUR = "can_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n"
 
 
 class Camera:
@@ -54,7 +55,7 @@ def check_listing(tools, camera):
 
 def check_unplugging(tools, camera, folder):
     """Frames come at the camera's rate; while it is away the status says so; then they come again, soon."""
-    camera.write("can_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n")
+    camera.write(LATE_COLOUR)
     recorded = folder / "status.log"
     logger = subprocess.Popen(["lcm-logger", "-f", "-q", "-c", "HOUGHSTREAM_STATUS", str(recorded)], stderr=subprocess.DEVNULL)
     observe = Process(folder, tools / "hs-observe", "--out", folder / "observed.json", "--csv", folder / "times.csv")
@@ -155,7 +156,7 @@ def main():
     camera = Camera(folder)
     check_listing(tools, camera)
     check_unplugging(tools, camera, folder)
-    for script in ("", "can_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n"):
+    for script in ("", LATE_COLOUR):
         check_recording(tools, camera, folder, script)
     print("live capture: frames, gap and recording are as they should be")
 
