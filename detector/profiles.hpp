@@ -43,7 +43,7 @@ DetectionSettings detection_settings(const Forest& forest);
 void set_image_scale(Profile& profile, float image_scale);
 
 /// How distances are handled: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by depth,
-/// Section 5.1.2; patches as large as at 0.7 m, where turntables stand). Throws InputError for another word.
+/// Section 5.1.2; patches as large as at 1 m, about where turntables stand). Throws InputError for another word.
 void set_scale_handling(Profile& profile, const std::string& handling);
 
 }  // namespace houghstream

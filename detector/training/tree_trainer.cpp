@@ -74,7 +74,7 @@ class TreeGrower {
     return chosen;
   }
 
-  /// Gall et al. 2011: drawn at random, but nodes with hardly any background left only settle offsets.
+  /// Drawn at random (Gall et al. 2011), but in nodes with hardly anything but background it is the labels.
   Objective choose_objective(const Samples& samples) {
     std::size_t background = 0;
     bool several_labels = false;
@@ -82,7 +82,7 @@ class TreeGrower {
       background += set_.samples[s].label == 0 ? 1 : 0;
       several_labels = several_labels || set_.samples[s].label != set_.samples[samples[0]].label;
     }
-    const bool draw_offset = random_.uniform() < 0.5;
+    const bool draw_offset = random_.uniform() < settings_.offset_share;
     if (!several_labels) return Objective::kOffset;
     return draw_offset && background * 20 < samples.size() * 19 ? Objective::kOffset : Objective::kClass;
   }

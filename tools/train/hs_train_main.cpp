@@ -23,6 +23,7 @@ struct Overrides {
   std::optional<int> trees;
   std::optional<int> max_depth;
   std::optional<int> tests;
+  std::optional<double> offset_share;
   std::optional<int> patches;
   std::optional<int> composites;
   std::optional<float> min_distance;
@@ -44,7 +45,10 @@ void add_overrides(CLI::App& app, Overrides& overrides) {
   app.add_option("--threads", overrides.threads, "any number gives the same forest")->capture_default_str();
   app.add_option("--trees", overrides.trees)->check(CLI::Range(1, 1000));
   app.add_option("--max-depth", overrides.max_depth, "levels")->check(CLI::Range(1, 60));
-  app.add_option("--tests", overrides.tests, "random tests tried per node")->check(CLI::Range(1, 100000));
+  app.add_option("--tests", overrides.tests, "random tests tried per node, at most one per sample")
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets rather than by labels")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--patches", overrides.patches, "patches per training view")->check(CLI::Range(4, 100000));
   app.add_option("--composites", overrides.composites, "pictures made of one view")->check(CLI::Range(1, 100));
   app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres");
@@ -66,6 +70,7 @@ Profile overridden(const Overrides& overrides) {
   take(overrides.trees, training.trees);
   take(overrides.max_depth, training.max_depth);
   take(overrides.tests, training.tests_per_node);
+  take(overrides.offset_share, training.offset_share);
   take(overrides.patches, training.patches_per_view);
   take(overrides.composites, training.composites_per_view);
   take(overrides.min_distance, training.min_distance);

@@ -66,6 +66,16 @@ TEST(TreeTrainer, ATreeTellsHeldOutPicturesApart) {
   EXPECT_GT(held_out, 0);
 }
 
+TEST(TreeTrainer, NodesAreSplitByOffsetsAsOftenAsAsked) {
+  const auto first_plane = [](double offset_share) {
+    TrainingSettings settings = quick();
+    settings.offset_share = offset_share;
+    return static_cast<int>(grow_tree(toy::planted_set(), {}, settings, 0).nodes.at(0).test.plane);
+  };
+  EXPECT_EQ(first_plane(0.0), toy::kClassPlane);
+  EXPECT_EQ(first_plane(1.0), toy::kOffsetPlane);
+}
+
 TEST(TreeTrainer, EveryChildIsReachedOnce) {
   const Forest tree = grow_tree(toy::planted_set(), {}, quick(), 1);
   ASSERT_EQ(tree.roots, std::vector<std::int32_t>{0});
