@@ -47,9 +47,9 @@ struct TrainingSettings {
   int trees = 15;
   int max_depth = 25;         ///< levels
   int min_samples = 20;       ///< a node with fewer becomes a leaf
-  int tests_per_node = 2000;  ///< random pixel tests tried, at most one for each sample that chooses
-  /// Of the nodes that hold several labels are split so that offsets agree, the others so that labels do; Gall et al.
-  /// 2011 draw one or the other alike. Nodes of one label are always split by offsets.
+  int tests_per_node = 2000;  ///< random pixel tests tried; where fewer samples choose, as many as these, or 64
+  /// Of the nodes are split so that offsets agree, the others so that labels do; Gall et al. 2011 draw one or the other
+  /// alike. It is always offsets where there is one label only, and labels where nearly all is background.
   double offset_share = 0.5;
   double alone_share = 0.3;  ///< of the tests look at one pixel alone, see PixelTest::kAlone
   /// Of the nodes look at point feature histograms, and only at those; the others never. What is shaped like an object

@@ -2,7 +2,7 @@
 
 # Training options. The feature study adds one feature at a time to the intensity features (paper, Section 4).
 FINAL = ("--profile", "gall", "--features", "intensity,depth_value,depth_derivatives,depth_hog", "--depth-kernel", "7")
-# Half of the original's nodes are split by offsets, the others by labels (Gall et al. 2011). All by labels does better.
+# Half of the original's nodes are split by offsets, the others by labels (Gall et al. 2011). With all by labels both gain.
 BY_LABEL = ("--offset-share", "0")
 FEATURES = {
     "intensity": ("--profile", "gall"),

@@ -45,7 +45,7 @@ void add_overrides(CLI::App& app, Overrides& overrides) {
   app.add_option("--threads", overrides.threads, "any number gives the same forest")->capture_default_str();
   app.add_option("--trees", overrides.trees)->check(CLI::Range(1, 1000));
   app.add_option("--max-depth", overrides.max_depth, "levels")->check(CLI::Range(1, 60));
-  app.add_option("--tests", overrides.tests, "random tests tried per node, at most one per sample")
+  app.add_option("--tests", overrides.tests, "random tests tried per node, fewer where it has few samples")
       ->check(CLI::Range(1, 100000));
   app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets rather than by labels")
       ->check(CLI::Range(0.0, 1.0));
