@@ -19,8 +19,6 @@ FEATURE_NAMES = {
     "pfh": "+ PFH",
     "fpfh": "+ FPFH",
     "final": "final: value, derivatives, HoG",
-    "intensity_by_label": "RGB only, split by labels",
-    "final_by_label": "final, split by labels",
 }
 # Figure 1 of the paper shows these; the other kernels of the derivatives are in Figure 2.
 CURVES = ("intensity", "depth_value", "depth_derivatives_7", "depth_hog", "honv", "curvature", "pfh", "fpfh", "final")

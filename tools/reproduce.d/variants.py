@@ -2,8 +2,6 @@
 
 # Training options. The feature study adds one feature at a time to the intensity features (paper, Section 4).
 FINAL = ("--profile", "gall", "--features", "intensity,depth_value,depth_derivatives,depth_hog", "--depth-kernel", "7")
-# Half of the original's nodes are split by offsets, the others by labels (Gall et al. 2011). With all by labels both gain.
-BY_LABEL = ("--offset-share", "0")
 FEATURES = {
     "intensity": ("--profile", "gall"),
     "depth_value": ("--profile", "gall", "--features", "intensity,depth_value"),
@@ -17,9 +15,22 @@ FEATURES = {
     "pfh": ("--profile", "gall", "--features", "intensity,pfh"),
     "fpfh": ("--profile", "gall", "--features", "intensity,fpfh"),
     "final": FINAL,
-    "intensity_by_label": ("--profile", "gall", *BY_LABEL),
-    "final_by_label": (*FINAL, *BY_LABEL),
 }
+# The original compares two pixels in each test, and splits half of its nodes by offsets, the others by labels (Gall et
+# al. 2011). What both choices cost, with the baseline's features and with the final ones.
+BY_LABEL = ("--offset-share", "0")
+SINGLE_PIXEL = ("--alone-share", "0.3")  # as in paper and realtime
+OTHER_TRAINING = {
+    "by_label": BY_LABEL,
+    "single_pixel": SINGLE_PIXEL,
+    "single_pixel_by_label": (*SINGLE_PIXEL, *BY_LABEL),
+}
+TRAINED_OTHERWISE = {
+    f"{features}_{training}": (*FEATURES[features], *options)
+    for training, options in OTHER_TRAINING.items()
+    for features in ("intensity", "final")
+}
+STUDY = {**FEATURES, **TRAINED_OTHERWISE}
 OTHER_KERNELS = ("depth_derivatives_3", "depth_derivatives_5", "depth_derivatives_9")  # beside the final features' 7
 PROFILES = {name: ("--profile", name) for name in ("gall", "paper", "realtime")}
 SCALE_HANDLING = {
@@ -27,11 +38,12 @@ SCALE_HANDLING = {
     "normalised": ("--profile", "gall", "--scale-handling", "normalised"),
 }
 HALF_SIZE = {"half_size": ("--profile", "gall", "--image-scale", "0.5")}
-TRAINING = {**FEATURES, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
+TRAINING = {**STUDY, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 
 # What a quick run does without: features, the study of twenty objects, two of the profiles on recorded pictures.
 NOT_IN_QUICK = (
-    *("intensity_by_label", "final_by_label", *OTHER_KERNELS),
+    *(what for what in TRAINED_OTHERWISE if what.endswith("by_label")),
+    *OTHER_KERNELS,
     *("honv", "curvature", "pfh", "fpfh", "objects_20", "real_gall", "real_paper"),
 )
 

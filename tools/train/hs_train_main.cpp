@@ -24,6 +24,7 @@ struct Overrides {
   std::optional<int> max_depth;
   std::optional<int> tests;
   std::optional<double> offset_share;
+  std::optional<double> alone_share;
   std::optional<int> patches;
   std::optional<int> composites;
   std::optional<float> min_distance;
@@ -49,6 +50,8 @@ void add_overrides(CLI::App& app, Overrides& overrides) {
       ->check(CLI::Range(1, 100000));
   app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets rather than by labels")
       ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel rather than compare two")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--patches", overrides.patches, "patches per training view")->check(CLI::Range(4, 100000));
   app.add_option("--composites", overrides.composites, "pictures made of one view")->check(CLI::Range(1, 100));
   app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres");
@@ -71,6 +74,7 @@ Profile overridden(const Overrides& overrides) {
   take(overrides.max_depth, training.max_depth);
   take(overrides.tests, training.tests_per_node);
   take(overrides.offset_share, training.offset_share);
+  take(overrides.alone_share, training.alone_share);
   take(overrides.patches, training.patches_per_view);
   take(overrides.composites, training.composites_per_view);
   take(overrides.min_distance, training.min_distance);
