@@ -20,6 +20,16 @@ FEATURE_NAMES = {
     "fpfh": "+ FPFH",
     "final": "final: value, derivatives, HoG",
 }
+TRAINING_NAMES = {
+    "by_label": "all nodes split by labels",
+    "single_pixel": "three tests in ten look at one pixel",
+    "single_pixel_by_label": "both",
+}
+STUDY_NAMES = FEATURE_NAMES | {
+    f"{features}_{training}": f"{FEATURE_NAMES[features]}, {how}"
+    for training, how in TRAINING_NAMES.items()
+    for features in ("intensity", "final")
+}
 # Figure 1 of the paper shows these; the other kernels of the derivatives are in Figure 2.
 CURVES = ("intensity", "depth_value", "depth_derivatives_7", "depth_hog", "honv", "curvature", "pfh", "fpfh", "final")
 DETECTORS = {  # of Figure 6, with their colours
