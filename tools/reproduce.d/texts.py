@@ -36,9 +36,9 @@ SECTIONS = {
     ),
     "trained otherwise": (
         "Baseline and final features, trained otherwise",
-        """Above, all are trained as the original: each test compares two pixels, and half of the nodes are split so that
-        offsets agree, the others so that labels do (Gall et al. 2011). Both choices can be made otherwise, for the baseline
-        as for the final features; paper and realtime make the second.""",
+        """Above, all are trained as the original: tests compare two pixels (half of those of the scaled depth look at one),
+        and half of the nodes are split so that offsets agree, the others so that labels do (Gall et al. 2011). Both can be
+        chosen otherwise, for the baseline as for the final features. In paper and realtime, tests look at one pixel too.""",
         "Everything but the features is left as it was (Section 4).",
     ),
     "hough": (
