@@ -23,7 +23,7 @@ FEATURE_NAMES = {
 TRAINING_NAMES = {
     "by_label": "all nodes split by labels",
     "single_pixel": "three tests in ten look at one pixel",
-    "single_pixel_by_label": "both",
+    "single_pixel_by_label": "three tests in ten look at one pixel, all nodes split by labels",
 }
 STUDY_NAMES = FEATURE_NAMES | {
     f"{features}_{training}": f"{FEATURE_NAMES[features]}, {how}"
