@@ -40,7 +40,8 @@ SCALE_HANDLING = {
 HALF_SIZE = {"half_size": ("--profile", "gall", "--image-scale", "0.5")}
 TRAINING = {**STUDY, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 
-# What a quick run does without: features, all but the best training of them, the study of twenty objects, two of the profiles on recorded pictures.
+# What a quick run does without: features and ways of training them, the study of twenty objects, two of the profiles on
+# recorded pictures.
 NOT_IN_QUICK = (
     *(what for what in TRAINED_OTHERWISE if not what.endswith("single_pixel_by_label")),
     *OTHER_KERNELS,
