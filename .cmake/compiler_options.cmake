@@ -11,8 +11,8 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 find_program(CCACHE_PROGRAM ccache)
-if(CCACHE_PROGRAM)  # it must be told that precompiled headers may be cached
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER sh "${CMAKE_SOURCE_DIR}/.cmake/cached_compile.sh")
 endif()
 
 set(HOUGHSTREAM_SUMMARY "" CACHE INTERNAL "")
