@@ -52,6 +52,17 @@ def written(picture, row):
     return picture.cut(2, row_of_table(row) - 6, 120, 12).count((51, 51, 51)) > 20  # the colour of its text
 
 
+def await_channels(display, table, wanted, seconds=60):
+    end = time.monotonic() + seconds
+    while True:
+        picture = display.photograph(table)
+        rows = sum(written(picture, row) for row in range(1, 20))
+        if rows >= wanted:
+            return
+        assert time.monotonic() < end, f"{rows} channels in spy's table"
+        time.sleep(0.3)
+
+
 def open_viewer(display, spy, channel):
     """Double-clicks through the rows of spy's table until the window of a channel opens."""
     for row in range(1, 12):
@@ -83,11 +94,9 @@ def check_spy(tools, logs, display, out):
     spy = Process(logs, tools / "hs-spy")
     try:
         table = display.window("LCM Spy")
-        time.sleep(10)  # spy counts rates once a second
-        picture = display.photograph(table)
-        picture.save(out / "spy.png")
-        rows = sum(written(picture, row) for row in range(1, 20))
-        assert rows >= 6, f"{rows} channels in spy's table"
+        await_channels(display, table, 6)
+        time.sleep(2)  # spy counts rates once a second
+        display.photograph(table).save(out / "spy.png")
         frames = open_viewer(display, spy, "OPENNI_FRAME")
         check_frames(display, frames, out)
         detections = open_viewer(display, spy, "HOUGHSTREAM_DETECTIONS")
@@ -135,7 +144,7 @@ def check_view(tools, data, logs, display, out):
     try:
         window = display.window("Houghstream")
         await_overlay(display, window, COLOUR_SIZE)
-        time.sleep(10)  # for a chart with something in it
+        time.sleep(5)  # for a chart with something in it
         await_overlay(display, window, COLOUR_SIZE).save(out / "view.png")
         width = display.geometry(window)[2]
         display.do("windowfocus", window)
