@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "pipeline/channels.hpp"
+#include "pipeline/host_clock.hpp"
 #include "pipeline/percentiles.hpp"
 
 namespace houghstream {
@@ -74,9 +75,7 @@ status_t StatusReporter::message() const {
   for (const Finished& finished : recent_) latencies.push_back(finished.latency_ms);
   const Percentiles latency = percentiles(std::move(latencies));
   status_t status{};
-  status.utime =
-      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-          .count();
+  status.utime = utime_now();
   status.process = process_;
   status.pid = static_cast<std::int32_t>(getpid());
   status.rate_hz = static_cast<float>(last_second);

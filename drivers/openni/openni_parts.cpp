@@ -1,9 +1,9 @@
 #include "drivers/openni/openni_parts.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/host_clock.hpp"
 
 namespace houghstream {
 namespace {
@@ -55,11 +55,6 @@ OpenniLibrary::~OpenniLibrary() {
   openni::OpenNI::shutdown();
 }
 
-std::int64_t host_now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
-
 void check_openni(openni::Status status, const std::string& what) {
   require(status == openni::STATUS_OK, "{}: {}", what, openni_error());
 }
@@ -107,7 +102,7 @@ std::string serial_of(const openni::Device& device) {
 std::optional<SensorImage> read_image(openni::VideoStream& stream, Sensor sensor) {
   openni::VideoFrameRef frame;
   if (stream.readFrame(&frame) != openni::STATUS_OK || !frame.isValid()) return std::nullopt;
-  return SensorImage{sensor, frame.getTimestamp(), host_now_us(), frame.getFrameIndex(), picture_of(frame, sensor)};
+  return SensorImage{sensor, frame.getTimestamp(), utime_now(), frame.getFrameIndex(), picture_of(frame, sensor)};
 }
 
 }  // namespace houghstream

@@ -23,9 +23,6 @@ class OpenniLibrary {
   OpenniLibrary& operator=(const OpenniLibrary&) = delete;
 };
 
-/// The host's clock, microseconds since the epoch.
-std::int64_t host_now_us();
-
 /// Throws InputError with OpenNI2's reason unless the status is ok.
 void check_openni(openni::Status status, const std::string& what);
 

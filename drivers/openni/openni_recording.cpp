@@ -10,6 +10,7 @@
 #include "drivers/openni/openni_device.hpp"
 #include "drivers/openni/openni_parts.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/host_clock.hpp"
 
 namespace houghstream {
 namespace {
@@ -48,7 +49,7 @@ OpenniRecording::OpenniRecording(std::string file, bool jpeg, openni::VideoStrea
 }
 
 void OpenniRecording::start() {
-  started_us_ = host_now_us();
+  started_us_ = utime_now();
   check_openni(recorder_.start(), file_ + ": recording");
 }
 

@@ -7,12 +7,13 @@
 #include <cstring>
 #include <fstream>
 
+#include "pipeline/host_clock.hpp"
+
 namespace houghstream {
 namespace {
 
 using std::chrono::duration;
 using std::chrono::duration_cast;
-using std::chrono::microseconds;
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
@@ -33,9 +34,7 @@ std::chrono::steady_clock::duration milliseconds_of(double ms) {
 /// lets this thread run later.
 void note_shutter(const CameraScript& script, int number, std::uint64_t device_us, SteadyTime shutter) {
   if (script.shutter_file.empty()) return;
-  const auto host = std::chrono::system_clock::now().time_since_epoch() - (SteadyTime::clock::now() - shutter);
-  std::ofstream(script.shutter_file, std::ios::app)
-      << number << ' ' << device_us << ' ' << duration_cast<microseconds>(host).count() << '\n';
+  std::ofstream(script.shutter_file, std::ios::app) << number << ' ' << device_us << ' ' << utime_of(shutter) << '\n';
 }
 
 }  // namespace

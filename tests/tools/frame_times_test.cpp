@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/host_clock.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -34,13 +36,9 @@ status_t detector_status(std::int64_t received, std::int64_t processed, std::int
 TEST(FrameTimes, TheStartIsOnTheClockOfUtimes) {
   FrameTimes times;
   EXPECT_TRUE(times.summary(std::nullopt)["start_utime"].is_null());
-  const auto epoch_us = [] {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-  };
-  const std::int64_t before = epoch_us();
+  const std::int64_t before = utime_now();
   times.note_frame(1, FrameTimes::Time::clock::now());
-  const std::int64_t after = epoch_us();
+  const std::int64_t after = utime_now();
   const std::int64_t start = times.summary(std::nullopt)["start_utime"];
   EXPECT_GE(start, before - 100000);
   EXPECT_LE(start, after + 100000);

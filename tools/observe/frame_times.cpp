@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/host_clock.hpp"
 #include "pipeline/percentiles.hpp"
 #include "tools/common/rounded.hpp"
 
@@ -40,12 +41,8 @@ json to_json(const status_t& status) {
           {"last_error", status.last_error}};
 }
 
-/// The same moment on the clock that counts since the epoch, microseconds.
-json utime_of(const std::optional<FrameTimes::Time>& time) {
-  if (!time) return nullptr;
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const auto then = now - (FrameTimes::Time::clock::now() - *time);
-  return std::chrono::duration_cast<std::chrono::microseconds>(then).count();
+json utime_if_any(const std::optional<FrameTimes::Time>& time) {
+  return time ? json(utime_of(*time)) : json(nullptr);
 }
 
 }  // namespace
@@ -133,7 +130,7 @@ json FrameTimes::account(std::int64_t sent) const {
 json FrameTimes::summary(const std::optional<std::int64_t>& sent) const {
   json processes = json::object();
   for (const auto& [name, status] : processes_) processes[name] = to_json(status);
-  return {{"start_utime", utime_of(start())},
+  return {{"start_utime", utime_if_any(start())},
           {"frames_sent", sent ? json(*sent) : json(nullptr)},
           {"frames_received", count(&Row::frame)},
           {"frames_detected", count(&Row::detections)},
