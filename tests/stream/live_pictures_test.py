@@ -22,6 +22,13 @@ COLOUR_SIZE = (640, 480)  # of the scene's frames
 AWAY = 3000  # where windows are put that are done with
 
 
+def wait_until(condition, complaint, seconds=60):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, complaint
+        time.sleep(0.2)
+
+
 def overlay_pixels(picture):
     """Pixels in the colours of boxes, and in the rarest colour of the axes."""
     boxes = sum(picture.count(colour) for colour in BOX_COLOURS.values())
@@ -52,15 +59,9 @@ def written(picture, row):
     return picture.cut(2, row_of_table(row) - 6, 120, 12).count((51, 51, 51)) > 20  # the colour of its text
 
 
-def await_channels(display, table, wanted, seconds=60):
-    end = time.monotonic() + seconds
-    while True:
-        picture = display.photograph(table)
-        rows = sum(written(picture, row) for row in range(1, 20))
-        if rows >= wanted:
-            return
-        assert time.monotonic() < end, f"{rows} channels in spy's table"
-        time.sleep(0.3)
+def rows_of(picture):
+    """How many rows of spy's table are written."""
+    return sum(written(picture, row) for row in range(1, 20))
 
 
 def open_viewer(display, spy, channel):
@@ -94,7 +95,7 @@ def check_spy(tools, logs, display, out):
     spy = Process(logs, tools / "hs-spy")
     try:
         table = display.window("LCM Spy")
-        await_channels(display, table, 6)
+        wait_until(lambda: rows_of(display.photograph(table)) >= 6, "fewer than 6 channels in spy's table")
         time.sleep(2)  # spy counts rates once a second
         display.photograph(table).save(out / "spy.png")
         frames = open_viewer(display, spy, "OPENNI_FRAME")
@@ -106,9 +107,7 @@ def check_spy(tools, logs, display, out):
         await_overlay(display, detections)
         display.do("windowmove", detections, AWAY, AWAY)
         preview = open_viewer(display, spy, "HOUGHSTREAM_PREVIEW")
-        end = time.monotonic() + 60
-        while display.photograph(preview).colours() < 5000:
-            assert time.monotonic() < end, "the preview shows nothing"
+        wait_until(lambda: display.photograph(preview).colours() >= 5000, "the preview shows nothing")
         display.photograph(preview).save(out / "spy_preview.png")
         assert spy.process.poll() is None and "Exception" not in spy.log.read_text(), spy.log.read_text()
     finally:
@@ -168,13 +167,10 @@ def check_saving(display, window):
     assert size == display.geometry(window)[2:], (size, display.geometry(window))
 
 
-def press(display, key, condition, complaint, seconds=60):
+def press(display, key, condition, complaint):
     """Presses a key once and waits for what it does."""
     display.do("key", key)
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, complaint
-        time.sleep(0.2)
+    wait_until(condition, complaint)
 
 
 def is_still(display, window):
