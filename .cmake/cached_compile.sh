@@ -1,5 +1,5 @@
 #!/bin/sh
-# Compiles through ccache: cached_compile.sh COMPILER ARGUMENTS...
+# Compiles through ccache: cached_compile.sh CCACHE COMPILER ARGUMENTS...
 # A precompiled header has 150 MB, which ccache would read again for each source that includes it, a tenth of the build
 # time: its checksum is left beside it, where ccache looks for one.
 export CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_PCH_EXTSUM=true
@@ -7,6 +7,6 @@ header=
 for word in "$@"; do
   case $word in *.gch) header=$word ;; esac
 done
-if [ -z "$header" ]; then exec ccache "$@"; fi
+if [ -z "$header" ]; then exec "$@"; fi
 rm -f "$header.sum"
-ccache "$@" && sha256sum <"$header" >"$header.sum"
+"$@" && sha256sum <"$header" >"$header.sum"

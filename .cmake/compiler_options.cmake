@@ -12,7 +12,7 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER sh "${CMAKE_SOURCE_DIR}/.cmake/cached_compile.sh")
+  set(CMAKE_CXX_COMPILER_LAUNCHER sh "${CMAKE_SOURCE_DIR}/.cmake/cached_compile.sh" "${CCACHE_PROGRAM}")
 endif()
 
 set(HOUGHSTREAM_SUMMARY "" CACHE INTERNAL "")
