@@ -47,7 +47,7 @@ function(houghstream_compile_options target)
   endif()
 endfunction()
 
-# Mains and tests hold no hot code of their own; optimising CLI11 and GoogleTest takes a quarter of their build time.
+# Tests hold no hot code of their own; optimising GoogleTest takes a quarter of their build time.
 function(houghstream_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
@@ -94,10 +94,8 @@ function(houghstream_executable name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
-  target_compile_definitions(${name} PRIVATE HOUGHSTREAM_VERSION="${PROJECT_VERSION}")
   houghstream_compile_options(${name})
-  houghstream_compile_quickly(${name})
-  houghstream_use_shared_headers(${name} main_headers)
+  houghstream_use_shared_headers(${name} library_headers)
 endfunction()
 
 # For the environment of tests: what libraries never free is not looked for.

@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -7,6 +5,7 @@
 #include "drivers/bop_dataset.hpp"
 #include "drivers/object_pixels.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/parallel.hpp"
 
 namespace houghstream {
@@ -63,7 +62,7 @@ std::optional<TrainingView> read_view(const BopScene& scene, std::size_t index,
   }
   TrainingView view = object_view(scene, index, names);
   if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
-    spdlog::warn("{}: empty mask, or no depth on the object; view left out", view.source);
+    log_warning("{}: empty mask, or no depth on the object; view left out", view.source);
     return std::nullopt;
   }
   crop_around_mask(view);

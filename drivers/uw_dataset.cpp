@@ -1,7 +1,5 @@
 #include "drivers/uw_dataset.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +14,7 @@
 #include "drivers/natural_order.hpp"
 #include "drivers/turntable.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -158,7 +157,7 @@ void append_instance(const Instance& instance, const Camera& camera, std::vector
   for (const ViewName& name : list_views(instance)) {
     TrainingView view = read_view(instance, name, camera);
     if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
-      spdlog::warn("{}: empty mask, or no depth on the object; view left out", view.source);
+      log_warning("{}: empty mask, or no depth on the object; view left out", view.source);
       continue;
     }
     videos[name.video].first.push_back(name);

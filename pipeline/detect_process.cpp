@@ -1,9 +1,8 @@
 #include "pipeline/detect_process.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "pipeline/channels.hpp"
 #include "pipeline/latest_slot.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/messages.hpp"
 #include "pipeline/process_loop.hpp"
 
@@ -42,7 +41,7 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   StatusReporter status(options.process);
   LatestSlot<EncodedFrame> newest;
   bus.subscribe(options.frame_channel, [&](const Arrival& arrival) { receive_frame(arrival, status, newest); });
-  spdlog::info("ready: frames from {} at {}", options.frame_channel, bus.url());
+  log_info("ready: frames from {} at {}", options.frame_channel, bus.url());
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
     const std::optional<EncodedFrame> encoded = newest.take(timeout);
     if (!encoded) return false;

@@ -1,7 +1,6 @@
 #include "pipeline/lcm_bus.hpp"
 
 #include <lcm/lcm.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +11,7 @@
 
 #include "pipeline/checks.hpp"
 #include "pipeline/event_log.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/receive_buffer.hpp"
 #include "pipeline/stop_signal.hpp"
 
@@ -42,7 +42,7 @@ void call_handler(const Subscription& subscription, const std::string& channel, 
   try {
     subscription.handler({channel, bytes, std::chrono::steady_clock::now()});
   } catch (const std::exception& error) {
-    spdlog::error("message on {} dropped: {}", channel, error.what());
+    log_error("message on {} dropped: {}", channel, error.what());
   }
 }
 
@@ -81,7 +81,7 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(s
   require(state_->lcm != nullptr, "LCM cannot be opened at {}; is there a multicast route?", state_->url);
   if (state_->url.rfind("udpm://", 0) == 0) {
     const std::string advice = receive_buffer_advice(granted_receive_buffer(kAskedReceiveBuffer));
-    if (!advice.empty()) spdlog::warn("{}", advice);
+    if (!advice.empty()) log_warning("{}", advice);
   }
 }
 

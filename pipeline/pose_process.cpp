@@ -1,8 +1,7 @@
 #include "pipeline/pose_process.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "pipeline/channels.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/messages.hpp"
 #include "pipeline/pair_inbox.hpp"
 #include "pipeline/process_loop.hpp"
@@ -99,8 +98,7 @@ void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const Esti
   PairInbox inbox(!bus.is_log());
   bus.subscribe(options.frame_channel, [&](const Arrival& arrival) { receive_frame(arrival, status, inbox); });
   bus.subscribe(channel::kDetections, [&](const Arrival& arrival) { receive_detections(arrival, status, inbox); });
-  spdlog::info("ready: frames from {}, detections from {} at {}", options.frame_channel, channel::kDetections,
-               bus.url());
+  log_info("ready: frames from {}, detections from {} at {}", options.frame_channel, channel::kDetections, bus.url());
   std::optional<DecodedFrame> ahead;
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
     const std::optional<FramePair> pair = inbox.take(timeout);

@@ -1,12 +1,11 @@
 #include "pipeline/process_loop.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <atomic>
 #include <exception>
 #include <thread>
 
 #include "pipeline/channels.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/stop_signal.hpp"
 
 namespace houghstream {
@@ -86,7 +85,7 @@ void end_process(LcmBus& bus, const StatusReporter& status) {
   } else {
     bus.publish(channel::kStatus, status.message());
   }
-  spdlog::info("ends: {}", status.summary());
+  log_info("ends: {}", status.summary());
 }
 
 }  // namespace houghstream

@@ -1,12 +1,12 @@
 #include "pipeline/status_reporter.hpp"
 
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
 
 #include "pipeline/channels.hpp"
 #include "pipeline/host_clock.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/percentiles.hpp"
 
 namespace houghstream {
@@ -58,7 +58,7 @@ void StatusReporter::note_error(const std::string& reason) {
   const Clock::time_point now = Clock::now();
   if (last_complaint_ && now - *last_complaint_ < kPeriod) return;
   last_complaint_ = now;
-  spdlog::warn("{} ({} refused so far)", reason, refused_);
+  log_warning("{} ({} refused so far)", reason, refused_);
 }
 
 void StatusReporter::remember_error(const std::string& reason) {

@@ -1,7 +1,5 @@
 #include "drivers/openni/camera_info.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -49,8 +48,8 @@ Camera read_camera_info(const std::filesystem::path& file) {
   check_camera(camera, file.string());
   for (const double coefficient : numbers_of(yaml["distortion_coefficients"]["data"])) {
     if (std::abs(coefficient) < 1e-9) continue;
-    spdlog::warn("{}: its distortion is not corrected; boxes and poses near the image's edge may be a little off",
-                 file.string());
+    log_warning("{}: its distortion is not corrected; boxes and poses near the image's edge may be a little off",
+                file.string());
     break;
   }
   return camera;

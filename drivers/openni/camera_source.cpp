@@ -1,7 +1,5 @@
 #include "drivers/openni/camera_source.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <thread>
@@ -9,6 +7,7 @@
 
 #include "drivers/openni/device_clock.hpp"
 #include "drivers/openni/frame_of_pair.hpp"
+#include "pipeline/log_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -32,7 +31,7 @@ class CameraSource : public FrameSource {
         openni_(keep_openni_running()),
         pairing_(pairing_tolerance_us(options_.mode)) {
     open();
-    spdlog::info("{}: {}", uri_, mode_text(options_.mode));
+    log_info("{}: {}", uri_, mode_text(options_.mode));
   }
 
   std::optional<RgbdFrame> next() override {
@@ -55,7 +54,7 @@ class CameraSource : public FrameSource {
   bool stop_requested() const { return listener_.stop_requested && listener_.stop_requested(); }
 
   void tell(const std::string& reason) const {
-    spdlog::warn("{}", reason);
+    log_warning("{}", reason);
     if (listener_.trouble) listener_.trouble(reason);
   }
 
@@ -91,7 +90,7 @@ class CameraSource : public FrameSource {
       open();
       return true;
     } catch (const InputError& error) {
-      spdlog::debug("{}", error.what());
+      log_debug("{}", error.what());
     }
     std::this_thread::sleep_for(kGlance);
     return false;
@@ -101,7 +100,7 @@ class CameraSource : public FrameSource {
     if (listener_.depth_number) listener_.depth_number(pair.depth.number);
     if (!std::exchange(told_distance_, true)) {
       const double apart_us = static_cast<double>(pair.colour.device_us) - static_cast<double>(pair.depth.device_us);
-      spdlog::info("{}: colour is taken {:.1f} ms after depth", uri_, 1e-3 * apart_us);
+      log_info("{}: colour is taken {:.1f} ms after depth", uri_, 1e-3 * apart_us);
     }
     last_frame_ = Clock::now();
     if (gone_since_) {

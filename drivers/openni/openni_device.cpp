@@ -1,7 +1,5 @@
 #include "drivers/openni/openni_device.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <thread>
@@ -10,6 +8,7 @@
 #include "drivers/openni/openni_parts.hpp"
 #include "drivers/openni/openni_recording.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -108,7 +107,7 @@ struct OpenniDevice::State {
                      settings->setAutoExposureEnabled(options.auto_exposure) == openni::STATUS_OK &&
                      settings->setAutoWhiteBalanceEnabled(options.auto_white_balance) == openni::STATUS_OK;
     const bool asked = !options.auto_exposure || !options.auto_white_balance;
-    if (asked && !set) spdlog::warn("{}: exposure and white balance cannot be set", uri);
+    if (asked && !set) log_warning("{}: exposure and white balance cannot be set", uri);
   }
 
   /// Some drivers take it before the streams run, some only afterwards.

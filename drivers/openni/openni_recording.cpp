@@ -1,7 +1,5 @@
 #include "drivers/openni/openni_recording.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -11,6 +9,7 @@
 #include "drivers/openni/openni_parts.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/host_clock.hpp"
+#include "pipeline/log_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -67,7 +66,7 @@ void OpenniRecording::mend_times() noexcept {
     const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
     if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
   } catch (const std::exception& error) {
-    spdlog::warn("{}; in the recording colour may lie beside its depth", error.what());
+    log_warning("{}; in the recording colour may lie beside its depth", error.what());
   }
 }
 

@@ -12,10 +12,10 @@ namespace {
 
 /// What the command line makes of the words.
 SourceOptions parsed(const std::vector<std::string>& words) {
-  CLI::App app;
+  CommandLine line("words", "name");
   SourceOptions options;
-  add_source_options(app, options);
-  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  add_source_options(line, options);
+  EXPECT_EQ(line.parse(words), std::nullopt);
   return options;
 }
 

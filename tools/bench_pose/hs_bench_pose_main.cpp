@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <pcl/console/print.h>
-#include <spdlog/spdlog.h>
 
 #include <opencv2/core/utility.hpp>
 #include <set>
@@ -8,6 +7,7 @@
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "tools/bench_pose/bench_report.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
@@ -56,7 +56,7 @@ std::string name_of(const std::string& scene_folder) {
 DetectedScene detect_scene(const std::string& name, const BopScene& scene, const Detector& detector, int every) {
   DetectedScene out{name, scene, every_nth(read_truth(scene, find_bop_names(scene.folder())), every)};
   for (EvaluatedFrame& frame : out.frames) frame.detections = detector.detect(scene.read_frame(frame.image));
-  spdlog::info("{}: {} frames", name, out.frames.size());
+  log_info("{}: {} frames", name, out.frames.size());
   return out;
 }
 
@@ -97,22 +97,20 @@ void run(const BenchOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures poses on rendered scenes: ours, PCL's ICP from the same starts, and two other methods",
-               "hs-bench-pose");
+  CommandLine app("Measures poses on rendered scenes: ours, PCL's ICP from the same starts, and two other methods",
+                  "hs-bench-pose");
   BenchOptions options;
   options.search.threshold = PoseSettings{}.min_score;
-  app.add_option("--forest", options.forest, "forest file")->required();
-  app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times")->required();
+  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
   app.add_option("--models", options.models, "models/ of a BOP dataset; default: that of each scene");
-  app.add_option("--out", options.out, "folder for results.json, poses.csv and worst_N.png")->required();
-  app.add_option("--every", options.every, "look at every Nth frame only")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  app.add_option("--out", options.out, "folder for results.json, poses.csv and worst_N.png").required();
+  app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--rivals-every", options.rivals_every, "of those, the rivals look at every Mth; they are slow")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+      .range(1, 100000)
+      .capture_default_str();
   app.add_flag("--no-rivals", options.no_rivals, "leave the rivals out");
   add_search_options(app, options.search);
-  app.get_option("--threshold")->description("smallest score of a detection that is tried; default: 0.1");
+  app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

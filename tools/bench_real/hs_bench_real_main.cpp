@@ -69,22 +69,22 @@ void run(const BenchOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Estimates poses in recorded frames, compares one object's with reference poses and draws all",
-               "hs-bench-real");
+  CommandLine app("Estimates poses in recorded frames, compares one object's with reference poses and draws all",
+                  "hs-bench-real");
   BenchOptions options;
   app.add_option("--scenes", options.scenes, "folder of FRAME_color.png with FRAME_depth.png, and boxes.json")
-      ->required();
-  app.add_option("--forest", options.forest, "forest file")->required();
+      .required();
+  app.add_option("--forest", options.forest, "forest file").required();
   add_model_options(app, options.models, options.model_unit_m);
-  app.get_option("--models")->required();
+  app.get_option("--models").required();
   app.add_option("--object", options.object, "class whose poses are compared; --models needs its fused model")
-      ->capture_default_str();
-  app.add_option("--scan", options.scan, "its scanned mesh, millimetres, the frame of the reference poses")->required();
+      .capture_default_str();
+  app.add_option("--scan", options.scan, "its scanned mesh, millimetres, the frame of the reference poses").required();
   app.add_option("--base-mm", options.base_mm, "what of the scan is lower above its base is dropped")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--references", options.references, "JSON with its reference poses")->required();
-  app.add_option("--out", options.out, "folder for poses.json, sheet_N.png and a picture of the scan")->required();
+      .non_negative()
+      .capture_default_str();
+  app.add_option("--references", options.references, "JSON with its reference poses").required();
+  app.add_option("--out", options.out, "folder for poses.json, sheet_N.png and a picture of the scan").required();
   add_search_options(app, options.search);
   return run_tool(app, argc, argv, [&] { run(options); });
 }

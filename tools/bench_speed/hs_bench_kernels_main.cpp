@@ -10,12 +10,12 @@
 int main(int argc, char** argv) {
   using namespace houghstream;
   benchmark::Initialize(&argc, argv);  // takes its own options, --benchmark_*, away
-  CLI::App app("Google Benchmarks of what a frame goes through, on one thread; takes --benchmark_* too",
-               "hs-bench-kernels");
+  CommandLine app("Google Benchmarks of what a frame goes through, on one thread; takes --benchmark_* too",
+                  "hs-bench-kernels");
   std::string scene_folder;
   std::string forest_file;
-  app.add_option("--scene", scene_folder, "BOP scene folder, whose first frame is looked at")->required();
-  app.add_option("--forest", forest_file, "depth-normalised forest")->required();
+  app.add_option("--scene", scene_folder, "BOP scene folder, whose first frame is looked at").required();
+  app.add_option("--forest", forest_file, "depth-normalised forest").required();
   return run_tool(app, argc, argv, [&] {
     const Forest forest = load_forest(forest_file);
     require(forest.features.handling == ScaleHandling::kDepthNormalised,

@@ -1,5 +1,4 @@
 #include <hwy/targets.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <fstream>
@@ -7,6 +6,7 @@
 
 #include "drivers/bop_dataset.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "tools/bench_speed/speed_bench.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/rivals/linemod_detector.hpp"
@@ -31,7 +31,7 @@ struct SpeedOptions {
 Contender make_linemod(const SpeedOptions& options) {
   const std::vector<TrainingView> views = read_training_sources(options.linemod_views);
   const auto linemod = std::make_shared<const LinemodDetector>(views, options.linemod, LinemodSelection{});
-  spdlog::info("LINEMOD: {} templates", linemod->training().templates);
+  log_info("LINEMOD: {} templates", linemod->training().templates);
   Contender contender;
   contender.name = "linemod";
   contender.frames = options.linemod_frames;
@@ -62,19 +62,17 @@ void run(const SpeedOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures what detectors take for the frames of a scene, side by side", "hs-bench-speed");
+  CommandLine app("Measures what detectors take for the frames of a scene, side by side", "hs-bench-speed");
   SpeedOptions options;
   app.add_option("--scene", options.scene, "BOP scene folder");
-  app.add_option("--every", options.every, "look at every Nth frame only")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--detector", options.detectors,
                  "NAME=FOREST[,threads=N][,readable][,set=AVX2][,frames=N][,trees=N][,scale=X]; may be given again");
   app.add_option("--linemod-views", options.linemod_views.views, "measure LINEMOD taught by these views: bop:DIR");
   app.add_option("--linemod-frames", options.linemod_frames, "so many frames only");
-  app.add_option("--min-distance", options.linemod.min_distance, "LINEMOD's nearest, metres")->capture_default_str();
-  app.add_option("--max-distance", options.linemod.max_distance, "LINEMOD's farthest, metres")->capture_default_str();
-  app.add_option("--linemod-threads", options.linemod.threads)->capture_default_str();
+  app.add_option("--min-distance", options.linemod.min_distance, "LINEMOD's nearest, metres").capture_default_str();
+  app.add_option("--max-distance", options.linemod.max_distance, "LINEMOD's farthest, metres").capture_default_str();
+  app.add_option("--linemod-threads", options.linemod.threads).capture_default_str();
   app.add_option("--out", options.out, "JSON file to write");
   app.add_flag("--instruction-sets", options.list_sets, "list those that this processor has, and end");
   return run_tool(app, argc, argv, [&] { options.list_sets ? list_instruction_sets() : run(options); });

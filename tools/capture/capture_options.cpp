@@ -29,14 +29,14 @@ CameraOptions camera_options(const SourceOptions& options) {
 
 }  // namespace
 
-void add_source_options(CLI::App& app, SourceOptions& options) {
+void add_source_options(CommandLine& app, SourceOptions& options) {
   app.add_option("--source", options.source,
                  "openni2[:CAMERA] (CAMERA is a URI, #1, #2, ... or a serial number; default: the first), oni:FILE, "
                  "bop:DIR, uw:DIR, tum:DIR or render:NAME");
   app.add_option("--camera", options.camera,
                  "openni2, oni: intrinsics, a ROS camera_info YAML file or WIDTHxHEIGHT,fx,fy,cx,cy; default: from the "
                  "field of view that the device states");
-  app.add_option("--mode", options.mode, "openni2: size and rate, WIDTHxHEIGHT@RATE")->capture_default_str();
+  app.add_option("--mode", options.mode, "openni2: size and rate, WIDTHxHEIGHT@RATE").capture_default_str();
   app.add_flag("--no-auto-exposure", options.fixed_exposure, "openni2: leave the exposure as it is");
   app.add_flag("--no-auto-white-balance", options.fixed_white_balance, "openni2: leave the white balance as it is");
   app.add_flag("--assume-registered", options.live.assume_registered,

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_options.hpp"
+#include "tools/common/command_line.hpp"
 
 namespace houghstream {
 
@@ -19,7 +19,7 @@ struct SourceOptions {
   bool fixed_white_balance = false;
 };
 
-void add_source_options(CLI::App& app, SourceOptions& options);
+void add_source_options(CommandLine& app, SourceOptions& options);
 
 /// Opens openni2[:CAMERA], oni:FILE, or what open_frame_source() knows. Throws InputError, also for an option that the
 /// source cannot heed.

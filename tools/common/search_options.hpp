@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "detector/profiles.hpp"
+#include "tools/common/command_line.hpp"
 
 namespace houghstream {
 
@@ -27,12 +27,12 @@ struct SearchOptions {
   }
 };
 
-inline void add_search_options(CLI::App& app, SearchOptions& options) {
-  app.add_option("--threads", options.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
+inline void add_search_options(CommandLine& app, SearchOptions& options) {
+  app.add_option("--threads", options.threads, "threads").range(1, 64).capture_default_str();
   app.add_option("--threshold", options.threshold, "smallest score that is reported; default: the profile's");
   app.add_option("--stride", options.stride,
                  "patch offset, working pixels, whatever the distance; default: the profile's")
-      ->check(CLI::Range(1, 64));
+      .range(1, 64);
 }
 
 }  // namespace houghstream

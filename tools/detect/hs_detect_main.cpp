@@ -1,25 +1,24 @@
-#include <spdlog/spdlog.h>
-
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/detect_process.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/stop_signal.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 
 int main(int argc, char** argv) {
   using namespace houghstream;
-  CLI::App app("Finds the taught objects in every newest RGB-D frame and publishes detections_t", "hs-detect");
+  CommandLine app("Finds the taught objects in every newest RGB-D frame and publishes detections_t", "hs-detect");
   std::string forest_file;
   std::string camera;
   std::string url;
   std::string output_log;
   SearchOptions search;
   DetectProcessOptions options;
-  app.add_option("--forest", forest_file, "forest file of hs-train")->required();
+  app.add_option("--forest", forest_file, "forest file of hs-train").required();
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   add_search_options(app, search);
-  app.add_option("-c,--channel", options.frame_channel, "channel of the frames")->capture_default_str();
+  app.add_option("-c,--channel", options.frame_channel, "channel of the frames").capture_default_str();
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, url);
 
@@ -30,7 +29,7 @@ int main(int argc, char** argv) {
     const DetectionSettings settings = search.settings_for(forest);
     const Detector detector(std::move(forest), settings);
     for (const ObjectClass& object : detector.forest().classes) {
-      spdlog::debug("class {}: {}", object.class_id, object.name);
+      log_debug("class {}: {}", object.class_id, object.name);
     }
     LcmBus bus(url, output_log);
     run_detect_process(bus, options, [&](const RgbdFrame& frame) { return detector.detect(frame); });

@@ -9,17 +9,17 @@
 
 int main(int argc, char** argv) {
   using namespace houghstream;
-  CLI::App app(
+  CommandLine app(
       "Looks for what would keep the stream from working, and says how to mend it; changes nothing. Fails where the "
       "stream would not work.",
       "hs-doctor");
   ExaminationSettings settings;
   app.add_flag("--live", settings.live, "a camera is needed: without one the stream would not work");
   app.add_option("--width", settings.width, "pixels of a frame, where none is heard on the bus")
-      ->check(CLI::Range(1, 16384))
-      ->capture_default_str();
-  app.add_option("--height", settings.height, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
-  app.add_option("-c,--channel", settings.frame_channel, "channel of the frames")->capture_default_str();
+      .range(1, 16384)
+      .capture_default_str();
+  app.add_option("--height", settings.height, "pixels").range(1, 16384).capture_default_str();
+  app.add_option("-c,--channel", settings.frame_channel, "channel of the frames").capture_default_str();
   add_lcm_url_option(app, settings.lcm_url);
 
   return run_tool(app, argc, argv, [&] {

@@ -1,7 +1,6 @@
 #include "tools/evaluate/bop_results.hpp"
 
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
 #include <charconv>
@@ -11,6 +10,7 @@
 #include <sstream>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -115,7 +115,7 @@ std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames
     }
   }
   for (const std::string& name : unknown)
-    spdlog::warn("{}: poses of '{}' left out, the scene has no id for it", kBopResultsFile, name);
+    log_warning("{}: poses of '{}' left out, the scene has no id for it", kBopResultsFile, name);
   return estimates;
 }
 

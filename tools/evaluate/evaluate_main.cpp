@@ -88,30 +88,28 @@ void run(const EvaluateOptions& options) {
     write_bop_results(bop_estimates(frames, scene, names), std::filesystem::path(options.out) / kBopResultsFile);
 }
 
-void add_options(CLI::App& app, EvaluateOptions& options) {
+void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--scene", options.scene, "BOP scene folder with the truth; without objects, every detection is false")
-      ->required();
+      .required();
   app.add_option("--log", options.log, "LCM log with published results");
   app.add_option("--forest", options.forest, "forest: detects in-process without --log, and names the classes");
   app.add_option("--models", options.models, "models/ of the scene: measures poses (in-process: estimates them)");
   app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")
-      ->delimiter(',');
+      .delimiter(',');
   app.add_option("--latency", options.latency, "hs-observe's CSV");
   app.add_option("--out", options.out,
                  "folder for summary.json, curves.csv, poses.csv, and bop_results.csv where there are poses");
   EvaluationRules& rules = options.rules;
   rules.operating_score = DetectionSettings{}.threshold;  // what hs-detect publishes unless told otherwise
-  app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection")->capture_default_str();
+  app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection").capture_default_str();
   app.add_option("--min-visible", rules.detection.min_visible, "less visible objects are ignored")
-      ->capture_default_str();
+      .capture_default_str();
   app.add_option("--pose-min-visible", rules.pose_min_visible, "less visible objects do not enter the pose recall")
-      ->capture_default_str();
+      .capture_default_str();
   app.add_option("--operating-score", rules.operating_score, "score from which precision and false detections count")
-      ->capture_default_str();
+      .capture_default_str();
   app.add_flag("--processed-only", rules.processed_only, "leave skipped frames out; default: they count as missed");
-  app.add_option("--every", options.every, "look at every Nth frame only")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
   app.add_option("--min-mass", options.search.min_mass_share,
                  "in-process: vote mass, over a whole object's, from which a maximum counts; default: the profile's");
@@ -121,7 +119,7 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Compares detections and poses with the truth of a scene", "hs-evaluate");
+  CommandLine app("Compares detections and poses with the truth of a scene", "hs-evaluate");
   EvaluateOptions options;
   add_options(app, options);
   return houghstream::run_tool(app, argc, argv, [&] { run(options); });

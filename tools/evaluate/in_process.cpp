@@ -1,8 +1,7 @@
 #include "tools/evaluate/in_process.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "detector/detector.hpp"
+#include "pipeline/log_line.hpp"
 #include "pose/pose_estimator.hpp"
 
 namespace houghstream {
@@ -18,8 +17,8 @@ PublishedResults run_in_process(const BopScene& scene, Forest forest, const Dete
     const RgbdFrame frame = scene.read_frame(i);
     results.detections.push_back(detector.detect(frame));
     if (!models.empty()) results.poses.push_back(estimator.estimate(frame, results.detections.back()));
-    spdlog::debug("frame {} of {}: {} detections", i + 1, scene.images().size(),
-                  results.detections.back().detections.size());
+    log_debug("frame {} of {}: {} detections", i + 1, scene.images().size(),
+              results.detections.back().detections.size());
   }
   return results;
 }

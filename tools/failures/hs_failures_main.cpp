@@ -59,18 +59,17 @@ void run(const FailureOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Shows the gravest failures of a forest in scenes: false detections and missed objects", "hs-failures");
+  CommandLine app("Shows the gravest failures of a forest in scenes: false detections and missed objects",
+                  "hs-failures");
   FailureOptions options;
-  app.add_option("--forest", options.forest, "forest file")->required();
-  app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times")->required();
-  app.add_option("--out", options.out, "picture to write, PNG")->required();
-  app.add_option("--count", options.count, "failures of each scene")->check(CLI::Range(1, 100))->capture_default_str();
-  app.add_option("--columns", options.columns, "pictures in a row")->check(CLI::Range(1, 20))->capture_default_str();
-  app.add_option("--every", options.every, "look at every Nth frame only")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
+  app.add_option("--out", options.out, "picture to write, PNG").required();
+  app.add_option("--count", options.count, "failures of each scene").range(1, 100).capture_default_str();
+  app.add_option("--columns", options.columns, "pictures in a row").range(1, 20).capture_default_str();
+  app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--operating-score", options.operating_score, "score from which a detection counts")
-      ->capture_default_str();
+      .capture_default_str();
   add_search_options(app, options.search);
   return houghstream::run_tool(app, argc, argv, [&] { run(options); });
 }

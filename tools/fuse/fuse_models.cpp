@@ -1,13 +1,13 @@
 #include "tools/fuse/fuse_models.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
 #include "drivers/bop_writer.hpp"
 #include "drivers/image_file.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "tools/fuse/model_picture.hpp"
 
 namespace houghstream {
@@ -53,8 +53,8 @@ void fuse_models(const std::vector<ObjectViews>& objects, FusionSettings setting
   std::vector<NamedModel> models;
   for (const ObjectViews& object : objects) {
     if (!object.unused.empty()) {
-      spdlog::warn("{}: fused from {} only, a model has one frame; left out: {}", object.class_name,
-                   object.views.front().object_frame, fmt::join(object.unused, ", "));
+      log_warning("{}: fused from {} only, a model has one frame; left out: {}", object.class_name,
+                  object.views.front().object_frame, fmt::join(object.unused, ", "));
     }
     settings.align = !object.exact_poses;
     FusedModel model = fuse_views(object.class_name, object.views, settings);

@@ -72,13 +72,13 @@ void run(const HoughOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Draws the votes for each class over a frame of a scene, with what was found and what is true",
-               "hs-hough");
+  CommandLine app("Draws the votes for each class over a frame of a scene, with what was found and what is true",
+                  "hs-hough");
   HoughOptions options;
-  app.add_option("--forest", options.forest, "forest file")->required();
-  app.add_option("--scene", options.scene, "BOP scene folder with the truth")->required();
-  app.add_option("--frame", options.frame, "position in the scene, from 0")->required();
-  app.add_option("--out", options.out, "picture to write, PNG")->required();
+  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--scene", options.scene, "BOP scene folder with the truth").required();
+  app.add_option("--frame", options.frame, "position in the scene, from 0").required();
+  app.add_option("--out", options.out, "picture to write, PNG").required();
   add_search_options(app, options.search);
   return houghstream::run_tool(app, argc, argv, [&] { run(options); });
 }

@@ -1,10 +1,9 @@
-#include <spdlog/spdlog.h>
-
 #include <fstream>
 
 #include "pipeline/channels.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/lcm_bus.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/stop_signal.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/observe/frame_times.hpp"
@@ -47,7 +46,7 @@ void observe(const ObserveOptions& options) {
   stamp(channel::kDetections, &FrameTimes::note_detections);
   stamp(channel::kPoses, &FrameTimes::note_poses);
   bus.subscribe(channel::kStatus, [&](const Arrival& a) { times.note_status(decode_message<status_t>(a.bytes)); });
-  spdlog::info("ready: at {}", bus.url());
+  log_info("ready: at {}", bus.url());
 
   const Clock::time_point start = Clock::now();
   const auto since = [](Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); };
@@ -67,14 +66,14 @@ void observe(const ObserveOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Stamps the arrival of frames, detections and poses on the bus, and adds up", "hs-observe");
+  CommandLine app("Stamps the arrival of frames, detections and poses on the bus, and adds up", "hs-observe");
   ObserveOptions options;
   app.add_option("--out", options.out, "write the summary to this JSON file instead of stdout");
   app.add_option("--csv", options.csv, "write one row for each frame to this file");
   app.add_option("--duration", options.duration_s, "end after this many seconds; default: at a stop signal");
   app.add_option("--expect", options.expect, "frames that are sent; end when they have come and the bus is quiet");
-  app.add_option("--quiet", options.quiet_s, "how long quiet is, seconds")->capture_default_str();
-  app.add_option("-c,--channel", options.frame_channel, "channel of the frames")->capture_default_str();
+  app.add_option("--quiet", options.quiet_s, "how long quiet is, seconds").capture_default_str();
+  app.add_option("-c,--channel", options.frame_channel, "channel of the frames").capture_default_str();
   houghstream::add_lcm_url_option(app, options.url);
   return houghstream::run_tool(app, argc, argv, [&] { observe(options); });
 }

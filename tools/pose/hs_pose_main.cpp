@@ -1,6 +1,5 @@
-#include <spdlog/spdlog.h>
-
 #include "drivers/bop_dataset.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/pose_process.hpp"
 #include "pipeline/stop_signal.hpp"
 #include "pose/pose_estimator.hpp"
@@ -11,7 +10,7 @@ namespace {
 /// Meshes by class name; without a folder every detection is answered with "no model".
 std::map<std::string, houghstream::Mesh> load_models(const std::string& folder, double unit_m) {
   if (folder.empty()) {
-    spdlog::warn("no --models: detections are answered without a pose");
+    houghstream::log_warning("no --models: detections are answered without a pose");
     return {};
   }
   return houghstream::load_class_models(folder, unit_m);
@@ -21,7 +20,7 @@ std::map<std::string, houghstream::Mesh> load_models(const std::string& folder, 
 
 int main(int argc, char** argv) {
   using namespace houghstream;
-  CLI::App app("Refines detections to 6-DoF poses and publishes object_poses_t", "hs-pose");
+  CommandLine app("Refines detections to 6-DoF poses and publishes object_poses_t", "hs-pose");
   std::string models;
   double model_unit_m = 1e-3;
   std::string camera;
@@ -31,11 +30,11 @@ int main(int argc, char** argv) {
   PoseProcessOptions options;
   add_model_options(app, models, model_unit_m);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
-  app.add_option("--threads", settings.threads, "threads")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--threads", settings.threads, "threads").range(1, 64).capture_default_str();
   app.add_option("--min-score", settings.min_score, "poses are looked for from this score of the detection on")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app.add_option("-c,--channel", options.frame_channel, "channel of the frames")->capture_default_str();
+      .range(0.0, 1.0)
+      .capture_default_str();
+  app.add_option("-c,--channel", options.frame_channel, "channel of the frames").capture_default_str();
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, url);
 

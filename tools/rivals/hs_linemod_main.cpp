@@ -1,9 +1,9 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <set>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "tools/common/rounded.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/report.hpp"
@@ -46,8 +46,8 @@ std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, con
   for (std::size_t i = 0; i < all.size(); i += every) {
     frames.push_back(all[i]);
     frames.back().detections = detector.detect(scene.read_frame(i));
-    spdlog::debug("{}: frame {} of {}, {} detections", scene.folder().string(), i + 1, all.size(),
-                  frames.back().detections->detections.size());
+    log_debug("{}: frame {} of {}, {} detections", scene.folder().string(), i + 1, all.size(),
+              frames.back().detections->detections.size());
   }
   return frames;
 }
@@ -108,40 +108,37 @@ void tune(const LinemodOptions& options) {
                });
 }
 
-void add_options(CLI::App& app, LinemodOptions& options) {
+void add_options(CommandLine& app, LinemodOptions& options) {
   TrainingSources& sources = options.sources;
-  app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR")->required();
+  app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR").required();
   app.add_option("--background", sources.backgrounds, "rooms without the objects: bop:DIR or images:DIR; for --tune");
-  app.add_option("--instances", sources.instances, "instances of a uw: folder to teach")->delimiter(',');
-  app.add_option("--rename", sources.renames, "can_1=can: what an instance is called")->delimiter(',');
+  app.add_option("--instances", sources.instances, "instances of a uw: folder to teach").delimiter(',');
+  app.add_option("--rename", sources.renames, "can_1=can: what an instance is called").delimiter(',');
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
   app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times");
-  app.add_option("--every", options.every, "look at every Nth frame")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  app.add_option("--every", options.every, "look at every Nth frame").range(1, 1000000).capture_default_str();
   app.add_option("--out", options.out, "folder for SCENE/summary.json and SCENE/curves.csv");
   app.add_flag("--tune", options.tune, "print how a grid of settings fares on composed training pictures instead");
   app.add_flag("--check-depth", options.selection.check_depth, "drop matches where the scene is nearer or farther");
-  app.add_option("--depth-tolerance", options.selection.depth_tolerance, "share of the distance")
-      ->capture_default_str();
-  app.add_option("--match-threshold", options.selection.match_threshold, "percent")->capture_default_str();
-  app.add_option("--features", options.templates.features, "per template and modality")->capture_default_str();
+  app.add_option("--depth-tolerance", options.selection.depth_tolerance, "share of the distance").capture_default_str();
+  app.add_option("--match-threshold", options.selection.match_threshold, "percent").capture_default_str();
+  app.add_option("--features", options.templates.features, "per template and modality").capture_default_str();
   app.add_option("--weak-gradient", options.templates.weak_gradient, "colour gradients below are not looked at")
-      ->capture_default_str();
-  app.add_option("--distance-step", options.templates.distance_step, "factor")->capture_default_str();
-  app.add_option("--min-distance", options.templates.min_distance, "of the scenes, metres")->capture_default_str();
-  app.add_option("--max-distance", options.templates.max_distance, "of the scenes, metres")->capture_default_str();
-  app.add_option("--threads", options.templates.threads)->capture_default_str();
+      .capture_default_str();
+  app.add_option("--distance-step", options.templates.distance_step, "factor").capture_default_str();
+  app.add_option("--min-distance", options.templates.min_distance, "of the scenes, metres").capture_default_str();
+  app.add_option("--max-distance", options.templates.max_distance, "of the scenes, metres").capture_default_str();
+  app.add_option("--threads", options.templates.threads).capture_default_str();
   options.rules.operating_score = 0.96F;
   app.add_option("--operating-score", options.rules.operating_score,
                  "score from which precision and false detections count")
-      ->capture_default_str();
+      .capture_default_str();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Teaches objects to OpenCV's LINEMOD and measures it in scenes of known truth", "hs-linemod");
+  CommandLine app("Teaches objects to OpenCV's LINEMOD and measures it in scenes of known truth", "hs-linemod");
   LinemodOptions options;
   add_options(app, options);
   return houghstream::run_tool(app, argc, argv, [&] { options.tune ? tune(options) : evaluate_scenes(options); });

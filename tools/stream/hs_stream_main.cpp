@@ -1,10 +1,9 @@
-#include <spdlog/spdlog.h>
-
 #include <cstdlib>
 
 #include "pipeline/channels.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/lcm_bus.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/stop_signal.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/stream/state_board.hpp"
@@ -19,25 +18,22 @@ struct Pace {
   double patience = 1.5;  ///< for the processes to end by themselves
 };
 
-void add_options(CLI::App& app, StreamOptions& options, Pace& pace) {
+void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--source", options.source, "as hs-capture takes it; without it the frames are somebody else's");
-  app.add_option("--forest", options.forest, "forest file of hs-train")->required();
+  app.add_option("--forest", options.forest, "forest file of hs-train").required();
   app.add_option("--models", options.models, "models folder; without it there are no poses");
   app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
-  app.add_option("-c,--channel", options.channel, "channel of the frames")->capture_default_str();
-  app.add_flag_callback(
-      "--no-view", [&] { options.view = false; }, "no window");
+  app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
+  app.add_clearing_flag("--no-view", options.view, "no window");
   app.add_option("--capture-options", options.capture_options,
                  "further options for hs-capture: --capture-options='--loop --rate 5'");
   app.add_option("--detect-options", options.detect_options, "further options for hs-detect");
   app.add_option("--pose-options", options.pose_options, "further options for hs-pose");
   app.add_option("--view-options", options.view_options, "further options for hs-view");
-  app.add_option("--every", pace.every, "seconds between two lines of state")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
+  app.add_option("--every", pace.every, "seconds between two lines of state").range(0.1, 3600.0).capture_default_str();
   app.add_option("--patience", pace.patience, "seconds to end in, before a process is killed; a video may need more")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+      .range(0.1, 600.0)
+      .capture_default_str();
   add_lcm_url_option(app, options.lcm_url);
 }
 
@@ -53,7 +49,7 @@ Duration from_seconds(double seconds) {
 void run_stream(StreamOptions options, const Pace& pace) {
   options.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   if (options.view && options.view_options.empty() && !has_display()) {
-    spdlog::warn("no display: without hs-view; --view-options '--video FILE.mp4' writes what it would show");
+    log_warning("no display: without hs-view; --view-options '--video FILE.mp4' writes what it would show");
     options.view = false;
   }
   catch_stop_signals();
@@ -61,7 +57,7 @@ void run_stream(StreamOptions options, const Pace& pace) {
   require(!bus.is_log(), "{}: is a log; the stream runs on a network", bus.url());
   SupervisorSettings settings;
   settings.patience = from_seconds<std::chrono::milliseconds>(pace.patience);
-  Supervisor supervisor(plan_stream(options), settings, [](const std::string& words) { spdlog::info("{}", words); });
+  Supervisor supervisor(plan_stream(options), settings, [](const std::string& words) { log_info("{}", words); });
   StateBoard board;
   bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
     const auto status = decode_message<status_t>(arrival.bytes);
@@ -74,10 +70,10 @@ void run_stream(StreamOptions options, const Pace& pace) {
     bus.handle(std::chrono::milliseconds(50));
     if (StateBoard::Clock::now() < due) continue;
     due += period;
-    spdlog::info("{}", board.line(supervisor.states(), StateBoard::Clock::now()));
+    log_info("{}", board.line(supervisor.states(), StateBoard::Clock::now()));
   }
-  for (const std::string& name : supervisor.stop()) spdlog::warn("{} did not end when asked and was killed", name);
-  spdlog::info("all ended");
+  for (const std::string& name : supervisor.stop()) log_warning("{} did not end when asked and was killed", name);
+  log_info("all ended");
 }
 
 }  // namespace
@@ -85,7 +81,7 @@ void run_stream(StreamOptions options, const Pace& pace) {
 
 int main(int argc, char** argv) {
   using namespace houghstream;
-  CLI::App app(
+  CommandLine app(
       "Starts capture, detection, poses and view, shows their state, starts again what dies, and ends all on Ctrl-C. "
       "The end of the source and the closing of the window end the stream too.",
       "hs-stream");

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <optional>
@@ -6,7 +5,7 @@
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/training/forest_trainer.hpp"
-#include "pipeline/checks.hpp"
+#include "tools/common/tool_main.hpp"
 #include "tools/train/training_sources.hpp"
 
 using namespace houghstream;
@@ -33,27 +32,27 @@ struct Overrides {
   int threads = 2;
 };
 
-void add_overrides(CLI::App& app, Overrides& overrides) {
+void add_overrides(CommandLine& app, Overrides& overrides) {
   app.add_option("--profile", overrides.profile, fmt::format("{}", fmt::join(profile_names(), ", ")))
-      ->capture_default_str();
+      .capture_default_str();
   app.add_option("--features", overrides.features, "instead of the profile's: " + family_names(255));
   app.add_option("--depth-kernel", overrides.depth_kernel, "of the depth derivatives, working pixels")
-      ->check(CLI::IsMember({3, 5, 7, 9}));
+      .one_of({3, 5, 7, 9});
   app.add_option("--image-scale", overrides.image_scale, "working size over frame size, instead of the profile's")
-      ->check(CLI::Range(0.1, 2.0));
+      .range(0.1, 2.0);
   app.add_option("--scale-handling", overrides.scale_handling, "instead of the profile's: five, single or normalised");
-  app.add_option("--seed", overrides.seed, "same seed, same data: same forest")->capture_default_str();
-  app.add_option("--threads", overrides.threads, "any number gives the same forest")->capture_default_str();
-  app.add_option("--trees", overrides.trees)->check(CLI::Range(1, 1000));
-  app.add_option("--max-depth", overrides.max_depth, "levels")->check(CLI::Range(1, 60));
+  app.add_option("--seed", overrides.seed, "same seed, same data: same forest").capture_default_str();
+  app.add_option("--threads", overrides.threads, "any number gives the same forest").capture_default_str();
+  app.add_option("--trees", overrides.trees).range(1, 1000);
+  app.add_option("--max-depth", overrides.max_depth, "levels").range(1, 60);
   app.add_option("--tests", overrides.tests, "random tests tried per node, fewer where it has few samples")
-      ->check(CLI::Range(1, 100000));
+      .range(1, 100000);
   app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets rather than by labels")
-      ->check(CLI::Range(0.0, 1.0));
+      .range(0.0, 1.0);
   app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel rather than compare two")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--patches", overrides.patches, "patches per training view")->check(CLI::Range(4, 100000));
-  app.add_option("--composites", overrides.composites, "pictures made of one view")->check(CLI::Range(1, 100));
+      .range(0.0, 1.0);
+  app.add_option("--patches", overrides.patches, "patches per training view").range(4, 100000);
+  app.add_option("--composites", overrides.composites, "pictures made of one view").range(1, 100);
   app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres");
   app.add_option("--max-distance", overrides.max_distance, "farthest distance taught, metres");
 }
@@ -114,31 +113,26 @@ void train(const TrainingSources& sources, const Profile& profile, const std::op
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Teaches objects to a depth-normalised Hough Forest: training views and background in, one forest file out");
-  app.set_version_flag("--version", HOUGHSTREAM_VERSION);
+  CommandLine app(
+      "Teaches objects to a depth-normalised Hough Forest: training views and background in, one forest file out",
+      "hs-train");
   TrainingSources sources;
   Overrides overrides;
   std::string out;
   std::string add_to;
-  app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR")->required();
+  app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR").required();
   app.add_option("--background", sources.backgrounds,
                  "rooms without the objects: bop:DIR or images:DIR, with the folders below it")
-      ->required();
-  app.add_option("--instances", sources.instances, "instances of a uw: folder to teach")->delimiter(',');
-  app.add_option("--rename", sources.renames, "can_1=can: what an instance is called")->delimiter(',');
+      .required();
+  app.add_option("--instances", sources.instances, "instances of a uw: folder to teach").delimiter(',');
+  app.add_option("--rename", sources.renames, "can_1=can: what an instance is called").delimiter(',');
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
-  app.add_option("--out", out, "forest file to write")->required();
+  app.add_option("--out", out, "forest file to write").required();
   app.add_option("--add-to", add_to, "forest that learns the objects beside those it knows; it decides the profile");
   add_overrides(app, overrides);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return run_tool(app, argc, argv, [&] {
     std::optional<Forest> old;
     if (!add_to.empty()) old = load_forest(add_to);
     train(sources, old ? profile_of(*old, overrides) : overridden(overrides), old, out);
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "hs-train: {}\n", error.what());
-    return 1;
-  }
+  });
 }

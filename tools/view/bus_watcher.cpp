@@ -1,12 +1,11 @@
 #include "tools/view/bus_watcher.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <utility>
 #include <vector>
 
 #include "pipeline/channels.hpp"
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "pipeline/messages.hpp"
 #include "pipeline/stop_signal.hpp"
 #include "tools/view/preview.hpp"
@@ -102,7 +101,7 @@ void BusWatcher::listen() {
     try {
       bus_.handle(kPatience);
     } catch (const std::exception& error) {
-      spdlog::error("{}", error.what());
+      log_error("{}", error.what());
     }
     hand_over();
     status_.publish_if_due(bus_);

@@ -3,29 +3,28 @@
 
 namespace {
 
-void add_options(CLI::App& app, houghstream::ViewerSettings& settings, std::string& camera) {
+void add_options(houghstream::CommandLine& app, houghstream::ViewerSettings& settings, std::string& camera) {
   houghstream::ShowSettings& show = settings.show;
   houghstream::OutputSettings& outputs = show.outputs;
-  app.add_option("-c,--channel", settings.frame_channel, "channel of the frames")->capture_default_str();
+  app.add_option("-c,--channel", settings.frame_channel, "channel of the frames").capture_default_str();
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   houghstream::add_model_options(app, show.models, show.model_unit_m);
   app.add_option("--snapshot", outputs.snapshot, "write one picture to this file (.png or .jpg)");
   app.add_option("--after", outputs.snapshot_after, "the snapshot is the so-manieth picture drawn")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      .capture_default_str()
+      .positive();
   app.add_option("--video", outputs.video, "write a video to this file (.mp4)");
   app.add_option("--pictures", outputs.pictures, "write every picture drawn to this folder");
   app.add_flag("--preview", show.preview,
                "send pictures as JPEG below 100 kB on HOUGHSTREAM_PREVIEW, for lcm-spy and others with small buffers");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 100.0));
+      .capture_default_str()
+      .range(0.1, 100.0);
   app.add_option("--duration", settings.duration, "end after so many seconds (0: when stopped)")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--min-score", show.picture.min_score, "weaker detections are not drawn")->capture_default_str();
-  app.add_flag_callback(
-      "--no-depth", [&] { show.picture.show_depth = false; }, "show the colour image only");
+      .capture_default_str()
+      .non_negative();
+  app.add_option("--min-score", show.picture.min_score, "weaker detections are not drawn").capture_default_str();
+  app.add_clearing_flag("--no-depth", show.picture.show_depth, "show the colour image only");
   app.add_flag("--3d", show.picture.show_3d, "instead of the depth image: what was measured, seen from elsewhere");
   houghstream::add_lcm_url_option(app, settings.lcm_url);
 }
@@ -33,7 +32,7 @@ void add_options(CLI::App& app, houghstream::ViewerSettings& settings, std::stri
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  houghstream::CommandLine app(
       "Shows the stream: boxes, names, scores, pose axes and model outlines over each frame, depth, stage times and "
       "latency. With --snapshot, --video, --pictures or --preview it needs no display.",
       "hs-view");

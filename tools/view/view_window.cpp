@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +12,7 @@
 #include <string>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "tools/view/view_outputs.hpp"
 
 namespace houghstream {
@@ -73,7 +73,7 @@ void ViewWindow::save() const {
   if (shown_.empty()) return;
   const std::string file = fmt::format("view_{}.png", utime_);
   write_picture(file, shown_);
-  spdlog::info("saved {}", file);
+  log_info("saved {}", file);
 }
 
 }  // namespace houghstream

@@ -1,10 +1,10 @@
 #include "tools/view/viewer.hpp"
 
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <chrono>
 
+#include "pipeline/log_line.hpp"
 #include "pipeline/stop_signal.hpp"
 #include "tools/view/bus_watcher.hpp"
 
@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 // calling thread and those that it starts later (the video encoder's), not for the one that receives.
 void step_back() {
   constexpr int kPolite = 15;
-  if (nice(kPolite) == -1) spdlog::warn("the priority of drawing cannot be lowered");
+  if (nice(kPolite) == -1) log_warning("the priority of drawing cannot be lowered");
 }
 
 // Without a window there is time after the stream: frames may wait. In a window only the newest matters.
@@ -36,7 +36,7 @@ void run_viewer(const ViewerSettings& settings) {
   LcmBus bus(settings.lcm_url);
   BusWatcher watcher(bus, settings.frame_channel, match, waiting_frames(settings.show));
   step_back();
-  spdlog::info("ready: watching {}", settings.frame_channel);
+  log_info("ready: watching {}", settings.frame_channel);
 
   const auto start = Clock::now();
   const std::chrono::duration<double> limit(settings.duration);

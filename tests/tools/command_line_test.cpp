@@ -1,0 +1,118 @@
+#include "tools/common/command_line.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+/// The exit status of a fault, which says a line.
+void expect_refused(CommandLine& line, const std::vector<std::string>& words) {
+  testing::internal::CaptureStderr();
+  EXPECT_NE(line.parse(words).value_or(0), 0) << words.back();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find(words.front()), std::string::npos) << words.back();
+}
+
+TEST(CommandLine, OptionsTakeWhatIsGivenAndKeepTheRest) {
+  CommandLine line("words", "tool");
+  int count = 3;
+  float share = 0.5F;
+  std::string file = "before";
+  std::optional<double> limit;
+  std::optional<int> untouched;
+  bool loud = false;
+  bool shown = true;
+  line.add_option("file", file);
+  line.add_option("-c,--count", count);
+  line.add_option("--share", share);
+  line.add_option("--limit", limit);
+  line.add_option("--untouched", untouched);
+  line.add_flag("--loud", loud, "words");
+  line.add_clearing_flag("--no-show", shown, "words");
+  EXPECT_EQ(line.parse({"a.txt", "-c", "7", "--limit", "0.25", "--loud", "--no-show"}), std::nullopt);
+  EXPECT_EQ(file, "a.txt");
+  EXPECT_EQ(count, 7);
+  EXPECT_EQ(share, 0.5F);
+  EXPECT_EQ(limit, 0.25);
+  EXPECT_EQ(untouched, std::nullopt);
+  EXPECT_TRUE(loud);
+  EXPECT_FALSE(shown);
+}
+
+TEST(CommandLine, WhatIsOutsideItsLimitsIsRefused) {
+  CommandLine line("words", "tool");
+  int whole = 1;
+  double part = 1.0;
+  double share = 1.0;
+  double weight = 1.0;
+  int kernel = 3;
+  line.add_option("--whole", whole).range(1, 5);
+  line.add_option("--part", part).range(0.5, 2.0);
+  line.add_option("--share", share).positive();
+  line.add_option("--weight", weight).non_negative();
+  line.add_option("--kernel", kernel).one_of({3, 5});
+  EXPECT_EQ(line.parse({"--whole", "5", "--part", "0.5", "--weight", "0", "--kernel", "5"}), std::nullopt);
+  expect_refused(line, {"--whole", "6"});
+  expect_refused(line, {"--whole", "two"});
+  expect_refused(line, {"--part", "0.4"});
+  expect_refused(line, {"--share", "0"});
+  expect_refused(line, {"--weight", "-1"});
+  expect_refused(line, {"--kernel", "4"});
+}
+
+TEST(CommandLine, WhatIsMissingOrUnknownIsRefused) {
+  CommandLine line("words", "tool");
+  std::string out;
+  line.add_option("--out", out).required();
+  testing::internal::CaptureStderr();
+  EXPECT_NE(line.parse({}).value_or(0), 0);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("--out"), std::string::npos);
+  testing::internal::CaptureStderr();
+  EXPECT_NE(line.parse({"--out", "x", "--nonsense"}).value_or(0), 0);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("--nonsense"), std::string::npos);
+}
+
+TEST(CommandLine, WordsAreSplitAndNamesBecomeValues) {
+  CommandLine line("words", "tool");
+  std::vector<std::string> names;
+  double unit_m = 1.0;
+  line.add_option("--names", names).delimiter(',');
+  line.add_option("--unit", unit_m).transform({{"mm", 1e-3}, {"m", 1.0}});
+  EXPECT_EQ(line.parse({"--names", "bowl,mug", "--unit", "mm"}), std::nullopt);
+  EXPECT_EQ(names, (std::vector<std::string>{"bowl", "mug"}));
+  EXPECT_EQ(unit_m, 1e-3);
+  expect_refused(line, {"--unit", "inch"});
+}
+
+TEST(CommandLine, OneOfItsCommandsIsGiven) {
+  CommandLine line("words", "tool");
+  line.require_subcommand();
+  int count = 0;
+  CommandLine first = line.add_subcommand("first", "words");
+  const CommandLine second = line.add_subcommand("second", "words");
+  first.add_option("--count", count);
+  EXPECT_EQ(line.parse({"first", "--count", "2"}), std::nullopt);
+  EXPECT_TRUE(first.given());
+  EXPECT_FALSE(second.given());
+  EXPECT_EQ(count, 2);
+  testing::internal::CaptureStderr();
+  EXPECT_NE(line.parse({}).value_or(0), 0);
+  EXPECT_NE(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(CommandLine, HelpSaysWhatItIsFor) {
+  CommandLine line("Counts sheep", "tool");
+  int count = 17;
+  line.add_option("--count", count, "sheep").capture_default_str();
+  line.add_option("--other", count, "unsaid").default_str("many");
+  line.get_option("--other").description("said");
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(line.parse({"--help"}), 0);
+  const std::string help = testing::internal::GetCapturedStdout();
+  for (const char* words : {"Counts sheep", "tool", "sheep", "17", "many", "said"}) {
+    EXPECT_NE(help.find(words), std::string::npos) << words;
+  }
+  EXPECT_EQ(help.find("unsaid"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,128 @@
+#include "tools/common/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+
+namespace houghstream {
+
+CommandOption& CommandOption::required() {
+  option_->required();
+  return *this;
+}
+
+CommandOption& CommandOption::capture_default_str() {
+  option_->capture_default_str();
+  return *this;
+}
+
+CommandOption& CommandOption::default_str(const std::string& words) {
+  option_->default_str(words);
+  return *this;
+}
+
+CommandOption& CommandOption::description(const std::string& words) {
+  option_->description(words);
+  return *this;
+}
+
+CommandOption& CommandOption::delimiter(char between) {
+  option_->delimiter(between);
+  return *this;
+}
+
+CommandOption& CommandOption::range(int low, int high) {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+
+CommandOption& CommandOption::range(double low, double high) {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+
+CommandOption& CommandOption::positive() {
+  option_->check(CLI::PositiveNumber);
+  return *this;
+}
+
+CommandOption& CommandOption::non_negative() {
+  option_->check(CLI::NonNegativeNumber);
+  return *this;
+}
+
+CommandOption& CommandOption::one_of(const std::vector<int>& values) {
+  option_->check(CLI::IsMember(values));
+  return *this;
+}
+
+CommandOption& CommandOption::transform(const std::map<std::string, double>& values) {
+  option_->transform(CLI::CheckedTransformer(values));
+  return *this;
+}
+
+CommandLine::CommandLine(const std::string& words, const std::string& name)
+    : app_(std::make_shared<CLI::App>(words, name)) {}
+
+template <typename T>
+CommandOption CommandLine::add_option(const std::string& names, T& value, const std::string& words) {
+  return CommandOption(app_->add_option(names, value, words));
+}
+
+template CommandOption CommandLine::add_option(const std::string&, int&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::int64_t&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::uint64_t&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, float&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, double&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::string&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::filesystem::path&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::optional<int>&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::optional<std::int64_t>&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::optional<float>&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::optional<double>&, const std::string&);
+template CommandOption CommandLine::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+
+CommandOption CommandLine::add_flag(const std::string& names, bool& value, const std::string& words) {
+  return CommandOption(app_->add_flag(names, value, words));
+}
+
+CommandOption CommandLine::add_clearing_flag(const std::string& names, bool& clears, const std::string& words) {
+  return CommandOption(app_->add_flag_callback(
+      names, [&clears] { clears = false; }, words));
+}
+
+CommandOption CommandLine::get_option(const std::string& name) {
+  return CommandOption(app_->get_option(name));
+}
+
+CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& words) {
+  return CommandLine({app_, app_->add_subcommand(name, words)});  // lives as long as the whole line
+}
+
+void CommandLine::require_subcommand() {
+  app_->require_subcommand(1);
+}
+
+bool CommandLine::given() const {
+  return app_->parsed();
+}
+
+std::string CommandLine::name() const {
+  return app_->get_name();
+}
+
+void CommandLine::set_version(const std::string& version) {
+  app_->set_version_flag("--version", version);
+}
+
+std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
+  try {
+    app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last one first
+    return std::nullopt;
+  } catch (const CLI::ParseError& end) {
+    return app_->exit(end);
+  }
+}
+
+}  // namespace houghstream

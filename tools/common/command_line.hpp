@@ -1,0 +1,68 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace houghstream {
+
+/// An option that was added to a command line; every call returns the same option. Terms as in CLI11.
+class CommandOption {
+ public:
+  explicit CommandOption(CLI::Option* option) : option_(option) {}
+  CommandOption& required();
+  CommandOption& capture_default_str();                  ///< help shows the value from before
+  CommandOption& default_str(const std::string& words);  ///< help shows this instead
+  CommandOption& description(const std::string& words);  ///< instead of the one that it was added with
+  CommandOption& delimiter(char between);                ///< of several values in one word
+  CommandOption& range(int low, int high);               ///< both are allowed
+  CommandOption& range(double low, double high);         ///< both are allowed
+  CommandOption& positive();                             ///< above 0
+  CommandOption& non_negative();                         ///< 0 or above
+  CommandOption& one_of(const std::vector<int>& values);
+  CommandOption& transform(const std::map<std::string, double>& values);  ///< a name becomes its value
+
+ private:
+  CLI::Option* option_;  // the command line's
+};
+
+/// A command line, or a subcommand of one, as CLI11 understands it; copies are the same command line. Only
+/// command_line.cpp includes CLI11: each source that did would hold much of it again, and take four seconds longer to
+/// compile.
+class CommandLine {
+ public:
+  /// `words` say in help what the executable `name` does.
+  CommandLine(const std::string& words, const std::string& name);
+
+  /// `names` as in CLI11: "-s,--start", or "log" for what is named by its place. The types are listed in
+  /// command_line.cpp; an optional stays empty where the option is not given.
+  template <typename T>
+  CommandOption add_option(const std::string& names, T& value, const std::string& words = "");
+  CommandOption add_flag(const std::string& names, bool& value, const std::string& words);
+  /// `clears` becomes false where the flag is given.
+  CommandOption add_clearing_flag(const std::string& names, bool& clears, const std::string& words);
+  CommandOption get_option(const std::string& name);
+
+  CommandLine add_subcommand(const std::string& name, const std::string& words);
+  void require_subcommand();  ///< exactly one
+  bool given() const;         ///< this subcommand was asked for
+
+  std::string name() const;
+  void set_version(const std::string& version);  ///< printed for --version
+  /// Fills the options' values from `words`, without the executable's name. An exit status where that was all: after
+  /// help or version, which go to stdout, or after a fault of the words, whose line goes to stderr.
+  std::optional<int> parse(const std::vector<std::string>& words);
+
+ private:
+  explicit CommandLine(std::shared_ptr<CLI::App> app) : app_(std::move(app)) {}
+  std::shared_ptr<CLI::App> app_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,39 @@
+#include "tools/common/tool_main.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "pipeline/log_line.hpp"
+
+namespace houghstream {
+
+int run_tool(CommandLine& line, int argc, char** argv, const std::function<void()>& body) {
+  bool verbose = false;
+  line.add_flag("-v,--verbose", verbose, "log more");
+  line.set_version(line.name() + " " + HOUGHSTREAM_VERSION);
+  if (const std::optional<int> status = line.parse({argv + 1, argv + argc})) return *status;
+  start_log(line.name(), verbose ? LogLevel::kDebug : LogLevel::kInfo);
+  try {
+    body();
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", line.name(), error.what());
+    return 1;
+  }
+}
+
+void add_lcm_url_option(CommandLine& line, std::string& url) {
+  line.add_option("-l,--lcm-url", url, "LCM URL; default $LCM_DEFAULT_URL, else udpm with ttl=0");
+}
+
+void add_model_options(CommandLine& line, std::string& models, double& unit_m) {
+  line.add_option("--models", models,
+                  "models/ folder of a BOP dataset or of hs-fuse, or a folder of NAME.ply, NAME.obj");
+  line.add_option("--model-unit", unit_m, "unit of the models' coordinates: mm (default), cm or m")
+      .transform({{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}})
+      .default_str("mm");
+}
+
+}  // namespace houghstream
