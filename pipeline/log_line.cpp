@@ -27,6 +27,10 @@ void start_log(const std::string& name, LogLevel least) {
   spdlog::set_level(to_spdlog(least));
 }
 
+void hush_log() {
+  if (spdlog::get_level() > spdlog::level::debug) spdlog::set_level(spdlog::level::err);
+}
+
 void log_line(LogLevel level, const std::string& line) {
   spdlog::log(to_spdlog(level), spdlog::string_view_t(line));
 }

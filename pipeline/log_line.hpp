@@ -12,6 +12,9 @@ enum class LogLevel { kDebug, kInfo, kWarning, kError };
 /// From here on the log goes to stderr, each line with the time and `name`; what is below `least` is left out.
 void start_log(const std::string& name, LogLevel least);
 
+/// Leaves out all but errors from here on, unless debug lines were asked for.
+void hush_log();
+
 /// A line of the log. spdlog writes it, but lines are composed here: where spdlog is handed values, each source that
 /// logs holds the whole of fmt's formatting again, and takes two seconds longer to compile.
 void log_line(LogLevel level, const std::string& line);

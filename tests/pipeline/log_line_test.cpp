@@ -19,6 +19,21 @@ TEST(LogLine, WhatIsBelowTheLeastIsLeftOut) {
   EXPECT_NE(log.find("quiet: four 4.0\n"), std::string::npos) << log;
 }
 
+TEST(LogLine, HushedItSaysErrorsOnlyUnlessAllWasAskedFor) {
+  testing::internal::CaptureStderr();
+  start_log("hushed", LogLevel::kInfo);
+  hush_log();
+  log_warning("one");
+  log_error("two");
+  start_log("asked", LogLevel::kDebug);
+  hush_log();
+  log_debug("three");
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(log.find("one"), std::string::npos);
+  EXPECT_NE(log.find("hushed: two\n"), std::string::npos) << log;
+  EXPECT_NE(log.find("asked: three\n"), std::string::npos) << log;
+}
+
 TEST(LogLine, BracesInValuesAreNotLookedAt) {
   testing::internal::CaptureStderr();
   start_log("whole", LogLevel::kDebug);

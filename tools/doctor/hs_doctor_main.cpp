@@ -1,9 +1,9 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <filesystem>
 
 #include "pipeline/checks.hpp"
+#include "pipeline/log_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/doctor/examination.hpp"
 
@@ -23,8 +23,7 @@ int main(int argc, char** argv) {
   add_lcm_url_option(app, settings.lcm_url);
 
   return run_tool(app, argc, argv, [&] {
-    // The bus would warn of small buffers itself.
-    if (spdlog::get_level() > spdlog::level::debug) spdlog::set_level(spdlog::level::err);
+    hush_log();  // the bus would warn of small buffers itself
     std::error_code unknown;
     settings.types_jar =
         std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path() / "houghstream_types.jar";
