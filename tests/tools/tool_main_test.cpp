@@ -11,6 +11,7 @@ namespace {
 int run(std::vector<std::string> words, const std::function<void()>& body) {
   words.insert(words.begin(), "path/of/the/tool");
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   CommandLine line("words", "hs-tool");
   return run_tool(line, static_cast<int>(argv.size()), argv.data(), body);
