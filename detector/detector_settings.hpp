@@ -72,7 +72,8 @@ struct TrainingSettings {
   int max_leaf_views = 12;       ///< remembered training views per leaf and class
   float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres
   Scoring scoring = Scoring::kEvidence;
-  int validation_frames = 200;  ///< composed pictures on which the score learns what it is worth
+  int validation_frames = 300;  ///< composed pictures on which the score learns what it is worth
+  double dazzled_share = 0.5;   ///< of these, in which what is near has lost most of its depth, see lose_near_depth
   std::uint64_t seed = 1;
   int threads = 2;
 };
@@ -90,7 +91,7 @@ struct DetectionSettings {
   int first_trees = 3;
   float min_first_share = 0.1F;
   /// Smallest score that is reported: on sixteen development worlds 95 % of the detections from here on are true.
-  float threshold = 0.65F;
+  float threshold = 0.7F;
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
   float min_class_share = 0.1F;    ///< of its leaves, from which a patch votes for a class

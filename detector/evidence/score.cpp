@@ -36,8 +36,9 @@ double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights,
 ScoreTerms score_terms(const Evidence& evidence) {
   const ViewFit& fit = evidence.fit;
   const float foreign = std::min(fit.foreign_colour, 1.0F);
+  const float log_mass = std::log(std::max(evidence.mass_share, 1e-4F));
   return {1.0F,
-          std::log(std::max(evidence.mass_share, 1e-4F)),
+          log_mass,
           std::log(1.02F - fit.hidden),
           fit.seen_through,
           fit.unknown,
@@ -45,7 +46,9 @@ ScoreTerms score_terms(const Evidence& evidence) {
           fit.likeness,
           fit.hue_conflict,
           foreign * foreign,
-          fit.unevenness};
+          fit.unevenness,
+          fit.unknown * log_mass,
+          fit.unknown * fit.likeness};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {

@@ -13,7 +13,8 @@ struct Evidence {
 
 /// The evidence as the terms that ScoreModel::weights multiply: 1, the logarithms of the mass and of what is not
 /// hidden (half an object has half the mass), the rest of the fit as it is; foreign colour, of which light
-/// makes a little, squared.
+/// makes a little, squared; and the share of unknown depth times the mass's logarithm and times the likeness, since
+/// both say something else of what is mostly unknown.
 ScoreTerms score_terms(const Evidence& evidence);
 
 /// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).

@@ -135,9 +135,11 @@ struct Tally {
   int hidden = 0;
   int seen_through = 0;
   int unknown = 0;
+  float unevenness = 0.0F;  // sum over the visible ones
   Lines rows;
   Lines columns;
-  std::array<std::uint16_t, kSide * kSide> visible_cells;  // the first `visible` of them
+  std::size_t shown = 0;                                 // cells in front of which nothing is known to be
+  std::array<std::uint16_t, kSide * kSide> shown_cells;  // the first `shown` of them
 
   float share(int count) const { return static_cast<float>(count) / static_cast<float>(std::max(cells, 1)); }
 };
@@ -152,7 +154,9 @@ Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
       const float e = comparison.excess[cell] - shift;
       const int unknown = object & (std::isnan(e) ? 1 : 0);
       const int visible = object & (std::abs(e) <= tolerance ? 1 : 0);
-      tally.visible_cells[static_cast<std::size_t>(tally.visible)] = static_cast<std::uint16_t>(cell);
+      tally.shown_cells[tally.shown] = static_cast<std::uint16_t>(cell);
+      tally.shown += static_cast<std::size_t>(visible | unknown);
+      tally.unevenness += visible != 0 ? std::abs(e) / tolerance : 0.0F;
       tally.cells += object;
       tally.visible += visible;
       tally.unknown += unknown;
@@ -167,7 +171,7 @@ Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
   return tally;
 }
 
-/// Of the visible cells.
+/// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
 Likeness compare_colours(const Comparison& comparison, const Tally& tally, const Appearance& appearance,
                          const LabFrame& frame) {
   std::array<int, kSide> x_px{};
@@ -178,8 +182,8 @@ Likeness compare_colours(const Comparison& comparison, const Tally& tally, const
     y_px[i] = std::min(static_cast<int>(px.y * frame.scale), frame.lab.rows - 1);
   }
   Likeness likeness;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(tally.visible); ++i) {
-    const std::size_t cell = tally.visible_cells[i];
+  for (std::size_t i = 0; i < tally.shown; ++i) {
+    const std::size_t cell = tally.shown_cells[i];
     likeness.add(appearance.lab[cell], frame.lab.ptr<cv::Vec3b>(y_px[cell / kSide])[x_px[cell % kSide]]);
   }
   return likeness;
@@ -204,10 +208,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   const Tally tally = tally_cells(comparison, shift, tolerance);
   const Likeness likeness = compare_colours(comparison, tally, view.appearance, frame);
   ViewFit fit;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(tally.visible); ++i) {
-    fit.unevenness += std::abs(comparison.excess[tally.visible_cells[i]] - shift) / tolerance;
-  }
-  fit.unevenness /= static_cast<float>(std::max(tally.visible, 1));
+  fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
   fit.visible = tally.share(tally.visible);
   fit.hidden = tally.share(tally.hidden);
   fit.seen_through = tally.share(tally.seen_through);

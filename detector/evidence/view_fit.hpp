@@ -26,7 +26,7 @@ struct ViewFit {
   float unknown = 0.0F;         ///< no depth
   float unevenness = 0.0F;      ///< mean error of the visible depth over the tolerance, 0 to 1
   float continued = 0.0F;       ///< of the rim beside the outline: the surface goes on, or comes nearer
-  float likeness = 0.0F;        ///< correlation of the visible surface's colours with the remembered ones, -1 to 1
+  float likeness = 0.0F;        ///< of the colours of what is visible or unknown with the remembered ones, -1 to 1
   float foreign_colour = 0.0F;  ///< see Likeness
   float hue_conflict = 0.0F;    ///< see Likeness
   cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is

@@ -1,9 +1,11 @@
 #include "detector/training/score_training.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "detector/detection_candidates.hpp"
+#include "detector/training/near_loss.hpp"
 #include "detector/training/validation_frames.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -13,6 +15,9 @@ namespace {
 /// What counts as found in the paper's protocol (Section 4).
 constexpr float kMinIou = 0.5F;
 constexpr double kMinVisible = 0.1;
+
+/// As many objects as make most of a picture without hiding each other, and nearly twice as many that look like them.
+constexpr ComposedThings kThings = {6, 5};
 
 using Examples = std::map<int, std::vector<ScoreExample>>;  // by class id
 
@@ -40,6 +45,19 @@ Examples judge(const std::vector<Candidate>& candidates, const ValidationFrame& 
   return examples;
 }
 
+/// A room with objects, in which near surfaces may have lost their depth.
+ValidationFrame compose(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
+                        const TrainingSettings& settings, Random& random) {
+  constexpr double kLeast = 0.05;  // of the depth is kept
+  constexpr double kMost = 0.6;
+  ValidationFrame composed = make_validation_frame(objects, room, kThings, settings, random);
+  if (random.uniform() >= settings.dazzled_share) return composed;
+  const double limit = random.uniform(settings.min_distance, settings.max_distance);
+  const double kept = std::exp(random.uniform(std::log(kLeast), std::log(kMost)));
+  lose_near_depth(limit, kept, composed.frame.depth, random);
+  return composed;
+}
+
 }  // namespace
 
 void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
@@ -52,7 +70,7 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
   parallel_for(settings.threads, settings.validation_frames, [&](int f) {
     Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(f));
     const TrainingView& room = *rooms[static_cast<std::size_t>(f) % rooms.size()];
-    const ValidationFrame validation = make_validation_frame(objects, room.frame, settings, random);
+    const ValidationFrame validation = compose(objects, room.frame, settings, random);
     StageClock clock;
     std::vector<std::uint32_t> shown = validation.look_alikes;
     for (const ValidationFrame::Object& object : validation.objects) shown.push_back(object.view);

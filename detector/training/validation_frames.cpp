@@ -78,9 +78,7 @@ void add_look_alikes(const std::vector<const TrainingView*>& objects, int count,
 }  // namespace
 
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
-                                      const TrainingSettings& settings, Random& random) {
-  constexpr std::uint8_t kObjects = 4;
-  constexpr int kLookAlikes = 2;
+                                      const ComposedThings& things, const TrainingSettings& settings, Random& random) {
   constexpr double kOtherLight = 2.0;  // colours must not be trusted further than light lets them
   TrainingSettings even_light = settings;
   even_light.light_variation = 0.0;  // one light for the whole frame
@@ -90,21 +88,22 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   out.frame.depth = room.depth.clone();
   cv::Mat labels = cv::Mat::zeros(room.colour.size(), CV_8UC1);
   std::vector<int> whole_px;
-  add_look_alikes(objects, kLookAlikes, even_light, out, labels, random);
-  for (std::uint8_t label = 1; label <= kObjects; ++label) {
+  add_look_alikes(objects, things.look_alikes, even_light, out, labels, random);
+  for (int label = 1; label <= things.objects; ++label) {
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     const TrainingView& view = *objects[index];
     const std::optional<Composite> composite =
         make_composite(view, out.frame, draw_distance(settings, random), even_light, random);
     out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
     whole_px.push_back(composite ? composite->whole_px : 1);
-    if (composite) put_back(*composite, label, out.frame, labels);
+    if (composite) put_back(*composite, static_cast<std::uint8_t>(label), out.frame, labels);
   }
-  for (std::uint8_t label = 1; label <= kObjects; ++label) {
-    ValidationFrame::Object& object = out.objects[label - 1U];
+  for (int label = 1; label <= things.objects; ++label) {
+    const auto index = static_cast<std::size_t>(label - 1);
+    ValidationFrame::Object& object = out.objects[index];
     const cv::Mat seen = labels == label;
     object.box_visible_px = cv::boundingRect(seen);
-    object.visible_fraction = static_cast<double>(cv::countNonZero(seen)) / whole_px[label - 1U];
+    object.visible_fraction = static_cast<double>(cv::countNonZero(seen)) / whole_px[index];
   }
   const auto unseen = [](const ValidationFrame::Object& object) { return object.box_visible_px.empty(); };
   out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());

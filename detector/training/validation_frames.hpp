@@ -21,9 +21,15 @@ struct ValidationFrame {
   std::vector<std::uint32_t> look_alikes;  ///< training views whose recoloured copies stand there too: not objects
 };
 
-/// Up to four random views in one room, each as in a composite: other distance, light, half of them partly hidden;
-/// behind them two look-alikes, which have an object's shape and pattern in other colours.
+/// How many things are put into a room.
+struct ComposedThings {
+  int objects = 0;      ///< at most 255
+  int look_alikes = 0;  ///< of either sort: an object's shape and pattern in other colours, and in another size
+};
+
+/// Random views in one room, each as in a composite: other distance, light, half of them partly hidden; behind them the
+/// look-alikes.
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
-                                      const TrainingSettings& settings, Random& random);
+                                      const ComposedThings& things, const TrainingSettings& settings, Random& random);
 
 }  // namespace houghstream

@@ -48,6 +48,35 @@ TEST(Detector, FindsTheTaughtObjectsNearAndFar) {
   expect_tile(1, 159.5, 119.5, 1.1);
 }
 
+/// Leaves depth in discs only, as a camera does that its own pattern dazzles; returns the share of `mask` that keeps
+/// it.
+double leave_depth_in_discs(int radius_px, const cv::Mat& mask, RgbdFrame& frame) {
+  constexpr int kApart = 30;
+  cv::Mat kept = cv::Mat::zeros(mask.size(), CV_8UC1);
+  for (int y = kApart / 2; y < kept.rows; y += kApart) {
+    for (int x = kApart / 2; x < kept.cols; x += kApart) cv::circle(kept, {x, y}, radius_px, 255, cv::FILLED);
+  }
+  frame.depth.setTo(std::numeric_limits<float>::quiet_NaN(), kept == 0);
+  return static_cast<double>(cv::countNonZero(kept & mask)) / cv::countNonZero(mask);
+}
+
+TEST(Detector, FindsNearObjectsOfWhichLittleDepthIsMeasured) {
+  for (const int kind : {0, 1}) {
+    for (const int radius_px : {5, 8}) {
+      RgbdFrame frame = toy::room(85);
+      const cv::Mat mask = toy::put_tile(kind, 150, 120, 0.52, frame);
+      const double kept = leave_depth_in_discs(radius_px, mask, frame);
+      EXPECT_NEAR(kept, radius_px == 5 ? 0.09 : 0.22, 0.03);
+      const Detections found = detect(frame, 2);
+      ASSERT_FALSE(found.detections.empty()) << "tile " << kind << " with depth on " << kept;
+      const Detection& best = found.detections.front();
+      EXPECT_EQ(best.class_id, kind + 1);
+      EXPECT_GT(box_iou(best.box_px, cv::Rect2f(cv::boundingRect(mask))), 0.5F);
+      EXPECT_NEAR(best.centre_camera.z(), 0.52F, 0.025F);
+    }
+  }
+}
+
 TEST(Detector, FindsNothingInAnEmptyRoom) {
   EXPECT_TRUE(detect(toy::room(78), 1).detections.empty());
 }

@@ -26,6 +26,7 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
                                   int pictures) {
   constexpr int kShownOneIn = 4;
   constexpr std::uint64_t kSeed = 20110701;
+  constexpr ComposedThings kThings = {4, 2};
   ComposedExamples out;
   std::vector<const TrainingView*> shown;
   std::vector<const TrainingView*> rooms;
@@ -47,7 +48,8 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
   settings.max_distance = max_distance;
   for (std::size_t f = 0; f < static_cast<std::size_t>(pictures); ++f) {
     Random random = Random::for_item(kSeed, f);
-    const ValidationFrame composed = make_validation_frame(shown, rooms[f % rooms.size()]->frame, settings, random);
+    const ValidationFrame composed =
+        make_validation_frame(shown, rooms[f % rooms.size()]->frame, kThings, settings, random);
     out.frames.push_back(composed.frame);
     out.truth.push_back(to_truth(composed, shown));
   }

@@ -40,6 +40,19 @@ TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {
   EXPECT_GT(score(model, evidence), clean);
 }
 
+TEST(Score, MassAndLikenessWeighOtherwiseWhereDepthIsUnknown) {
+  ScoreModel model;
+  model.weights[10] = -1.0F;
+  model.weights[11] = 2.0F;
+  Evidence evidence = with_mass(0.3F);
+  evidence.fit.likeness = 0.7F;
+  const float known = score(model, evidence);
+  EXPECT_EQ(known, score(ScoreModel{}, evidence));
+  evidence.fit.unknown = 0.8F;  // of which the model without these terms makes nothing
+  EXPECT_GT(score(model, evidence), known);
+  EXPECT_EQ(score(ScoreModel{}, evidence), known);
+}
+
 /// Examples whose truth is drawn from a model.
 std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
   Random random(4);

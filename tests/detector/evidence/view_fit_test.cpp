@@ -63,6 +63,23 @@ TEST(ViewFit, MissingDepthIsUnknownAndNeitherForNorAgainst) {
   EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.continued, 0.0F);
 }
 
+TEST(ViewFit, ColoursCountWhereDepthIsMissing) {
+  RgbdFrame frame = tile_frame();
+  frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_GT(fit(frame).likeness, 0.8F);
+  frame.colour = toy::room(5).colour;
+  EXPECT_LT(fit(frame).likeness, 0.3F);
+}
+
+TEST(ViewFit, WhatHidesTheObjectDoesNotLendItItsColours) {
+  RgbdFrame frame = tile_frame();
+  const float alone = fit(frame).likeness;
+  const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
+  frame.depth(left).setTo(0.5F);
+  frame.colour(left).setTo(cv::Scalar(0, 255, 0));
+  EXPECT_NEAR(fit(frame).likeness, alone, 0.1F);
+}
+
 TEST(ViewFit, AWallGoesOnBesideTheOutline) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(kDistance);

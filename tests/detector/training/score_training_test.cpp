@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
 #include "detector/evidence/score.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "toy_data.hpp"
@@ -40,6 +43,33 @@ TEST(ScoreTraining, GivesAFullySeenObjectMuchAndNothingLittle) {
   for (const ObjectClass& object : forest.classes) {
     EXPECT_GT(score(object.score_model, whole), 0.8F) << object.name;
     EXPECT_LT(score(object.score_model, wall), 0.1F) << object.name;
+  }
+}
+
+/// Rooms in which depth is missing here and there, as it is of what shines or is dark.
+void leave_depth_in_discs(std::vector<TrainingView>& views) {
+  constexpr int kApart = 30;
+  for (TrainingView& view : views) {
+    if (view.class_id != 0) continue;
+    cv::Mat kept = cv::Mat::zeros(view.frame.depth.size(), CV_8UC1);
+    for (int y = 0; y < kept.rows; y += kApart) {
+      for (int x = 0; x < kept.cols; x += kApart) cv::circle(kept, {x, y}, 9, 255, cv::FILLED);
+    }
+    view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN(), kept == 0);
+  }
+}
+
+TEST(ScoreTraining, MissingDepthIsNoMarkOfTheBackground) {
+  Toys toys;
+  leave_depth_in_discs(toys.views);
+  const Forest forest = with_score_trained(toys, train_forest(toys.views, toy::quick_profile(), [](auto&) {}), 2);
+  Evidence dazzled;
+  dazzled.mass_share = 0.3F;
+  dazzled.fit.visible = 0.15F;
+  dazzled.fit.unknown = 0.85F;
+  dazzled.fit.likeness = 0.6F;
+  for (const ObjectClass& object : forest.classes) {
+    EXPECT_GT(score(object.score_model, dazzled), 0.6F) << object.name;
   }
 }
 

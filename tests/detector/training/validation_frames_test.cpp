@@ -19,11 +19,13 @@ struct Toys {
   }
 };
 
+constexpr ComposedThings kThings = {4, 2};
+
 ValidationFrame compose(const Toys& toys, std::uint64_t seed, double occluded_share) {
   TrainingSettings settings = toy::quick_profile().training;
   settings.occluded_share = occluded_share;
   Random random(seed);
-  return make_validation_frame(toys.objects, toy::room(9), settings, random);
+  return make_validation_frame(toys.objects, toy::room(9), kThings, settings, random);
 }
 
 TEST(ValidationFrames, NameWhatTheyShowAndWhere) {
@@ -59,7 +61,7 @@ TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
   EXPECT_LT(occluded, 0.85 * open);
 }
 
-TEST(ValidationFrames, TwoLookAlikesOfEachSortStandThereToo) {
+TEST(ValidationFrames, AsManyLookAlikesOfEachSortAsAskedForStandThereToo) {
   const Toys toys;
   EXPECT_EQ(compose(toys, 1, 0.0).look_alikes.size(), 4U);
 }
@@ -71,7 +73,7 @@ TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
   const cv::Mat colour = room.colour.clone();
   TrainingSettings settings = toy::quick_profile().training;
   Random random(1);
-  make_validation_frame(toys.objects, room, settings, random);
+  make_validation_frame(toys.objects, room, kThings, settings, random);
   EXPECT_EQ(cv::norm(colour, room.colour, cv::NORM_INF), 0.0);
   for (std::size_t v = 0; v < toys.objects.size(); ++v) {
     const cv::Mat& view = toys.objects[v]->frame.colour;
