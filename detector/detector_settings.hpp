@@ -90,7 +90,7 @@ struct DetectionSettings {
   /// of reaches min_first_share; 0 = every patch walks down all trees.
   int first_trees = 3;
   float min_first_share = 0.1F;
-  /// Smallest score that is reported: on sixteen development worlds 95 % of the detections from here on are true.
+  /// Smallest score that is reported: in development_world_20 to 67 95 % of the detections from here on are true.
   float threshold = 0.7F;
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
