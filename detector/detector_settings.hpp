@@ -32,6 +32,9 @@ struct FeatureSettings {
   int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
   int min_max_px = 5;              ///< neighbourhood of minimum and maximum, working pixels (paper, Section 3)
   float fill_distance_px = 24.0F;  ///< how far from measured depth a pixel may borrow it, working pixels
+  /// ... or metres on the surface that it borrows from, if those are more pixels, see HoleReach. 0, and in a scale
+  /// space: the nearest pixel lends, whatever its depth.
+  float fill_distance = 0.06F;
 };
 
 /// How patches are tested. Stored in the forest file.
@@ -63,10 +66,11 @@ struct TrainingSettings {
   /// does not depend on how many others were taught.
   float most_background = 4.0F;
   double in_bag = 0.75;          ///< share of the pictures that a tree sees
-  float min_distance = 0.35F;    ///< nearest distance taught, metres
+  float min_distance = 0.3F;     ///< nearest distance taught, metres
   float max_distance = 2.6F;     ///< farthest distance taught, metres
   double occluded_share = 0.5;   ///< of the composites in which something stands in front of the object
   double cleared_share = 0.5;    ///< of the composites in which haze is taken from the object, see clear_haze
+  double sharpened_share = 0.5;  ///< of those that trees learn from, in which the object is sharpened, see sharpened
   double light_variation = 1.0;  ///< strength of the changes of exposure, colour cast and haze, 0 = none
   int max_leaf_votes = 12;       ///< offsets kept per leaf and class after merging
   int max_leaf_views = 12;       ///< remembered training views per leaf and class

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kBorder = 2;  // pixels around the distances, so that no neighbour needs a check
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // In 1/65536 pixel.
 constexpr int kStraight = 65536;
@@ -68,41 +69,59 @@ class Distances {
     return memory_[static_cast<std::size_t>((hole.y + kBorder) * stride_ + hole.x + kBorder)];
   }
 
-  /// Takes the depth of the neighbour that is nearest to its own source; `side` is 1, or -1 for those opposite.
+  /// Takes the depth of the neighbour whose source is nearest; `side` is 1, or -1 for those opposite.
+  template <bool kInMetres>
   void borrow(Hole hole, int side, cv::Mat& depth) {
-    std::int32_t& nearest = at(hole);
-    const std::int32_t* here = &nearest;
-    const Step* from = nullptr;
+    std::int32_t& distance_here = at(hole);
+    float& depth_here = depth.ptr<float>(hole.y)[hole.x];
+    const std::int32_t* distances = &distance_here;
+    float nearest = distance_here == kFarAway ? kInfinity : nearness<kInMetres>(distance_here, depth_here);
     for (const Step& step : kSteps) {
-      const std::int32_t distance = here[side * (step.dy * stride_ + step.dx)] + step.length;
-      if (distance < nearest) {
-        nearest = distance;
-        from = &step;
-      }
-    }
-    if (from != nullptr) {
-      depth.ptr<float>(hole.y)[hole.x] = depth.ptr<float>(hole.y + side * from->dy)[hole.x + side * from->dx];
+      const std::int32_t distance = distances[side * (step.dy * stride_ + step.dx)] + step.length;
+      if (distance >= kFarAway) continue;  // no lender there, or outside of the image
+      const float lent = depth.ptr<float>(hole.y + side * step.dy)[hole.x + side * step.dx];
+      const float candidate = nearness<kInMetres>(distance, lent);
+      if (candidate >= nearest) continue;
+      nearest = candidate;
+      distance_here = distance;
+      depth_here = lent;
     }
   }
 
  private:
+  template <bool kInMetres>
+  static float nearness(std::int32_t distance, float lent) {
+    return static_cast<float>(distance) * (kInMetres ? lent : 1.0F);
+  }
+
   int stride_ = 0;
   std::vector<std::int32_t>& memory_;
 };
 
+template <bool kInMetres>
+void borrow_all(const std::vector<Hole>& holes, Distances& distances, cv::Mat& depth) {
+  for (const Hole hole : holes) distances.borrow<kInMetres>(hole, 1, depth);
+  for (auto hole = holes.rbegin(); hole != holes.rend(); ++hole) distances.borrow<kInMetres>(*hole, -1, depth);
+}
+
 }  // namespace
 
-void fill_holes(cv::Mat& depth, float max_distance_px) {
+void fill_holes(cv::Mat& depth, const HoleReach& reach) {
   static thread_local Scratch scratch;
   const std::vector<Hole>& holes = scratch.holes;
   list_holes(depth, scratch.holes);
   if (holes.empty() || holes.size() == depth.total()) return;
   Distances distances(depth.size(), scratch.distances);
   for (const Hole hole : holes) distances.at(hole) = kFarAway;
-  for (const Hole hole : holes) distances.borrow(hole, 1, depth);
-  for (auto hole = holes.rbegin(); hole != holes.rend(); ++hole) distances.borrow(*hole, -1, depth);
+  if (reach.px_at_1m > 0.0F) {
+    borrow_all<true>(holes, distances, depth);
+  } else {
+    borrow_all<false>(holes, distances, depth);
+  }
   for (const Hole hole : holes) {
-    if (static_cast<float>(distances.at(hole)) > max_distance_px * kStraight) depth.ptr<float>(hole.y)[hole.x] = kNone;
+    float& lent = depth.ptr<float>(hole.y)[hole.x];
+    const float farthest = std::max(reach.px, reach.px_at_1m / lent) * kStraight;
+    if (static_cast<float>(distances.at(hole)) > farthest) lent = kNone;
   }
 }
 

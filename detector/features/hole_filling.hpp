@@ -4,9 +4,18 @@
 
 namespace houghstream {
 
-/// NaN pixels of a depth image (CV_32FC1) borrow the nearest measured depth, unless it is farther away than
-/// `max_distance_px`. Distances are those of the 5x5 chamfer mask (Borgefors 1986), within 2 % of the true ones. The
-/// time taken grows with the number of holes.
-void fill_holes(cv::Mat& depth, float max_distance_px);
+/// How far from measured depth a hole may lie and still borrow it.
+struct HoleReach {
+  float px = 0.0F;  ///< from any surface, pixels
+  /// ... and from one at depth z as many pixels divided by z, where that is more. 0: what is nearest in pixels lends.
+  float px_at_1m = 0.0F;
+};
+
+/// NaN pixels of a depth image (CV_32FC1, metres) borrow the nearest measured depth within reach. With `px_at_1m` the
+/// nearest is at the smallest distance in metres on the lender's surface, pixels times its depth: a structured-light
+/// camera loses near surfaces, and what lies in their shadow, before it loses what is behind them, so that a hole
+/// between the two is more likely part of the near one. Distances are those of the 5x5 chamfer mask (Borgefors 1986),
+/// within 2 % of the true ones. The time taken grows with the number of holes.
+void fill_holes(cv::Mat& depth, const HoleReach& reach);
 
 }  // namespace houghstream

@@ -96,6 +96,11 @@ cv::Mat enlarge_depth(const cv::Mat& depth, cv::Size size) {
   return smooth;
 }
 
+HoleReach hole_reach(const FeatureSettings& settings, const Camera& camera) {
+  if (settings.handling == ScaleHandling::kScaleSpace) return {settings.fill_distance_px, 0.0F};
+  return {settings.fill_distance_px, settings.fill_distance * static_cast<float>(camera.fx)};
+}
+
 }  // namespace
 
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
@@ -131,7 +136,7 @@ void make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettin
       out.filled_depth = enlarge_depth(frame.depth, size);
     }
   }
-  fill_holes(out.filled_depth, settings.fill_distance_px);
+  fill_holes(out.filled_depth, hole_reach(settings, out.camera));
 }
 
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {

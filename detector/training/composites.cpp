@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/training/clearing.hpp"
 #include "detector/training/occluders.hpp"
 
 namespace houghstream {
@@ -14,16 +15,6 @@ std::uint8_t to_byte(double value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
 }
 
-/// The value below which `rank` of the counted pixels lie.
-double quantile(const std::array<int, 256>& counts, int rank) {
-  int sum = 0;
-  for (std::size_t v = 0; v < counts.size(); ++v) {
-    sum += counts[v];
-    if (sum > rank) return static_cast<double>(v);
-  }
-  return 255.0;
-}
-
 struct Patchwork {
   cv::Mat colour;
   cv::Mat depth;
@@ -31,12 +22,13 @@ struct Patchwork {
   cv::Rect box_px;  // of the object in the view
 };
 
-Patchwork resized_object(const TrainingView& view, double scale) {
+Patchwork resized_object(const TrainingView& view, double scale, double sharpness) {
   Patchwork part;
   part.box_px = cv::boundingRect(view.mask);
   const cv::Size size(std::max(1, static_cast<int>(std::lround(part.box_px.width * scale))),
                       std::max(1, static_cast<int>(std::lround(part.box_px.height * scale))));
-  cv::resize(view.frame.colour(part.box_px), part.colour, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::resize(sharpened(view.frame.colour(part.box_px), sharpness), part.colour, size, 0, 0,
+             scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
   cv::resize(view.frame.depth(part.box_px), part.depth, size, 0, 0, cv::INTER_NEAREST);
   cv::resize(view.mask(part.box_px), part.mask, size, 0, 0, cv::INTER_NEAREST);
   return part;
@@ -83,34 +75,6 @@ double axial_noise(double z) {
   return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
 }
 
-void clear_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
-  constexpr double kMostHaze = 60.0;  // grey levels; more is the object's own brightness
-  constexpr int kBrightest = 245;
-  std::array<int, 256> darkest{};
-  std::array<int, 256> brightest{};
-  int count = 0;
-  for (int y = 0; y < colour.rows; ++y) {
-    for (int x = 0; x < colour.cols; ++x) {
-      if (mask.at<std::uint8_t>(y, x) == 0) continue;
-      const cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
-      ++darkest[std::min({pixel[0], pixel[1], pixel[2]})];
-      ++brightest[std::max({pixel[0], pixel[1], pixel[2]})];
-      ++count;
-    }
-  }
-  const double haze = random.uniform() * std::min(kMostHaze, quantile(darkest, count / 20));
-  const double top = std::max(haze + 1.0, quantile(brightest, count - count / 20));
-  const double gain = std::exp2(random.uniform() * std::log2(std::max(1.0, (kBrightest - 0.0) / (top - haze))));
-  const double saturation = std::exp2(random.uniform(-0.2, 0.5));
-  for (int y = 0; y < colour.rows; ++y) {
-    for (int x = 0; x < colour.cols; ++x) {
-      cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
-      const double grey = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
-      for (int c = 0; c < 3; ++c) pixel[c] = to_byte(gain * (grey + saturation * (pixel[c] - grey) - haze));
-    }
-  }
-}
-
 void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
   const double gain = std::exp2(strength * random.uniform(darkest_stops, brightest_stops));
   const double gamma = std::exp2(strength * random.uniform(-0.25, 0.25));
@@ -141,12 +105,14 @@ void vary_exposure(cv::Mat& colour, double strength, Random& random) {
 
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
                                         const TrainingSettings& settings, Random& random) {
+  constexpr double kMostSharpness = 1.5;
   constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
   const double view_distance = view.T_camera_object.translation().z();
   Composite out;
   out.scale = view_distance / distance;
   out.depth_shift = static_cast<float>(distance - view_distance);
-  const Patchwork part = resized_object(view, out.scale);
+  const bool sharpen = settings.sharpened_share > 0.0 && random.uniform() < settings.sharpened_share;
+  const Patchwork part = resized_object(view, out.scale, sharpen ? kMostSharpness * random.uniform() : 0.0);
   const cv::Size window(part.mask.cols + 2 * kMargin, part.mask.rows + 2 * kMargin);
   if (window.width > background.colour.cols || window.height > background.colour.rows) return std::nullopt;
 

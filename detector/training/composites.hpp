@@ -28,10 +28,6 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
 /// noise).
 double axial_noise(double z);
 
-/// An object taught in haze or in weak light as it may look without: the darkest of it becomes darker, all of it
-/// brighter and its colours stronger, by random shares of what its own range allows.
-void clear_haze(const cv::Mat& mask, cv::Mat& colour, Random& random);
-
 /// Changes a picture's light in place: gain between two limits in stops (powers of two), contrast, colour cast, haze,
 /// noise.
 void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);

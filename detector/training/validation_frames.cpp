@@ -82,6 +82,7 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   constexpr double kOtherLight = 2.0;  // colours must not be trusted further than light lets them
   TrainingSettings even_light = settings;
   even_light.light_variation = 0.0;  // one light for the whole frame
+  even_light.sharpened_share = 0.0;  // and one camera, as blind to detail as the one that taught
   ValidationFrame out;
   out.frame = room;
   out.frame.colour = room.colour.clone();

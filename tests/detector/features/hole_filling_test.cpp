@@ -45,7 +45,7 @@ TEST(HoleFilling, HolesBorrowFromTheNearestPixelOrOneHardlyFartherAway) {
     depth.setTo(kNone, missing);
     cv::Mat nearest;
     cv::distanceTransform(missing, nearest, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-    fill_holes(depth, 1000.0F);
+    fill_holes(depth, {1000.0F, 0.0F});
     const cv::Mat found = borrowed_from(depth);
     for (int i = 0; i < 90 * 70; ++i) {
       const float expected = nearest.at<float>(i / 90, i % 90);
@@ -58,17 +58,46 @@ TEST(HoleFilling, HolesBorrowFromTheNearestPixelOrOneHardlyFartherAway) {
 TEST(HoleFilling, WhatIsFartherAwayThanTheLimitStaysAHole) {
   cv::Mat depth = numbered_depth({40, 1});
   depth.colRange(5, 40).setTo(kNone);
-  fill_holes(depth, 10.0F);
+  fill_holes(depth, {10.0F, 0.0F});
   EXPECT_EQ(depth.at<float>(0, 14), 5.0F);
   EXPECT_TRUE(std::isnan(depth.at<float>(0, 15)));
 }
 
+/// A near surface on the left, a far one on the right, between them columns 10 to 89 without depth.
+cv::Mat gap(float near, float far) {
+  cv::Mat depth(3, 100, CV_32FC1, cv::Scalar(kNone));
+  depth.colRange(0, 10).setTo(near);
+  depth.colRange(90, 100).setTo(far);
+  return depth;
+}
+
+TEST(HoleFilling, NearSurfacesLendFarther) {
+  cv::Mat depth = gap(0.5F, 2.0F);
+  fill_holes(depth, {1000.0F, 1.0F});
+  // 81 pixels in all, divided as 2 m to 0.5 m
+  EXPECT_EQ(depth.at<float>(1, 9 + 64), 0.5F);
+  EXPECT_EQ(depth.at<float>(1, 9 + 66), 2.0F);
+  cv::Mat in_pixels = gap(0.5F, 2.0F);
+  fill_holes(in_pixels, {1000.0F, 0.0F});
+  EXPECT_EQ(in_pixels.at<float>(1, 9 + 40), 0.5F);
+  EXPECT_EQ(in_pixels.at<float>(1, 9 + 41), 2.0F);
+}
+
+TEST(HoleFilling, TheReachInMetresCountsWhereItIsMorePixels) {
+  cv::Mat depth = gap(0.5F, 2.0F);
+  fill_holes(depth, {10.0F, 15.0F});  // 30 pixels from 0.5 m; from 2 m 7.5, so 10
+  EXPECT_EQ(depth.at<float>(1, 9 + 30), 0.5F);
+  EXPECT_TRUE(std::isnan(depth.at<float>(1, 9 + 31)));
+  EXPECT_TRUE(std::isnan(depth.at<float>(1, 90 - 11)));
+  EXPECT_EQ(depth.at<float>(1, 90 - 10), 2.0F);
+}
+
 TEST(HoleFilling, WithoutHolesAndWithoutDepthNothingChanges) {
   cv::Mat full = numbered_depth({9, 7});
-  fill_holes(full, 5.0F);
+  fill_holes(full, {5.0F, 0.0F});
   EXPECT_EQ(cv::countNonZero(full != numbered_depth({9, 7})), 0);
   cv::Mat empty(7, 9, CV_32FC1, cv::Scalar(kNone));
-  fill_holes(empty, 5.0F);
+  fill_holes(empty, {5.0F, 0.0F});
   EXPECT_EQ(cv::countNonZero(empty == empty), 0);
 }
 

@@ -52,6 +52,7 @@ TEST(WorkingFrame, ASinglePixelOfDepthIsEnoughForABlock) {
   frame.depth.at<float>(5, 5) = 0.9F;
   FeatureSettings settings;
   settings.fill_distance_px = 0.0F;
+  settings.fill_distance = 0.0F;
   const WorkingFrame working = make_working_frame(frame, 0.5F, settings);
   EXPECT_FLOAT_EQ(working.filled_depth.at<float>(2, 2), 0.9F);
   EXPECT_TRUE(std::isnan(working.filled_depth.at<float>(2, 1)));
@@ -63,12 +64,28 @@ TEST(WorkingFrame, HolesBorrowTheNearestDepthUpToTheLimit) {
   frame.depth.colRange(55, 60).setTo(2.0F);
   FeatureSettings settings;
   settings.fill_distance_px = 10.0F;
+  settings.fill_distance = 0.0F;
   const cv::Mat depth = make_working_frame(frame, 1.0F, settings).filled_depth;
   EXPECT_FLOAT_EQ(depth.at<float>(5, 5), 1.0F);
   EXPECT_FLOAT_EQ(depth.at<float>(5, 14), 1.0F);
   EXPECT_TRUE(std::isnan(depth.at<float>(5, 16)));
   EXPECT_TRUE(std::isnan(depth.at<float>(5, 43)));
   EXPECT_FLOAT_EQ(depth.at<float>(5, 45), 2.0F);
+}
+
+TEST(WorkingFrame, NearSurfacesLendOverAsManyMetresWithDepthNormalisation) {
+  RgbdFrame frame = flat_frame(60, 10, kNone);
+  frame.depth.colRange(0, 5).setTo(0.4F);
+  FeatureSettings settings;
+  settings.fill_distance_px = 10.0F;
+  settings.fill_distance = 0.05F;  // 25 pixels at 0.4 m
+  const cv::Mat depth = make_working_frame(frame, 1.0F, settings).filled_depth;
+  EXPECT_FLOAT_EQ(depth.at<float>(5, 4 + 25), 0.4F);
+  EXPECT_TRUE(std::isnan(depth.at<float>(5, 4 + 26)));
+  settings.handling = ScaleHandling::kScaleSpace;
+  const cv::Mat without = make_working_frame(frame, 1.0F, settings).filled_depth;
+  EXPECT_FLOAT_EQ(without.at<float>(5, 4 + 10), 0.4F);
+  EXPECT_TRUE(std::isnan(without.at<float>(5, 4 + 11)));
 }
 
 TEST(WorkingFrame, TheFrameItselfIsNotTouchedInFullSize) {

@@ -15,6 +15,8 @@ TrainingSettings plain() {
   TrainingSettings settings;
   settings.light_variation = 0.0;
   settings.occluded_share = 0.0;
+  settings.cleared_share = 0.0;
+  settings.sharpened_share = 0.0;
   return settings;
 }
 
@@ -113,46 +115,17 @@ TEST(Composites, TheSameSeedGivesTheSamePicture) {
   EXPECT_FALSE(same_values(first->frame.colour, other->frame.colour));
 }
 
-/// A grey ramp from `dark` to `bright` with some red in it.
-cv::Mat ramp(int dark, int bright) {
-  cv::Mat out(20, 100, CV_8UC3);
-  for (int y = 0; y < out.rows; ++y) {
-    for (int x = 0; x < out.cols; ++x) {
-      const int grey = dark + (bright - dark) * x / (out.cols - 1);
-      out.at<cv::Vec3b>(y, x) = cv::Vec3b(cv::saturate_cast<std::uint8_t>(grey), cv::saturate_cast<std::uint8_t>(grey),
-                                          cv::saturate_cast<std::uint8_t>(grey + 10));
-    }
-  }
-  return out;
-}
-
-double contrast(const cv::Mat& colour) {
-  cv::Scalar mean;
-  cv::Scalar deviation;
-  cv::meanStdDev(colour, mean, deviation);
-  return deviation[0];
-}
-
-TEST(ClearHaze, GivesAHazyObjectMoreContrastAndNeverMuchLess) {
-  const cv::Mat mask(20, 100, CV_8UC1, cv::Scalar(255));
-  double most = 0.0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    cv::Mat hazy = ramp(60, 140);
-    Random random(seed);
-    clear_haze(mask, hazy, random);
-    EXPECT_GT(contrast(hazy), 0.95 * contrast(ramp(60, 140)));
-    most = std::max(most, contrast(hazy));
-  }
-  EXPECT_GT(most, 1.8 * contrast(ramp(60, 140)));
-}
-
-TEST(ClearHaze, LeavesAClearObjectsRangeNearlyAsItIs) {
-  const cv::Mat mask(20, 100, CV_8UC1, cv::Scalar(255));
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    cv::Mat clear = ramp(0, 245);
-    Random random(seed);
-    clear_haze(mask, clear, random);
-    EXPECT_NEAR(contrast(clear), contrast(ramp(0, 245)), 0.1 * contrast(ramp(0, 245)));
+TEST(Composites, SharpenedAreOnlyObjectsAndOnlyIfAsked) {
+  TrainingSettings settings = plain();
+  settings.sharpened_share = 1.0;
+  const TrainingView view = tile_view();
+  const auto as_taught = compose(view, 0.7, 3, plain());
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const auto sharp = compose(view, 0.7, seed, settings);
+    ASSERT_TRUE(sharp && as_taught);
+    const cv::Rect box = cv::boundingRect(sharp->mask);
+    EXPECT_GT(cv::norm(sharp->frame.colour(box), as_taught->frame.colour(box), cv::NORM_INF), 5.0);
+    EXPECT_TRUE(same_values(sharp->mask, as_taught->mask));
   }
 }
 
