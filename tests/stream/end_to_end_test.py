@@ -16,6 +16,7 @@ FRAMES = 24
 REPLAYED = 120  # the scene again and again
 VALID = 1  # object_pose_t
 CLASSES = {1: "bowl", 4: "soda_can"}
+THRESHOLD = 0.5  # one room and six trees cannot teach scores what they are worth
 
 
 def run(*command, **options):
@@ -39,7 +40,8 @@ def make_data(tools, folder):
 
 
 def start_stream(tools, folder):
-    detect = Process(folder, tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 2)
+    detect = Process(folder, tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 2,
+                     "--threshold", THRESHOLD)
     pose = Process(folder, tools / "hs-pose", "--models", folder / "views" / "models")
     detect.wait_until_ready()
     pose.wait_until_ready()
@@ -102,8 +104,8 @@ def capture_live(tools, folder):
 def detect_offline(tools, folder):
     """Detections of every frame of the scene, by utime, straight from the log and with one thread."""
     results = folder / "results.log"
-    run(tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 1, "-l", f"file://{folder / 'scene.log'}",
-        "--output-log", results)
+    run(tools / "hs-detect", "--forest", folder / "small.forest", "--threads", 1, "--threshold", THRESHOLD,
+        "-l", f"file://{folder / 'scene.log'}", "--output-log", results)
     return detections_by_utime(read_log(results))
 
 
@@ -128,7 +130,7 @@ def check_detections(truth, offline):
             wanted += 1
             found += any(is_found(detection, item, info) for detection in detections)
     print(f"{found} of {wanted} well visible objects found by a forest of 6 trees")
-    assert wanted >= FRAMES and found >= 0.5 * wanted, (found, wanted)
+    assert wanted >= FRAMES and found >= 0.7 * wanted, (found, wanted)
 
 
 def check_same_on_the_bus(heard, offline):

@@ -10,6 +10,7 @@ import sys
 import time
 
 from bus import Process, read_arguments
+from end_to_end_test import THRESHOLD
 from lcm_messages import Wire, detections_by_utime, detections_of, read_log, utime_of
 
 URL = "udpm://239.255.76.67:7667?ttl=1"  # one hop: to the other end of the cable
@@ -63,7 +64,8 @@ def start(folder, *command):
 
 
 def start_detector(tools, made, folder, channel, host=()):
-    return start(folder, *host, tools / "hs-detect", "--forest", made / "small.forest", "--threads", 1, "-c", channel)
+    return start(folder, *host, tools / "hs-detect", "--forest", made / "small.forest", "--threads", 1,
+                 "--threshold", THRESHOLD, "-c", channel)
 
 
 def publish_cameras(tools, made):
