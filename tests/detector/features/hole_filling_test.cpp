@@ -27,9 +27,9 @@ cv::Mat borrowed_from(const cv::Mat& depth) {
     for (int x = 0; x < depth.cols; ++x) {
       const float value = depth.at<float>(y, x);
       const int from = std::isnan(value) ? -1 : static_cast<int>(value) - 1;
-      distances.at<float>(y, x) =
-          from < 0 ? -1.0F
-                   : std::hypot(static_cast<float>(from % depth.cols - x), static_cast<float>(from / depth.cols - y));
+      const int dx = from % depth.cols - x;
+      const int dy = from / depth.cols - y;
+      distances.at<float>(y, x) = from < 0 ? -1.0F : std::hypot(static_cast<float>(dx), static_cast<float>(dy));
     }
   }
   return distances;

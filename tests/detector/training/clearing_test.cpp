@@ -10,10 +10,11 @@ namespace {
 
 /// A grey ramp from `dark` to `bright` with some red in it.
 cv::Mat ramp(int dark, int bright) {
-  cv::Mat out(20, 100, CV_8UC3);
+  constexpr int kLast = 99;
+  cv::Mat out(20, kLast + 1, CV_8UC3);
   for (int y = 0; y < out.rows; ++y) {
-    for (int x = 0; x < out.cols; ++x) {
-      const int grey = dark + (bright - dark) * x / (out.cols - 1);
+    for (int x = 0; x <= kLast; ++x) {
+      const int grey = dark + (bright - dark) * x / kLast;
       out.at<cv::Vec3b>(y, x) = cv::Vec3b(cv::saturate_cast<std::uint8_t>(grey), cv::saturate_cast<std::uint8_t>(grey),
                                           cv::saturate_cast<std::uint8_t>(grey + 10));
     }
