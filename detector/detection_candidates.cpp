@@ -30,6 +30,7 @@ std::vector<ComparedView> compare_views(const Forest& forest, const Hypothesis& 
   constexpr float kViews = 8.0F;
   const auto wanted = static_cast<std::size_t>(kViews * spread);
   std::vector<ComparedView> compared;
+  compared.reserve(std::min(wanted, hypothesis.views.size()));
   for (const auto& [view, weight] : hypothesis.views) {
     if (compared.size() == wanted) break;
     if (std::find(forgotten.begin(), forgotten.end(), view) != forgotten.end()) continue;

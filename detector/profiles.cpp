@@ -49,7 +49,7 @@ Profile gall(std::size_t objects) {
   profile.patch.radius = 8;
   profile.training.alone_share = 0.0;  // differences only
   profile.training.spare_background = 0;
-  profile.training.sharpened_share = 0.0;
+  profile.training.sharpened_share = 0.0;  // the original sees its views as they were taken
   profile.training.most_background = std::numeric_limits<float>::infinity();
   profile.training.scoring = Scoring::kVotes;
   profile.training.max_leaf_votes = 32;

@@ -43,8 +43,9 @@ void clear_haze(const cv::Mat& mask, cv::Mat& colour, Random& random) {
     for (int x = 0; x < colour.cols; ++x) {
       cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
       const double grey = (pixel[0] + pixel[1] + pixel[2]) / 3.0;
-      for (int c = 0; c < 3; ++c)
+      for (int c = 0; c < 3; ++c) {
         pixel[c] = cv::saturate_cast<std::uint8_t>(gain * (grey + saturation * (pixel[c] - grey) - haze));
+      }
     }
   }
 }

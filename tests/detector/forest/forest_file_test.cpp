@@ -138,6 +138,8 @@ TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
   }
   expect_refused("feature kernels 8 and 5", [](Forest& f) { f.features.depth_sobel_px = 8; });
   expect_refused("feature kernels 7 and 0", [](Forest& f) { f.features.min_max_px = 0; });
+  expect_refused("holes filled over", [&](Forest& f) { f.features.fill_distance_px = nan; });
+  expect_refused("24 pixels or -1 m", [](Forest& f) { f.features.fill_distance = -1.0F; });
   expect_refused("patch of 0 steps", [](Forest& f) { f.patch.radius = 0; });
   expect_refused("patch of", [&](Forest& f) { f.patch.unit = nan; });
 }

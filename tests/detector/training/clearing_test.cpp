@@ -52,7 +52,7 @@ TEST(ClearHaze, LeavesAClearObjectsRangeNearlyAsItIs) {
   }
 }
 
-/// Black on the left, white on the right, the step as soft as a lens makes it.
+/// Dark on the left, bright on the right, the step as soft as a lens makes it.
 cv::Mat soft_step(double sigma) {
   cv::Mat step(20, 60, CV_8UC3, cv::Scalar::all(60));
   step.colRange(30, 60).setTo(cv::Scalar::all(180));
