@@ -31,6 +31,9 @@ class SparseSums {
   /// Indices and sums in order of the index; forgets them.
   void take(Weights& out) {
     out.clear();
+    std::size_t count = 0;
+    for (const std::uint64_t bits : touched_) count += hwy::PopCount(bits);
+    out.reserve(count);
     for (std::size_t word = 0; word < touched_.size(); ++word) {
       for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
         const auto index = static_cast<std::uint32_t>(word * kBits + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
@@ -123,8 +126,10 @@ Hypothesis gather_support(const Forest& forest, const HoughSpace& space, const P
 std::vector<Hypothesis> find_hypotheses(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
                                         const Camera& working_camera, float least_mass,
                                         const DetectionSettings& settings) {
+  const std::vector<Eigen::Vector3f> maxima = find_maxima(space, working_camera, settings);
   std::vector<Hypothesis> hypotheses;
-  for (const Eigen::Vector3f& centre : find_maxima(space, working_camera, settings)) {
+  hypotheses.reserve(maxima.size());
+  for (const Eigen::Vector3f& centre : maxima) {
     Hypothesis hypothesis =
         gather_support(forest, space, patches, working_camera, centre, least_mass, settings.vote_sigma);
     if (hypothesis.mass >= least_mass) hypotheses.push_back(std::move(hypothesis));
