@@ -18,25 +18,25 @@
 namespace houghstream {
 namespace {
 
+using WeighedViews = std::vector<std::pair<std::uint32_t, float>>;
+
 /// A remembered view, put at the hypothesis.
 struct ComparedView {
   std::uint32_t view = 0;
   ViewFit fit;
 };
 
-/// The first views that most votes remember, compared with the frame; more where a class was taught in many attitudes.
-std::vector<ComparedView> compare_views(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame,
-                                        float spread, const std::vector<std::uint32_t>& forgotten) {
+/// Appends the first views that most votes remember, compared with the frame; more where a class was taught in many
+/// attitudes.
+void compare_views(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame, float spread,
+                   const std::vector<std::uint32_t>& forgotten, std::vector<ComparedView>& compared) {
   constexpr float kViews = 8.0F;
   const auto wanted = static_cast<std::size_t>(kViews * spread);
-  std::vector<ComparedView> compared;
-  compared.reserve(std::min(wanted, hypothesis.views.size()));
   for (const auto& [view, weight] : hypothesis.views) {
     if (compared.size() == wanted) break;
     if (std::find(forgotten.begin(), forgotten.end(), view) != forgotten.end()) continue;
     compared.push_back({view, fit_view(forest.views[view], hypothesis.centre_camera, frame)});
   }
-  return compared;
 }
 
 /// A hypothesis and whose it is.
@@ -47,28 +47,26 @@ struct ClassHypothesis {
 };
 
 /// The view that agrees best with the frame, aligned with it; ties go to the first. What is hopeless where it stands is
-/// left there: most maxima are of that kind, and aligning takes longer than all else about them.
-ViewFit best_fit(const Forest& forest, const ClassHypothesis& found, const LabFrame& frame, float mass_share,
+/// left there: most maxima are of that kind, and aligning takes longer than all else about them. `evidence`: without
+/// fit.
+ViewFit best_fit(const Forest& forest, const ClassHypothesis& found, const LabFrame& frame, Evidence evidence,
                  const std::vector<ComparedView>& compared) {
   constexpr float kHopeless = 0.05F;  // score
   if (compared.empty()) return {};
   const auto worse = [](const ComparedView& a, const ComparedView& b) { return agreement(a.fit) < agreement(b.fit); };
   const ComparedView& best = *std::max_element(compared.begin(), compared.end(), worse);
-  Evidence evidence;
-  evidence.mass_share = mass_share;
   evidence.fit = best.fit;
   if (score(forest.classes[found.class_index].score_model, evidence) < kHopeless) return best.fit;
   return align_view(forest.views[best.view], found.hypothesis.centre_camera, best.fit, frame);
 }
 
 /// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was
-/// taught in many attitudes the views lie far apart, and how they agree with the frame says more.
-std::vector<std::pair<std::uint32_t, float>> weighed_views(const Hypothesis& hypothesis, float spread,
-                                                           const std::vector<ComparedView>& compared) {
+/// taught in many attitudes the views lie far apart, and how they agree with the frame says more; `weighed` holds them.
+const WeighedViews& weighed_views(const Hypothesis& hypothesis, float spread, const std::vector<ComparedView>& compared,
+                                  WeighedViews& weighed) {
   constexpr float kSharpness = 4.0F;
-  if (spread == 1.0F || compared.empty()) return {hypothesis.views.begin(), hypothesis.views.end()};
-  std::vector<std::pair<std::uint32_t, float>> weighed;
-  weighed.reserve(compared.size());
+  if (spread == 1.0F || compared.empty()) return hypothesis.views;
+  weighed.clear();
   for (const ComparedView& seen : compared) weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
   std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return weighed;
@@ -89,16 +87,19 @@ Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const
   const ObjectClass& object = forest.classes[found.class_index];
   const Hypothesis& hypothesis = found.hypothesis;
   const float spread = found.spread;
-  std::vector<ComparedView> compared;
+  static thread_local std::vector<ComparedView> compared;  // both kept from candidate to candidate
+  static thread_local WeighedViews weighed;
+  compared.clear();
   Candidate candidate;
   Detection& detection = candidate.detection;
   candidate.evidence.mass_share = hypothesis.mass / object.expected_mass;
+  candidate.evidence.distance = hypothesis.centre_camera.norm();
   detection.box_px = backprojected_box(forest, hypothesis, seen.grid, frame.frame.camera);
   detection.score = vote_score(candidate.evidence.mass_share);
   if (forest.scoring == Scoring::kEvidence) {
     ViewFit& fit = candidate.evidence.fit;
-    compared = compare_views(forest, hypothesis, frame, spread, forgotten);
-    fit = best_fit(forest, found, frame, candidate.evidence.mass_share, compared);
+    compare_views(forest, hypothesis, frame, spread, forgotten, compared);
+    fit = best_fit(forest, found, frame, candidate.evidence, compared);
     detection.score = score(object.score_model, candidate.evidence);
     detection.box_px = visible_box(detection.box_px, fit.visible_box_px, frame.frame.camera);
   }
@@ -110,7 +111,7 @@ Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const
   const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis.centre_camera));
   const auto room = static_cast<std::size_t>(std::max(max_rotations, 0));
   detection.rotations.reserve(std::min(room, hypothesis.views.size()));
-  for (const auto& [view, weight] : weighed_views(hypothesis, spread, compared)) {
+  for (const auto& [view, weight] : weighed_views(hypothesis, spread, compared, weighed)) {
     if (detection.rotations.size() >= room) break;
     detection.rotations.push_back({R_camera_ray * Eigen::Quaternionf(forest.views[view].R_ray_object), weight});
   }
@@ -157,6 +158,9 @@ std::vector<ClassHypothesis> all_hypotheses(const Forest& forest, const SeenPatc
     by_class[c] = class_hypotheses(forest, c, seen, each);
   });
   std::vector<ClassHypothesis> all;
+  std::size_t count = 0;
+  for (const std::vector<Hypothesis>& own : by_class) count += own.size();
+  all.reserve(count);
   for (std::size_t c = 0; c < by_class.size(); ++c) {
     if (by_class[c].empty()) continue;
     const float spread = attitude_spread(forest, static_cast<std::uint32_t>(c));

@@ -78,6 +78,7 @@ struct TrainingSettings {
   Scoring scoring = Scoring::kEvidence;
   int validation_frames = 300;  ///< composed pictures on which the score learns what it is worth
   double dazzled_share = 0.5;   ///< of these, in which what is near has lost most of its depth, see lose_near_depth
+  double misfit = 1.0;          ///< in all of these: how much depth strays from colour and views, see misfits.hpp
   std::uint64_t seed = 1;
   int threads = 2;
 };
@@ -94,8 +95,8 @@ struct DetectionSettings {
   /// of reaches min_first_share; 0 = every patch walks down all trees.
   int first_trees = 3;
   float min_first_share = 0.1F;
-  /// Smallest score that is reported: in development_world_20 to 67 95 % of the detections from here on are true.
-  float threshold = 0.7F;
+  /// Smallest score that is reported: in development_world_20 to 67 95 % of the detections from 0.72 on are true.
+  float threshold = 0.75F;
   float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
   int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
   float min_class_share = 0.1F;    ///< of its leaves, from which a patch votes for a class

@@ -36,6 +36,7 @@ double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights,
 ScoreTerms score_terms(const Evidence& evidence) {
   const ViewFit& fit = evidence.fit;
   const float foreign = std::min(fit.foreign_colour, 1.0F);
+  constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
   const float log_mass = std::log(std::max(evidence.mass_share, 1e-4F));
   return {1.0F,
           log_mass,
@@ -48,7 +49,9 @@ ScoreTerms score_terms(const Evidence& evidence) {
           foreign * foreign,
           fit.unevenness,
           fit.unknown * log_mass,
-          fit.unknown * fit.likeness};
+          fit.unknown * fit.likeness,
+          fit.unknown * std::log(std::max(evidence.distance, kNearest)),
+          fit.likeness * fit.hue_conflict};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {

@@ -64,12 +64,15 @@ struct Rooms {
 };
 
 Rooms share_rooms(const std::vector<TrainingView>& views, Scoring scoring) {
-  constexpr std::size_t kForScore = 6;  // every so many-th
+  constexpr std::size_t kFew = 6;  // rooms for the score, of which trees need twice as many
+  const auto is_a_room = [](const TrainingView& view) { return view.class_id == 0; };
+  const auto all = static_cast<std::size_t>(std::count_if(views.begin(), views.end(), is_a_room));
+  const std::size_t every = std::clamp<std::size_t>(all / kFew, 3, 6);
   Rooms rooms;
   std::size_t count = 0;
   for (const TrainingView& view : views) {
-    const bool is_room = view.class_id == 0;
-    const bool for_score = is_room && scoring == Scoring::kEvidence && ++count % kForScore == 0;
+    const bool is_room = is_a_room(view);
+    const bool for_score = is_room && scoring == Scoring::kEvidence && ++count % every == 0;
     if (!is_room) rooms.objects.push_back(&view);
     (for_score ? rooms.for_score : rooms.for_trees).push_back(&view);
   }

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/training/composites.hpp"
+#include "detector/training/misfits.hpp"
 
 namespace houghstream {
 namespace {
@@ -69,8 +70,9 @@ void add_look_alikes(const std::vector<const TrainingView*>& objects, int count,
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     out.look_alikes.push_back(static_cast<std::uint32_t>(index));
     const TrainingView other = i % 2 == 0 ? recoloured(*objects[index], random) : resized(*objects[index], random);
-    const std::optional<Composite> composite =
-        make_composite(other, out.frame, draw_distance(settings, random), settings, random);
+    const double distance = draw_distance(settings, random);
+    const TrainingView misfit = bent(other, settings.misfit, random);
+    const std::optional<Composite> composite = make_composite(misfit, out.frame, distance, settings, random);
     if (composite) put_back(*composite, 0, out.frame, labels);
   }
 }
@@ -93,8 +95,9 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   for (int label = 1; label <= things.objects; ++label) {
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     const TrainingView& view = *objects[index];
-    const std::optional<Composite> composite =
-        make_composite(view, out.frame, draw_distance(settings, random), even_light, random);
+    const double distance = draw_distance(settings, random);
+    const TrainingView misfit = bent(view, settings.misfit, random);
+    const std::optional<Composite> composite = make_composite(misfit, out.frame, distance, even_light, random);
     out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
     whole_px.push_back(composite ? composite->whole_px : 1);
     if (composite) put_back(*composite, static_cast<std::uint8_t>(label), out.frame, labels);
@@ -108,6 +111,7 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   }
   const auto unseen = [](const ValidationFrame::Object& object) { return object.box_visible_px.empty(); };
   out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());
+  misregister(settings.misfit, out.frame.depth, random);
   vary_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
   return out;
 }

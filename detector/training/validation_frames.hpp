@@ -28,7 +28,7 @@ struct ComposedThings {
 };
 
 /// Random views in one room, each as in a composite: other distance, light, half of them partly hidden; behind them the
-/// look-alikes.
+/// look-alikes. Depth misfits colours and views, see misfits.hpp.
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
                                       const ComposedThings& things, const TrainingSettings& settings, Random& random);
 

@@ -53,6 +53,30 @@ TEST(Score, MassAndLikenessWeighOtherwiseWhereDepthIsUnknown) {
   EXPECT_EQ(score(ScoreModel{}, evidence), known);
 }
 
+TEST(Score, MissingDepthIsAnotherThingFarAway) {
+  ScoreModel model;
+  model.weights[12] = -2.0F;
+  Evidence evidence = with_mass(0.3F);
+  evidence.distance = 2.0F;
+  EXPECT_EQ(score(model, evidence), score(ScoreModel{}, evidence)) << "where depth is known, distance is nothing";
+  evidence.fit.unknown = 0.8F;
+  const float far = score(model, evidence);
+  evidence.distance = 0.4F;
+  EXPECT_GT(score(model, evidence), far);
+  evidence.distance = 0.0F;
+  EXPECT_TRUE(std::isfinite(score_terms(evidence)[12]));
+}
+
+TEST(Score, LikenessInOtherHuesWeighsOtherwise) {
+  ScoreModel model;
+  model.weights[13] = -3.0F;
+  Evidence evidence = with_mass(0.3F);
+  evidence.fit.likeness = 0.7F;
+  EXPECT_EQ(score(model, evidence), score(ScoreModel{}, evidence));
+  evidence.fit.hue_conflict = 0.5F;
+  EXPECT_LT(score(model, evidence), score(ScoreModel{}, evidence));
+}
+
 /// Examples whose truth is drawn from a model.
 std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
   Random random(4);
