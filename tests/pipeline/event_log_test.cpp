@@ -13,11 +13,11 @@ namespace {
 
 class EventLogFile : public testing::Test {
  protected:
-  EventLogFile() : file_(std::filesystem::temp_directory_path() / ("event_log_test." + std::to_string(getpid()))) {}
-  ~EventLogFile() override { std::filesystem::remove(file_); }
+  EventLogFile() : file(std::filesystem::temp_directory_path() / ("event_log_test." + std::to_string(getpid()))) {}
+  ~EventLogFile() override { std::filesystem::remove(file); }
 
   void write_three() const {
-    LogWriter writer(file_);
+    LogWriter writer(file);
     for (std::int64_t i = 0; i < 3; ++i) {
       const std::vector<std::uint8_t> data(10, static_cast<std::uint8_t>(i));
       writer.write(1000 + i, "CHANNEL", {data.data(), data.size()});
@@ -25,7 +25,7 @@ class EventLogFile : public testing::Test {
     writer.close();
   }
 
-  const std::filesystem::path file_;
+  const std::filesystem::path file;
 };
 
 std::string refusal_after(const std::filesystem::path& file, int good_events) {
@@ -42,7 +42,7 @@ std::string refusal_after(const std::filesystem::path& file, int good_events) {
 
 TEST_F(EventLogFile, IsReadByLcm) {
   write_three();
-  lcm::LogFile log(file_.string(), "r");
+  lcm::LogFile log(file.string(), "r");
   ASSERT_TRUE(log.good());
   for (int i = 0; i < 3; ++i) {
     const lcm::LogEvent* event = log.readNextEvent();
@@ -58,7 +58,7 @@ TEST_F(EventLogFile, IsReadByLcm) {
 
 TEST_F(EventLogFile, IsReadBack) {
   write_three();
-  LogReader reader(file_);
+  LogReader reader(file);
   for (int i = 0; i < 3; ++i) {
     const std::optional<LogEvent> event = reader.next();
     ASSERT_TRUE(event.has_value());
@@ -71,21 +71,21 @@ TEST_F(EventLogFile, IsReadBack) {
 
 TEST_F(EventLogFile, ACutLogIsReportedNotEnded) {
   write_three();
-  const auto size = std::filesystem::file_size(file_);
-  std::filesystem::resize_file(file_, size - 4);
-  EXPECT_NE(refusal_after(file_, 2).find("cut in event 2"), std::string::npos);
-  std::filesystem::resize_file(file_, size - 20);
-  EXPECT_NE(refusal_after(file_, 2).find("cut"), std::string::npos);
+  const auto size = std::filesystem::file_size(file);
+  std::filesystem::resize_file(file, size - 4);
+  EXPECT_NE(refusal_after(file, 2).find("cut in event 2"), std::string::npos);
+  std::filesystem::resize_file(file, size - 20);
+  EXPECT_NE(refusal_after(file, 2).find("cut"), std::string::npos);
 }
 
 TEST_F(EventLogFile, ADamagedLogIsReported) {
   write_three();
   {
-    std::fstream log(file_, std::ios::in | std::ios::out | std::ios::binary);
+    std::fstream log(file, std::ios::in | std::ios::out | std::ios::binary);
     log.seekp(45);  // the second event's sync word
     log.put('x');
   }
-  EXPECT_NE(refusal_after(file_, 1).find("no event header at byte 45"), std::string::npos);
+  EXPECT_NE(refusal_after(file, 1).find("no event header at byte 45"), std::string::npos);
 }
 
 // Each event of write_three() takes 45 bytes: header 28, channel 7, data 10.
@@ -99,8 +99,8 @@ void put_at(const std::filesystem::path& file, std::streamoff position, char val
 
 TEST_F(EventLogFile, WhatFollowsADamagedEventIsRead) {
   write_three();
-  put_at(file_, kEventBytes, 'x');
-  LogReader reader(file_);
+  put_at(file, kEventBytes, 'x');
+  LogReader reader(file);
   EXPECT_EQ(reader.next()->timestamp, 1000);
   EXPECT_THROW(reader.next(), InputError);
   const LogReader::Damage damage = reader.skip_damage();
@@ -112,8 +112,8 @@ TEST_F(EventLogFile, WhatFollowsADamagedEventIsRead) {
 
 TEST_F(EventLogFile, AWrongLengthDoesNotSwallowTheNextEvent) {
   write_three();
-  put_at(file_, kEventBytes - 17 - 1, 10 + 20);  // the first event's data would reach into the second
-  LogReader reader(file_);
+  put_at(file, kEventBytes - 17 - 1, 10 + 20);  // the first event's data would reach into the second
+  LogReader reader(file);
   EXPECT_EQ(reader.next()->timestamp, 1000);
   EXPECT_THROW(reader.next(), InputError);
   const LogReader::Damage damage = reader.skip_damage();
@@ -125,8 +125,8 @@ TEST_F(EventLogFile, AWrongLengthDoesNotSwallowTheNextEvent) {
 
 TEST_F(EventLogFile, DamageUpToTheEndIsPassedOver) {
   write_three();
-  std::filesystem::resize_file(file_, 2 * kEventBytes + 30);
-  LogReader reader(file_);
+  std::filesystem::resize_file(file, 2 * kEventBytes + 30);
+  LogReader reader(file);
   reader.next();
   reader.next();
   EXPECT_THROW(reader.next(), InputError);
@@ -135,12 +135,12 @@ TEST_F(EventLogFile, DamageUpToTheEndIsPassedOver) {
 }
 
 TEST_F(EventLogFile, FilesThatAreNoLogsAreRefused) {
-  EXPECT_THROW(LogReader(file_ / "missing"), InputError);
-  EXPECT_THROW(LogWriter(file_ / "missing" / "too"), InputError);
-  std::ofstream(file_).close();
-  EXPECT_THROW(LogReader{file_}, InputError);
-  std::ofstream(file_) << "this is a text file, and certainly not a log";
-  EXPECT_NE(refusal_after(file_, 0).find("no event header"), std::string::npos);
+  EXPECT_THROW(LogReader(file / "missing"), InputError);
+  EXPECT_THROW(LogWriter(file / "missing" / "too"), InputError);
+  std::ofstream(file).close();
+  EXPECT_THROW(LogReader{file}, InputError);
+  std::ofstream(file) << "this is a text file, and certainly not a log";
+  EXPECT_NE(refusal_after(file, 0).find("no event header"), std::string::npos);
   EXPECT_THROW(LogReader{std::filesystem::temp_directory_path()}, InputError);
 }
 

@@ -31,10 +31,10 @@ class FakeSource : public FrameSource {
 
 class CaptureLog : public testing::Test {
  protected:
-  CaptureLog() : file_(std::filesystem::temp_directory_path() / ("capture_test." + std::to_string(getpid()))) {
+  CaptureLog() : file(std::filesystem::temp_directory_path() / ("capture_test." + std::to_string(getpid()))) {
     catch_stop_signals();
   }
-  ~CaptureLog() override { std::filesystem::remove(file_); }
+  ~CaptureLog() override { std::filesystem::remove(file); }
 
   /// Timestamps, frame times and frame counters of what was written.
   struct Line {
@@ -44,9 +44,9 @@ class CaptureLog : public testing::Test {
   };
   std::vector<Line> capture(int frames_in_source, const CaptureSettings& settings) const {
     capture_to_log([&](const CameraListener&) { return std::make_unique<FakeSource>(frames_in_source); }, settings,
-                   file_.string());
+                   file.string());
     std::vector<Line> lines;
-    LogReader reader(file_);
+    LogReader reader(file);
     while (const std::optional<LogEvent> event = reader.next()) {
       const FrameHeader header = read_frame_header({event->data.data(), event->data.size()});
       EXPECT_EQ(event->channel, settings.channel);
@@ -55,7 +55,7 @@ class CaptureLog : public testing::Test {
     return lines;
   }
 
-  const std::filesystem::path file_;
+  const std::filesystem::path file;
 };
 
 TEST_F(CaptureLog, HoldsTheSourcesFrames) {

@@ -120,6 +120,7 @@ TEST(Score, WithoutExamplesThePriorStays) {
 
 TEST(Score, SeparableExamplesGiveFiniteWeights) {
   std::vector<ScoreExample> examples;
+  examples.reserve(50);
   for (int i = 0; i < 50; ++i) examples.push_back({score_terms(with_mass(i < 25 ? 0.01F : 1.0F)), i >= 25});
   for (const float weight : fit_score_model(examples, ScoreModel{}).weights) EXPECT_LT(std::abs(weight), 20.0F);
 }

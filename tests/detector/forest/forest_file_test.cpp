@@ -21,49 +21,49 @@ class ForestFile : public ::testing::Test {
     Profile profile = toy::quick_profile();
     profile.training.trees = 2;
     profile.training.max_depth = 8;
-    forest_ = train_forest(toy::training_views(), profile, [](const auto&) {});
+    forest = train_forest(toy::training_views(), profile, [](const auto&) {});
   }
   void SetUp() override {
-    file_ = std::filesystem::temp_directory_path() / "houghstream_forest_file_test.forest";
-    save_forest(forest_, file_);
-    std::ostringstream bytes;
-    bytes << std::ifstream(file_, std::ios::binary).rdbuf();
-    bytes_ = bytes.str();
+    file = std::filesystem::temp_directory_path() / "houghstream_forest_file_test.forest";
+    save_forest(forest, file);
+    std::ostringstream read;
+    read << std::ifstream(file, std::ios::binary).rdbuf();
+    whole = read.str();
   }
-  void TearDown() override { std::filesystem::remove(file_); }
+  void TearDown() override { std::filesystem::remove(file); }
 
-  void rewrite(const std::string& bytes) const { std::ofstream(file_, std::ios::binary) << bytes; }
+  void rewrite(const std::string& bytes) const { std::ofstream(file, std::ios::binary) << bytes; }
 
   /// The one line that comes out when the file holds these bytes.
   std::string error_for(const std::string& bytes) const {
     rewrite(bytes);
     try {
-      load_forest(file_);
+      load_forest(file);
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos) << error.what();
       return error.what();
     }
     return "no error";
   }
 
-  static inline Forest forest_;
-  std::filesystem::path file_;
-  std::string bytes_;
+  static inline Forest forest;
+  std::filesystem::path file;
+  std::string whole;
 };
 
 TEST_F(ForestFile, ComesBackWhole) {
-  const Forest loaded = load_forest(file_);
-  EXPECT_EQ(loaded.nodes.size(), forest_.nodes.size());
-  EXPECT_EQ(loaded.leaves, forest_.leaves);
+  const Forest loaded = load_forest(file);
+  EXPECT_EQ(loaded.nodes.size(), forest.nodes.size());
+  EXPECT_EQ(loaded.leaves, forest.leaves);
   EXPECT_EQ(loaded.classes[1].name, "rings");
-  EXPECT_EQ(loaded.patch.radius, forest_.patch.radius);
+  EXPECT_EQ(loaded.patch.radius, forest.patch.radius);
   EXPECT_EQ(loaded.profile, "realtime");
-  EXPECT_EQ(loaded.features.families, forest_.features.families);
+  EXPECT_EQ(loaded.features.families, forest.features.families);
   EXPECT_EQ(loaded.scoring, Scoring::kEvidence);
-  save_forest(loaded, file_);
+  save_forest(loaded, file);
   std::ostringstream again;
-  again << std::ifstream(file_, std::ios::binary).rdbuf();
-  EXPECT_TRUE(again.str() == bytes_);
+  again << std::ifstream(file, std::ios::binary).rdbuf();
+  EXPECT_TRUE(again.str() == whole);
 }
 
 TEST_F(ForestFile, MissingFileIsRefused) {
@@ -77,49 +77,49 @@ TEST_F(ForestFile, OtherFilesAreRefused) {
 
 TEST_F(ForestFile, AnotherVersionIsRefused) {
   const std::size_t digits = std::to_string(kForestFileVersion).size();
-  std::string other = bytes_;
+  std::string other = whole;
   other.replace(other.find('\n') - digits, digits, "0");
   EXPECT_NE(error_for(other).find("version '0'"), std::string::npos);
 }
 
 TEST_F(ForestFile, EveryTruncationIsRefused) {
-  for (const std::size_t size : {bytes_.size() - 1, bytes_.size() / 2, std::size_t{40}, std::size_t{25}}) {
-    EXPECT_NE(error_for(bytes_.substr(0, size)).find("expected"), std::string::npos) << size << " bytes";
+  for (const std::size_t size : {whole.size() - 1, whole.size() / 2, std::size_t{40}, std::size_t{25}}) {
+    EXPECT_NE(error_for(whole.substr(0, size)).find("expected"), std::string::npos) << size << " bytes";
   }
 }
 
 TEST_F(ForestFile, ADamagedByteIsNoticed) {
-  std::string damaged = bytes_;
+  std::string damaged = whole;
   damaged[damaged.size() / 2] ^= 1;
   EXPECT_NE(error_for(damaged).find("checksum"), std::string::npos);
 }
 
 TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
-  Forest bad = forest_;
+  Forest bad = forest;
   bad.nodes[0].right = 1 << 30;
-  save_forest(bad, file_);
-  EXPECT_THROW(load_forest(file_), InputError);
-  bad = forest_;
+  save_forest(bad, file);
+  EXPECT_THROW(load_forest(file), InputError);
+  bad = forest;
   bad.leaf_classes[0].first_vote = 1U << 31U;
-  save_forest(bad, file_);
-  EXPECT_THROW(load_forest(file_), InputError);
+  save_forest(bad, file);
+  EXPECT_THROW(load_forest(file), InputError);
 }
 
 TEST_F(ForestFile, ALeafThatKnowsAClassTwiceIsRefused) {
-  Forest bad = forest_;
+  Forest bad = forest;
   bad.leaf_classes.insert(bad.leaf_classes.begin(), bad.leaf_classes[0]);
   for (std::uint32_t& end : bad.leaves) end += end > 0 ? 1 : 0;  // those of the first leaf that knows anything too
-  save_forest(bad, file_);
-  EXPECT_THROW(load_forest(file_), InputError);
+  save_forest(bad, file);
+  EXPECT_THROW(load_forest(file), InputError);
 }
 
 TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
   const auto expect_refused = [&](const std::string& what, const auto& change) {
-    Forest bad = forest_;
+    Forest bad = forest;
     change(bad);
-    save_forest(bad, file_);
+    save_forest(bad, file);
     try {
-      load_forest(file_);
+      load_forest(file);
       ADD_FAILURE() << "accepted: " << what;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
@@ -146,23 +146,23 @@ TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
 }
 
 TEST_F(ForestFile, TestsOfPlanesThatTheFamiliesLackAreRefused) {
-  Forest bad = forest_;
+  Forest bad = forest;
   bad.features.families = kDepthValue;  // two planes; the forest looks at more
-  save_forest(bad, file_);
-  EXPECT_THROW(load_forest(file_), InputError);
-  bad = forest_;
-  bad.nodes[0].test.dy2 = static_cast<std::int8_t>(-forest_.patch.radius - 1);
-  save_forest(bad, file_);
-  EXPECT_THROW(load_forest(file_), InputError);
-  bad = forest_;
+  save_forest(bad, file);
+  EXPECT_THROW(load_forest(file), InputError);
+  bad = forest;
+  bad.nodes[0].test.dy2 = static_cast<std::int8_t>(-forest.patch.radius - 1);
+  save_forest(bad, file);
+  EXPECT_THROW(load_forest(file), InputError);
+  bad = forest;
   bad.nodes[0].test.kind = 3;
-  save_forest(bad, file_);
-  EXPECT_THROW(load_forest(file_), InputError);
+  save_forest(bad, file);
+  EXPECT_THROW(load_forest(file), InputError);
 }
 
 TEST_F(ForestFile, AGoodFileSurvivesAFailedWrite) {
-  EXPECT_THROW(save_forest(forest_, "/nonexistent/folder/a.forest"), InputError);
-  EXPECT_NO_THROW(load_forest(file_));
+  EXPECT_THROW(save_forest(forest, "/nonexistent/folder/a.forest"), InputError);
+  EXPECT_NO_THROW(load_forest(file));
 }
 
 }  // namespace

@@ -12,18 +12,18 @@ namespace {
 class SceneFrames : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scene_ = make_named_scene("table_small_2");
-    lit_world_ = light_world(scene_.world);
+    scene = make_named_scene("table_small_2");
+    lit_world = light_world(scene.world);
   }
   static std::array<SceneFrame, 3> render(int threads) {
     std::array<SceneFrame, 3> frames;
     parallel_for(threads, 3, [&](int i) {
-      frames[static_cast<std::size_t>(i)] = render_scene_frame(scene_, lit_world_, i * 100, 300);
+      frames[static_cast<std::size_t>(i)] = render_scene_frame(scene, lit_world, i * 100, 300);
     });
     return frames;
   }
-  static inline Scene scene_;
-  static inline LitWorld lit_world_;
+  static inline Scene scene;
+  static inline LitWorld lit_world;
 };
 
 // Equal bytes, NaN included.
