@@ -55,6 +55,9 @@ struct TrainingSettings {
   /// alike. It is always offsets where there is one label only, and labels where nearly all is background.
   double offset_share = 0.5;
   double alone_share = 0.3;  ///< of the tests look at one pixel alone, see PixelTest::kAlone
+  /// At least so many of the tests on depth and on the surface, point histograms aside: these are the same in any
+  /// light, without a comparison.
+  double shape_alone_share = 0.0;
   /// Of the nodes look at point feature histograms, and only at those; the others never. What is shaped like an object
   /// stands in no room that is learnt from: they would win nearly every node, and the object's colours go unlearnt.
   double histogram_share = 0.3;

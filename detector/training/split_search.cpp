@@ -43,15 +43,20 @@ void SplitSearch::draw_tests(std::size_t test_count, Random& random) {
   }
 }
 
+double SplitSearch::alone_share(PlaneKind kind) const {
+  const double of_shape = std::max(settings_.alone_share, settings_.shape_alone_share);
+  if (kind == PlaneKind::kSurface) return of_shape;
+  // The scaled depth rules out what has the wrong size for its distance, which a difference cannot do.
+  return kind == PlaneKind::kScaledDepth ? std::max(of_shape, 0.5) : settings_.alone_share;
+}
+
 PixelTest SplitSearch::random_test(const Planes& planes, PlacePair& pair, Random& random) const {
   PixelTest test;
   test.plane = planes[static_cast<std::size_t>(random.below(static_cast<int>(planes.size())))];
   const PlaneKind kind = set_.layout.kind(test.plane);
-  // The scaled depth rules out what has the wrong size for its distance, which a difference cannot do.
-  const double alone_share = kind == PlaneKind::kScaledDepth ? 0.5 : settings_.alone_share;
   if (kind == PlaneKind::kWrappedDepth) {
     test.kind = PixelTest::kWrapping;
-  } else if ((trusts_light_ || kind != PlaneKind::kLight) && random.uniform() < alone_share) {
+  } else if ((trusts_light_ || kind != PlaneKind::kLight) && random.uniform() < alone_share(kind)) {
     test.kind = PixelTest::kAlone;
     pair.second = pair.first;
   }

@@ -76,6 +76,8 @@ class SplitSearch {
   /// Among which planes a node's tests choose: the point histograms or all others, where there are both.
   const Planes& draw_planes(Random& random) const;
   void draw_tests(std::size_t test_count, Random& random);
+  /// Of the tests on a plane of this kind look at one pixel, see TrainingSettings.
+  double alone_share(PlaneKind kind) const;
   PixelTest random_test(const Planes& planes, PlacePair& pair, Random& random) const;
   void prepare_tests(std::size_t test_count, int pixel_stride);
   void load_pixels(const PatchView& patch, const PatchView& next);

@@ -21,6 +21,7 @@ FEATURE_NAMES = {
     "final": "final: value, derivatives, HoG",
 }
 TRAINING_NAMES = {
+    "depth_by_pixel": "tests on depth look at one pixel, those on light compare two",
     "by_label": "all nodes split by labels",
     "single_pixel": "three tests in ten look at one pixel",
     "single_pixel_by_label": "three tests in ten look at one pixel, all nodes split by labels",

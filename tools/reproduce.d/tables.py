@@ -43,7 +43,7 @@ def trained_otherwise(results):
 
 
 def with_and_without_depth(baseline, final, original, results):
-    without, with_depth = (results.auc(what, FEATURE_SCENE) for what in (baseline, final))
+    without, with_depth = (results.auc(forest_of(what), FEATURE_SCENE) for what in (baseline, final))
     gains = (percent(relative(with_depth, other)) for other in (without, original))
     return show(without), show(with_depth), *gains
 

@@ -38,7 +38,8 @@ SECTIONS = {
         "Baseline and final features, trained otherwise",
         """Above, all are trained as the original: tests compare two pixels (half of those of the scaled depth look at one),
         and half of the nodes are split so that offsets agree, the others so that labels do (Gall et al. 2011). Both can be
-        chosen otherwise, for the baseline as for the final features. In paper and realtime, tests look at one pixel too.""",
+        chosen otherwise, for the baseline as for the final features. That tests on depth look at one pixel changes nothing
+        for the baseline, which has none. In paper and realtime, tests look at one pixel too.""",
         "Everything but the features is left as it was (Section 4).",
     ),
     "hough": (

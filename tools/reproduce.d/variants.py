@@ -17,10 +17,13 @@ FEATURES = {
     "final": FINAL,
 }
 # The original compares two pixels in each test, and splits half of its nodes by offsets, the others by labels (Gall et
-# al. 2011). What both choices cost, with the baseline's features and with the final ones.
+# al. 2011). What these choices cost, with the baseline's features and with the final ones. Tests on depth alone are a
+# matter of the latter only.
+DEPTH_BY_PIXEL = ("--shape-alone-share", "1")
 BY_LABEL = ("--offset-share", "0")
 SINGLE_PIXEL = ("--alone-share", "0.3")  # as in paper and realtime
 OTHER_TRAINING = {
+    "depth_by_pixel": DEPTH_BY_PIXEL,
     "by_label": BY_LABEL,
     "single_pixel": SINGLE_PIXEL,
     "single_pixel_by_label": (*SINGLE_PIXEL, *BY_LABEL),
@@ -43,13 +46,13 @@ TRAINING = {**STUDY, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 # What a quick run does without: features and ways of training them, the study of twenty objects, two of the profiles on
 # recorded pictures.
 NOT_IN_QUICK = (
-    *(what for what in TRAINED_OTHERWISE if not what.endswith("single_pixel_by_label")),
+    *(what for what in TRAINED_OTHERWISE if not what.endswith(("depth_by_pixel", "single_pixel_by_label"))),
     *OTHER_KERNELS,
     *("honv", "curvature", "pfh", "fpfh", "objects_20", "real_gall", "real_paper"),
 )
 
-# The same forest under two names: the study's baseline is the profile, as is the one with five scales.
-SAME_FOREST = {"intensity": "gall", "five": "gall"}
+# The same forest under several names: the study's baseline is the profile, as is the one with five scales.
+SAME_FOREST = {"intensity": "gall", "intensity_depth_by_pixel": "gall", "five": "gall"}
 
 SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1", "meeting_small_1")
 SCENES_20 = tuple(f"objects_20_{letter}" for letter in "abcdef")  # each holds the four and half of sixteen others

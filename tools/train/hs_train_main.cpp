@@ -26,6 +26,7 @@ struct Overrides {
   std::optional<int> tests;
   std::optional<double> offset_share;
   std::optional<double> alone_share;
+  std::optional<double> shape_alone_share;
   std::optional<int> patches;
   std::optional<int> composites;
   std::optional<float> min_distance;
@@ -53,6 +54,8 @@ void add_overrides(CommandLine& app, Overrides& overrides) {
       .range(0.0, 1.0);
   app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel rather than compare two")
       .range(0.0, 1.0);
+  app.add_option("--shape-alone-share", overrides.shape_alone_share, "at least so many of those on depth features")
+      .range(0.0, 1.0);
   app.add_option("--patches", overrides.patches, "patches per training view").range(4, 100000);
   app.add_option("--composites", overrides.composites, "pictures made of one view").range(1, 100);
   app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres");
@@ -76,6 +79,7 @@ Profile overridden(const Overrides& overrides) {
   take(overrides.tests, training.tests_per_node);
   take(overrides.offset_share, training.offset_share);
   take(overrides.alone_share, training.alone_share);
+  take(overrides.shape_alone_share, training.shape_alone_share);
   take(overrides.patches, training.patches_per_view);
   take(overrides.composites, training.composites_per_view);
   take(overrides.min_distance, training.min_distance);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "planted_set.hpp"
 
@@ -94,6 +95,36 @@ TEST(SplitSearch, WithoutTrustInTheLightNoSinglePixelOfIntensityDecides) {
         SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
     ASSERT_TRUE(trusting);
     EXPECT_EQ(trusting->kind, PixelTest::kAlone);
+  }
+}
+
+void swap_planes(TrainingSet& set, int one, int other) {
+  for (FeatureImage& picture : set.pictures) {
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) std::swap(picture.at(x, y)[one], picture.at(x, y)[other]);
+    }
+    picture.replicate_border();
+  }
+}
+
+TEST(SplitSearch, TestsOnShapeLookAtOnePixelAsOftenAsAskedAndThoseOnLightDoNot) {
+  TrainingSettings settings;
+  settings.tests_per_node = 800;
+  settings.alone_share = 0.0;
+  const PatchSettings patch;
+  const int shape_plane = FeatureLayout().block(kDepthHog).first;
+  for (const int plane : {toy::kClassPlane, shape_plane}) {
+    TrainingSet set = toy::planted_set();
+    if (plane != toy::kClassPlane) swap_planes(set, toy::kClassPlane, plane);
+    for (const double share : {0.0, 1.0}) {
+      settings.shape_alone_share = share;
+      Random random(4);
+      const auto test =
+          SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
+      ASSERT_TRUE(test);
+      EXPECT_EQ(test->plane, plane);
+      EXPECT_EQ(test->kind, plane == shape_plane && share > 0.0 ? PixelTest::kAlone : PixelTest::kDifference);
+    }
   }
 }
 
