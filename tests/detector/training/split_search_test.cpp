@@ -107,25 +107,39 @@ void swap_planes(TrainingSet& set, int one, int other) {
   }
 }
 
-TEST(SplitSearch, TestsOnShapeLookAtOnePixelAsOftenAsAskedAndThoseOnLightDoNot) {
+/// In how many of ten searches the best test looks at one pixel, where `plane` alone separates the labels.
+int alone_of_ten(const FeatureLayout& layout, int plane, double shape_alone_share) {
+  TrainingSet set = toy::planted_set();
+  set.layout = layout;
+  swap_planes(set, toy::kClassPlane, plane);
   TrainingSettings settings;
   settings.tests_per_node = 800;
   settings.alone_share = 0.0;
+  settings.shape_alone_share = shape_alone_share;
   const PatchSettings patch;
-  const int shape_plane = FeatureLayout().block(kDepthHog).first;
-  for (const int plane : {toy::kClassPlane, shape_plane}) {
-    TrainingSet set = toy::planted_set();
-    if (plane != toy::kClassPlane) swap_planes(set, toy::kClassPlane, plane);
-    for (const double share : {0.0, 1.0}) {
-      settings.shape_alone_share = share;
-      Random random(4);
-      const auto test =
-          SplitSearch(set, patch, settings, {1.0F, 1.0F}, true).best_test(every_sample(set), Objective::kClass, random);
-      ASSERT_TRUE(test);
-      EXPECT_EQ(test->plane, plane);
-      EXPECT_EQ(test->kind, plane == shape_plane && share > 0.0 ? PixelTest::kAlone : PixelTest::kDifference);
-    }
+  SplitSearch search(set, patch, settings, {1.0F, 1.0F}, true);
+  Random random(4);
+  int alone = 0;
+  for (int i = 0; i < 10; ++i) {
+    const auto test = search.best_test(every_sample(set), Objective::kClass, random);
+    EXPECT_TRUE(test && test->plane == plane);
+    alone += test && test->kind == PixelTest::kAlone ? 1 : 0;
   }
+  return alone;
+}
+
+TEST(SplitSearch, TestsOnShapeLookAtOnePixelAsOftenAsAskedAndThoseOnLightDoNot) {
+  FeatureSettings features;
+  features.handling = ScaleHandling::kScaleSpace;  // with planes of scaled depth
+  const FeatureLayout layout(features);
+  for (const double share : {0.0, 1.0}) EXPECT_EQ(alone_of_ten(layout, toy::kClassPlane, share), 0);
+  const int surface = layout.block(kDepthHog).first;
+  EXPECT_EQ(alone_of_ten(layout, surface, 0.0), 0);
+  EXPECT_EQ(alone_of_ten(layout, surface, 1.0), 10);
+  const int scaled_depth = layout.block(kDepthValue).first;  // half of the tests at least
+  EXPECT_GT(alone_of_ten(layout, scaled_depth, 0.0), 0);
+  EXPECT_LT(alone_of_ten(layout, scaled_depth, 0.0), 10);
+  EXPECT_EQ(alone_of_ten(layout, scaled_depth, 1.0), 10);
 }
 
 TEST(SplitSearch, ANodeLooksAtPointHistogramsOrAtTheRestAsOftenAsAsked) {
