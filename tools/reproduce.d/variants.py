@@ -17,13 +17,11 @@ FEATURES = {
     "final": FINAL,
 }
 # The original compares two pixels in each test, and splits half of its nodes by offsets, the others by labels (Gall et
-# al. 2011). What these choices cost, with the baseline's features and with the final ones. Tests on depth alone are a
-# matter of the latter only.
-DEPTH_BY_PIXEL = ("--shape-alone-share", "1")
+# al. 2011). What these choices cost, with the baseline's features and with the final ones.
 BY_LABEL = ("--offset-share", "0")
 SINGLE_PIXEL = ("--alone-share", "0.3")  # as in paper and realtime
 OTHER_TRAINING = {
-    "depth_by_pixel": DEPTH_BY_PIXEL,
+    "depth_by_pixel": ("--shape-alone-share", "1"),  # the baseline has no tests on depth
     "by_label": BY_LABEL,
     "single_pixel": SINGLE_PIXEL,
     "single_pixel_by_label": (*SINGLE_PIXEL, *BY_LABEL),
