@@ -10,6 +10,7 @@
 #include "detector/beliefs.hpp"
 #include "detector/boxes.hpp"
 #include "detector/features/features.hpp"
+#include "detector/scale_peaks.hpp"
 #include "detector/voting.hpp"
 #include "pipeline/parallel.hpp"
 
@@ -142,20 +143,24 @@ std::vector<Hypothesis> gather_supporters(const Forest& forest, int class_index,
 }
 
 /// All maxima of one class in one size.
-std::vector<Candidate> level_candidates(const Forest& forest, int class_index, const SeenLevel& seen,
-                                        const Camera& camera, const DetectionSettings& settings) {
+std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const SeenLevel& seen, const Camera& camera,
+                                   const DetectionSettings& settings) {
   const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
   const cv::Mat image = hough_image(forest, class_index, seen, settings);
   const int reach_px = static_cast<int>(std::lround(kVoteReach * settings.vote_sigma * seen.px_per_offset));
   const auto limit = static_cast<std::size_t>(settings.candidates_per_class);
   const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
   std::vector<Hypothesis> hypotheses = gather_supporters(forest, class_index, seen, maxima, settings);
-  std::vector<Candidate> candidates;
+  const float to_frame = static_cast<float>(camera.width) / static_cast<float>(seen.camera.width);
+  std::vector<ScalePeak> peaks;
   for (std::size_t m = 0; m < maxima.size(); ++m) {
     const cv::Point at = maxima[m];
     Hypothesis& hypothesis = hypotheses[m];
     hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
-    Candidate candidate;
+    ScalePeak peak;
+    peak.at_px = (cv::Point2f(at) + cv::Point2f(0.5F, 0.5F)) * to_frame;
+    peak.reach_px = static_cast<float>(reach_px) * to_frame;
+    Candidate& candidate = peak.candidate;
     candidate.evidence.mass_share = image.at<float>(at);
     Detection& detection = candidate.detection;
     detection.class_id = object.class_id;
@@ -165,26 +170,33 @@ std::vector<Candidate> level_candidates(const Forest& forest, int class_index, c
     detection.centre_camera.setConstant(std::numeric_limits<float>::quiet_NaN());
     detection.vote_weight = hypothesis.weight;
     detection.vote_count = hypothesis.vote_count;
-    if (!detection.box_px.empty()) candidates.push_back(std::move(candidate));
+    if (!detection.box_px.empty()) peaks.push_back(std::move(peak));
   }
-  return candidates;
+  return peaks;
 }
 
 }  // namespace
 
 std::vector<Candidate> search_scale_space(const Forest& forest, const RgbdFrame& frame,
                                           const DetectionSettings& settings, StageClock& clock) {
-  std::vector<Candidate> all;
+  std::vector<ScalePeak> all;
+  int size = 0;
   for (const FeatureLevel& level : feature_levels(forest.features)) {
     const SeenLevel seen = see_level(forest, frame, level, settings, clock);
-    std::vector<std::vector<Candidate>> by_class(forest.classes.size());
+    std::vector<std::vector<ScalePeak>> by_class(forest.classes.size());
     parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {
-      by_class[static_cast<std::size_t>(c)] = level_candidates(forest, c, seen, frame.camera, settings);
+      by_class[static_cast<std::size_t>(c)] = level_peaks(forest, c, seen, frame.camera, settings);
     });
-    for (std::vector<Candidate>& part : by_class) std::move(part.begin(), part.end(), std::back_inserter(all));
+    for (std::vector<ScalePeak>& part : by_class) {
+      for (ScalePeak& peak : part) {
+        peak.size = size;
+        all.push_back(std::move(peak));
+      }
+    }
+    ++size;
     clock.mark("detect.voting");
   }
-  return all;
+  return maxima_over_sizes(std::move(all));
 }
 
 std::vector<cv::Mat> scale_space_hough_images(const Forest& forest, int class_index, const RgbdFrame& frame,

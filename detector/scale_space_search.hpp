@@ -8,8 +8,8 @@ namespace houghstream {
 
 /// The search of the original Hough Forest (Gall et al. 2011, Section 3.3): the frame is looked at in every size of
 /// FeatureSettings::scales, each pixel votes in the image for the centres it knows, and each size has a Hough image of
-/// its own. Boxes by back-projection of all supporting patches. A candidate's centre has no depth: centre_camera is
-/// NaN. Same result for any number of threads.
+/// its own; candidates are the maxima over place and size, see scale_peaks.hpp. Boxes by back-projection of all
+/// supporting patches. A candidate's centre has no depth: centre_camera is NaN. Same result for any number of threads.
 std::vector<Candidate> search_scale_space(const Forest& forest, const RgbdFrame& frame,
                                           const DetectionSettings& settings, StageClock& clock);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
@@ -135,6 +136,16 @@ TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
   EXPECT_NEAR(at.x, (120 + 0.5) * 1.66, 4);
   EXPECT_NEAR(at.y, (110 + 0.5) * 1.66, 4);
   EXPECT_FLOAT_EQ(static_cast<float>(peaks[2]), strongest(search(scene.frame, quick_settings())).evidence.mass_share);
+}
+
+TEST(ScaleSpaceSearch, AnObjectBetweenTwoSizesIsOneCandidate) {
+  const Scene scene = tile_at(1, 120, 110, 0.7 * std::sqrt(1.66));
+  const std::vector<Candidate> found = search(scene.frame, quick_settings());
+  const float best = strongest(found).detection.score;
+  const auto is_the_object = [&](const Candidate& candidate) {
+    return candidate.detection.box_px.contains(cv::Point2f(120, 110)) && candidate.detection.score > 0.5F * best;
+  };
+  EXPECT_EQ(std::count_if(found.begin(), found.end(), is_the_object), 1);
 }
 
 TEST(ScaleSpaceSearch, TheDetectorReportsTheStrongestOfAllSizes) {
