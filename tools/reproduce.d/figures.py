@@ -19,17 +19,7 @@ FEATURE_NAMES = {
     "pfh": "+ PFH",
     "fpfh": "+ FPFH",
     "final": "final: value, derivatives, HoG",
-}
-TRAINING_NAMES = {
-    "depth_by_pixel": "tests on depth look at one pixel, those on light compare two",
-    "by_label": "all nodes split by labels",
-    "single_pixel": "three tests in ten look at one pixel",
-    "single_pixel_by_label": "three tests in ten look at one pixel, all nodes split by labels",
-}
-STUDY_NAMES = FEATURE_NAMES | {
-    f"{features}_{training}": f"{FEATURE_NAMES[features]}, {how}"
-    for training, how in TRAINING_NAMES.items()
-    for features in ("intensity", "final")
+    "final_depth_by_pixel": "final, tests on depth look at one pixel",
 }
 # Figure 1 of the paper shows these; the other kernels of the derivatives are in Figure 2.
 CURVES = ("intensity", "depth_value", "depth_derivatives_7", "depth_hog", "honv", "curvature", "pfh", "fpfh", "final")

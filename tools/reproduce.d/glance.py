@@ -8,16 +8,15 @@ from words import milliseconds, percent
 
 
 def quality_rows(summary):
-    features = ("intensity", "final", "final_depth_by_pixel", "final_single_pixel_by_label")
-    baseline, final, by_pixel, better = (summary["auc"][what][FEATURE_SCENE] for what in features)
+    features = ("intensity", "final", "final_depth_by_pixel")
+    baseline, final, by_pixel = (summary["auc"][what][FEATURE_SCENE] for what in features)
     stated = paper.FEATURES["final"]
     desk = summary["depth_normalisation"]["desk_2"]
     return [
         (f"AUC with RGB features, {FEATURE_SCENE}", show(paper.BASELINE_AUC), show(baseline)),
         (f"AUC with the final features, {FEATURE_SCENE}", show(stated["auc"]), show(final)),
         ("... their tests on depth look at one pixel", "", show(by_pixel)),
-        ("... trained otherwise: single pixels, all nodes by labels", "", show(better)),
-        ("gain of the final features, trained alike", percent(stated["gain"]), percent(relative(final, baseline))),
+        ("gain of the final features", percent(stated["gain"]), percent(relative(final, baseline))),
         ("... their tests on depth look at one pixel", "", percent(relative(by_pixel, baseline))),
         ("gain of depth normalisation, desk_2", percent(paper.NORMALISATION_GAIN_DESK_2), percent(desk["gain"])),
     ]

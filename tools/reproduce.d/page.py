@@ -47,7 +47,7 @@ def quickly(settings):
     """What a quick run does less."""
     if not settings["quick"]:
         return ""
-    words = {**figures.STUDY_NAMES, **texts.LEFT_OUT}
+    words = {**figures.FEATURE_NAMES, **texts.LEFT_OUT}
     names = "; ".join(words[name].removeprefix("+ ") for name in settings["left_out"])
     return f"<p>{html.escape(texts.QUICK)} Left out: {html.escape(names)}.</p>"
 
@@ -64,7 +64,6 @@ def study_sections(summary, results):
     return [
         section("features curves", figures.feature_curves(results)),
         section("features", figures.feature_bars(results), tables.features(results)),
-        section("trained otherwise", tables.trained_otherwise(results)),
         section("hough", figures.hough_spaces(results)),
         section("normalisation", figures.depth_normalisation(results), tables.depth_normalisation(summary)),
         section("stride", side_by_side(figures.stride_chart(summary["stride"]), tables.strides(summary))),

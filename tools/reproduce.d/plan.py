@@ -2,8 +2,8 @@
 
 import sources
 from planner import Planner
-from variants import FEATURE_SCENE, OTHER_KERNELS, PROFILES, SCALE_HANDLING, SCALE_SCENES, SCENES, SCENES_20
-from variants import STRIDES, STUDY
+from variants import FEATURE_SCENE, FEATURES, OTHER_KERNELS, PROFILES, SCALE_HANDLING, SCALE_SCENES, SCENES, SCENES_20
+from variants import STRIDES
 
 CHECK_DEPTH = ("--check-depth",)
 
@@ -15,7 +15,7 @@ def add_profiles(planner, source, seed):
 
 
 def add_features(planner, source, seed):
-    for what in (name for name in STUDY if name not in (*planner.protocol.left_out, *OTHER_KERNELS)):
+    for what in (name for name in FEATURES if name not in (*planner.protocol.left_out, *OTHER_KERNELS)):
         planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
 
 

@@ -3,14 +3,14 @@
 import paper
 from arithmetic import mean_of, ratio, relative
 from reliability import calibration_error, reliability
-from variants import FEATURE_SCENE, PROFILES, SCALE_SCENES, SCENES, SCENES_20, STRIDES, STUDY, TIMINGS, forest_of
+from variants import FEATURE_SCENE, FEATURES, PROFILES, SCALE_SCENES, SCENES, SCENES_20, STRIDES, TIMINGS, forest_of
 
 CLASSIFY_AND_VOTE = ("detect.forest", "detect.voting")
 
 
 def all_auc(results):
     auc = {what: {scene: results.auc(what, scene) for scene in SCENES} for what in PROFILES}
-    for what in (name for name in STUDY if name not in results.left_out):
+    for what in (name for name in FEATURES if name not in results.left_out):
         auc.setdefault(what, {FEATURE_SCENE: results.auc(forest_of(what), FEATURE_SCENE)})
     return auc
 

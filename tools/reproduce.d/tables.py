@@ -2,7 +2,7 @@
 
 import paper
 from arithmetic import mean_of, relative
-from figures import DETECTORS, FEATURE_NAMES, TRAINING_NAMES
+from figures import DETECTORS, FEATURE_NAMES
 from html_parts import show, table
 from variants import FEATURE_SCENE, SCENES, forest_of
 from words import milliseconds, percent
@@ -29,23 +29,6 @@ def features(results):
         here = (show(ours), percent(relative(ours, baseline)))
         rows.append((name, *here, show(stated.get("auc")), percent(stated.get("gain"))))
     return table(("features", "AUC here", "gain here", "AUC, paper", "gain, paper"), rows)
-
-
-def trained_otherwise(results):
-    """What each way of training is worth to the baseline and to the final features."""
-    original = results.auc("gall", FEATURE_SCENE)
-    rows = [("as the original", *with_and_without_depth("gall", "final", original, results))]
-    for training, name in TRAINING_NAMES.items():
-        baseline, final = f"intensity_{training}", f"final_{training}"
-        if final not in results.left_out:
-            rows.append((name, *with_and_without_depth(baseline, final, original, results)))
-    return table(("trained", "RGB only", "final features", "gain", "gain on the original"), rows)
-
-
-def with_and_without_depth(baseline, final, original, results):
-    without, with_depth = (results.auc(forest_of(what), FEATURE_SCENE) for what in (baseline, final))
-    gains = (percent(relative(with_depth, other)) for other in (without, original))
-    return show(without), show(with_depth), *gains
 
 
 def depth_normalisation(summary):

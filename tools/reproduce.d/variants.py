@@ -15,23 +15,9 @@ FEATURES = {
     "pfh": ("--profile", "gall", "--features", "intensity,pfh"),
     "fpfh": ("--profile", "gall", "--features", "intensity,fpfh"),
     "final": FINAL,
+    # The original compares two pixels in each test (Gall et al. 2011); depth is the same in any light without that.
+    "final_depth_by_pixel": (*FINAL, "--shape-alone-share", "1"),
 }
-# The original compares two pixels in each test, and splits half of its nodes by offsets, the others by labels (Gall et
-# al. 2011). What these choices cost, with the baseline's features and with the final ones.
-BY_LABEL = ("--offset-share", "0")
-SINGLE_PIXEL = ("--alone-share", "0.3")  # as in paper and realtime
-OTHER_TRAINING = {
-    "depth_by_pixel": ("--shape-alone-share", "1"),  # the baseline has no tests on depth
-    "by_label": BY_LABEL,
-    "single_pixel": SINGLE_PIXEL,
-    "single_pixel_by_label": (*SINGLE_PIXEL, *BY_LABEL),
-}
-TRAINED_OTHERWISE = {
-    f"{features}_{training}": (*FEATURES[features], *options)
-    for training, options in OTHER_TRAINING.items()
-    for features in ("intensity", "final")
-}
-STUDY = {**FEATURES, **TRAINED_OTHERWISE}
 OTHER_KERNELS = ("depth_derivatives_3", "depth_derivatives_5", "depth_derivatives_9")  # beside the final features' 7
 PROFILES = {name: ("--profile", name) for name in ("gall", "paper", "realtime")}
 SCALE_HANDLING = {
@@ -39,18 +25,16 @@ SCALE_HANDLING = {
     "normalised": ("--profile", "gall", "--scale-handling", "normalised"),
 }
 HALF_SIZE = {"half_size": ("--profile", "gall", "--image-scale", "0.5")}
-TRAINING = {**STUDY, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
+TRAINING = {**FEATURES, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 
-# What a quick run does without: features and ways of training them, the study of twenty objects, two of the profiles on
-# recorded pictures.
+# What a quick run does without: features, the study of twenty objects, two of the profiles on recorded pictures.
 NOT_IN_QUICK = (
-    *(what for what in TRAINED_OTHERWISE if not what.endswith(("depth_by_pixel", "single_pixel_by_label"))),
     *OTHER_KERNELS,
     *("honv", "curvature", "pfh", "fpfh", "objects_20", "real_gall", "real_paper"),
 )
 
-# The same forest under several names: the study's baseline is the profile, as is the one with five scales.
-SAME_FOREST = {"intensity": "gall", "intensity_depth_by_pixel": "gall", "five": "gall"}
+# The same forest under two names: the study's baseline is the profile, as is the one with five scales.
+SAME_FOREST = {"intensity": "gall", "five": "gall"}
 
 SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1", "meeting_small_1")
 SCENES_20 = tuple(f"objects_20_{letter}" for letter in "abcdef")  # each holds the four and half of sixteen others
