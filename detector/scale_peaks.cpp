@@ -25,14 +25,11 @@ bool is_slope(const std::vector<ScalePeak>& peaks, std::size_t i) {
 
 }  // namespace
 
-std::vector<Candidate> maxima_over_sizes(std::vector<ScalePeak> peaks) {
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < peaks.size(); ++i) {
-    if (!is_slope(peaks, i)) kept.push_back(i);
-  }
+std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
   std::vector<Candidate> candidates;
-  candidates.reserve(kept.size());
-  for (const std::size_t i : kept) candidates.push_back(std::move(peaks[i].candidate));
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    if (!is_slope(peaks, i)) candidates.push_back(peaks[i].candidate);
+  }
   return candidates;
 }
 

@@ -18,6 +18,6 @@ struct ScalePeak {
 /// The voting space has a third axis, the size (paper, Section 2: maxima over place, class and scale; Gall et al. 2011,
 /// Section 3.3): a maximum of one size that a higher one of the next size stands beside is a slope of that one. Of a
 /// class's equal neighbours the first counts. What is left keeps its order.
-std::vector<Candidate> maxima_over_sizes(std::vector<ScalePeak> peaks);
+std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks);
 
 }  // namespace houghstream

@@ -24,6 +24,7 @@ struct SeenLevel {
   Camera camera;               // of the level's image
   float px_per_offset = 0.0F;  // level pixels per unit of a leaf's offset, see ScaleHandling::kScaleSpace
   float size_ratio = 1.0F;
+  int size = 0;  // its number
 };
 
 SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureLevel& level,
@@ -142,6 +143,20 @@ std::vector<Hypothesis> gather_supporters(const Forest& forest, int class_index,
   return hypotheses;
 }
 
+Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float mass_share, cv::Rect2f box_px) {
+  Candidate candidate;
+  candidate.evidence.mass_share = mass_share;
+  Detection& detection = candidate.detection;
+  detection.class_id = object.class_id;
+  detection.class_name = object.name;
+  detection.score = vote_score(mass_share);
+  detection.box_px = box_px;
+  detection.centre_camera.setConstant(std::numeric_limits<float>::quiet_NaN());
+  detection.vote_weight = hypothesis.weight;
+  detection.vote_count = hypothesis.vote_count;
+  return candidate;
+}
+
 /// All maxima of one class in one size.
 std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const SeenLevel& seen, const Camera& camera,
                                    const DetectionSettings& settings) {
@@ -152,25 +167,16 @@ std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const 
   const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
   std::vector<Hypothesis> hypotheses = gather_supporters(forest, class_index, seen, maxima, settings);
   const float to_frame = static_cast<float>(camera.width) / static_cast<float>(seen.camera.width);
+  const cv::Point2f half(0.5F, 0.5F);
   std::vector<ScalePeak> peaks;
   for (std::size_t m = 0; m < maxima.size(); ++m) {
     const cv::Point at = maxima[m];
     Hypothesis& hypothesis = hypotheses[m];
     hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
-    ScalePeak peak;
-    peak.at_px = (cv::Point2f(at) + cv::Point2f(0.5F, 0.5F)) * to_frame;
-    peak.reach_px = static_cast<float>(reach_px) * to_frame;
-    Candidate& candidate = peak.candidate;
-    candidate.evidence.mass_share = image.at<float>(at);
-    Detection& detection = candidate.detection;
-    detection.class_id = object.class_id;
-    detection.class_name = object.name;
-    detection.score = vote_score(candidate.evidence.mass_share);
-    detection.box_px = backprojected_box(forest, hypothesis, seen.grid, camera);
-    detection.centre_camera.setConstant(std::numeric_limits<float>::quiet_NaN());
-    detection.vote_weight = hypothesis.weight;
-    detection.vote_count = hypothesis.vote_count;
-    if (!detection.box_px.empty()) peaks.push_back(std::move(peak));
+    const cv::Rect2f box_px = backprojected_box(forest, hypothesis, seen.grid, camera);
+    if (box_px.empty()) continue;
+    peaks.push_back({make_candidate(object, hypothesis, image.at<float>(at), box_px),
+                     (cv::Point2f(at) + half) * to_frame - half, static_cast<float>(reach_px) * to_frame, seen.size});
   }
   return peaks;
 }
@@ -180,23 +186,18 @@ std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const 
 std::vector<Candidate> search_scale_space(const Forest& forest, const RgbdFrame& frame,
                                           const DetectionSettings& settings, StageClock& clock) {
   std::vector<ScalePeak> all;
-  int size = 0;
+  int sizes = 0;
   for (const FeatureLevel& level : feature_levels(forest.features)) {
-    const SeenLevel seen = see_level(forest, frame, level, settings, clock);
+    SeenLevel seen = see_level(forest, frame, level, settings, clock);
+    seen.size = sizes++;
     std::vector<std::vector<ScalePeak>> by_class(forest.classes.size());
     parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {
       by_class[static_cast<std::size_t>(c)] = level_peaks(forest, c, seen, frame.camera, settings);
     });
-    for (std::vector<ScalePeak>& part : by_class) {
-      for (ScalePeak& peak : part) {
-        peak.size = size;
-        all.push_back(std::move(peak));
-      }
-    }
-    ++size;
+    for (std::vector<ScalePeak>& part : by_class) std::move(part.begin(), part.end(), std::back_inserter(all));
     clock.mark("detect.voting");
   }
-  return maxima_over_sizes(std::move(all));
+  return maxima_over_sizes(all);
 }
 
 std::vector<cv::Mat> scale_space_hough_images(const Forest& forest, int class_index, const RgbdFrame& frame,
