@@ -4,9 +4,10 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
-#include "drivers/openni/openni_listeners.hpp"
+#include "drivers/openni/departure.hpp"
 #include "drivers/openni/openni_parts.hpp"
 #include "drivers/openni/openni_recording.hpp"
+#include "drivers/openni/stream_reader.hpp"
 #include "pipeline/checks.hpp"
 #include "pipeline/log_line.hpp"
 
@@ -18,6 +19,7 @@ using Sensor = SensorImage::Sensor;
 
 // The images that a driver may hold when its modes are set, computed as they were before; drivers have three buffers.
 constexpr int kDepthBeforeModes = 3;
+constexpr int kFirstImageMs = 1000;  // cameras take that long to start
 
 }  // namespace
 
@@ -40,7 +42,8 @@ std::shared_ptr<const void> keep_openni_running() {
   return std::make_shared<OpenniLibrary>();
 }
 
-// What OpenNI2 has made ends in turn: recorder and listeners before the streams, these before the device.
+// What OpenNI2 has made ends in turn: who reads the streams, the streams' images, the recorder (it and a driver that
+// hands over an image would wait for each other), the streams, the device.
 struct OpenniDevice::State {
   explicit State(const std::string& name) : uri(name), departure(name) {}
 
@@ -55,16 +58,14 @@ struct OpenniDevice::State {
   int images_left = 0;    // of a file
   int depth_to_skip = 0;  // before a camera's images are as its modes say
   Inbox inbox;
-  Listener depth_listener{inbox, Sensor::kDepth};
-  Listener colour_listener{inbox, Sensor::kColour};
+  std::optional<StreamReader> reader;  // of a camera
   std::optional<OpenniRecording> recording;
 
   ~State() {
-    if (recording) recording->stop();
-    depth.removeNewFrameListener(&depth_listener);
-    colour.removeNewFrameListener(&colour_listener);
+    reader.reset();
     depth.stop();
     colour.stop();
+    if (recording) recording->stop();
     // The thread that plays a file looks through its streams without a lock; once they stand still, every 10 ms.
     if (is_file) std::this_thread::sleep_for(milliseconds(5));
     depth.destroy();
@@ -100,8 +101,6 @@ struct OpenniDevice::State {
     for (openni::VideoStream* stream : {&depth, &colour}) {
       if (stream->getMirroringEnabled()) check_openni(stream->setMirroringEnabled(false), uri + ": mirroring off");
     }
-    device.setDepthColorSyncEnabled(
-        true);  // its status is ok whether the driver can or not: the images' times will tell
     openni::CameraSettings* settings = colour.getCameraSettings();
     const bool set = settings != nullptr &&
                      settings->setAutoExposureEnabled(options.auto_exposure) == openni::STATUS_OK &&
@@ -122,6 +121,16 @@ struct OpenniDevice::State {
   void start() {
     check_openni(depth.start(), uri + ": depth does not start");
     check_openni(colour.start(), uri + ": colour does not start");
+  }
+
+  /// Its status is ok whether the driver can or not: the images' times will tell. OpenNI2 deletes what the driver's
+  /// thread hands images to, and makes it anew, so this is done just behind a colour image, when no other is on its
+  /// way.
+  void synchronise() {
+    openni::VideoStream* streams[] = {&colour};
+    int ready = 0;
+    openni::OpenNI::waitForAnyStream(streams, 1, &ready, kFirstImageMs);
+    device.setDepthColorSyncEnabled(true);
   }
 
   /// Depth from before registration is of the same size and looks like any other, so it is told by its turn. A
@@ -160,9 +169,9 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, 
   state->set_mode(options.mode);
   state->set_features(options);
   const bool at_once = options.assume_registered || state->registered();
-  state->depth.addNewFrameListener(&state->depth_listener);
-  state->colour.addNewFrameListener(&state->colour_listener);
   state->start();
+  state->synchronise();
+  state->reader.emplace(state->depth, state->colour, state->inbox);
   require(at_once || state->registered(),
           "{}: cannot register depth to colour; give --assume-registered if its depth comes registered anyhow", uri);
   if (!options.record.empty()) {

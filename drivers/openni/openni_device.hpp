@@ -22,7 +22,7 @@ std::vector<CameraDescription> list_cameras(bool closely);
 std::shared_ptr<const void> keep_openni_running();
 
 /// A camera or a .oni file through OpenNI2, running from construction to destruction. Everything that knows OpenNI2
-/// is behind it.
+/// is behind it. To be used from a thread that lasts as long as the process, see LastingThread.
 class OpenniDevice {
  public:
   /// Opens a camera: registered, synchronised where it can, not mirrored. Throws InputError where it lacks the mode

@@ -35,7 +35,7 @@ class OpenniRecording {
   /// Takes note of an image as the camera's users get it.
   void note(const SensorImage& image);
 
-  /// Ends the recording; the streams must still exist.
+  /// Ends the recording; the streams must still exist, and have been stopped.
   void stop() { recorder_.destroy(); }
 
   /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero. Warns where

@@ -73,5 +73,17 @@ TEST(OpenniRecording, ColourThatComesAtOnceIsAtItsDepthsTime) {
   expect_apart(record(camera, 50, false), 0);
 }
 
+/// A recorder and a driver that hands over an image must not wait for each other: images come all the time here.
+TEST(OpenniRecording, EndsWhileImagesCome) {
+  const VirtualCamera camera("recording_ends", "size 320x240\nrate_hz 1000\ncan_sync no\n");
+  CameraOptions options;
+  options.mode = {320, 240, 1000};
+  options.record = (camera.folder() / "recorded.oni").string();
+  for (int i = 0; i < 40; ++i) {
+    const auto device = OpenniDevice::open_camera("houghstream-virtual://1", options);
+    for (int k = 0; k < 5 + i % 10; ++k) EXPECT_TRUE(device->wait(kPatience).has_value());
+  }
+}
+
 }  // namespace
 }  // namespace houghstream
