@@ -151,14 +151,11 @@ struct OpenniDevice::State {
   /// A file waits until it is asked, so nothing is lost; what cannot be read is not waited for a second time.
   std::optional<SensorImage> read_file(milliseconds patience) {
     if (images_left == 0) return std::nullopt;
-    openni::VideoStream* streams[] = {&depth, &colour};
-    int ready = 0;
-    const openni::Status status =
-        openni::OpenNI::waitForAnyStream(streams, 2, &ready, static_cast<int>(patience.count()));
-    require(status == openni::STATUS_OK, "{}: no further image, but {} are still to come: {}", uri, images_left,
+    const std::optional<Sensor> sensor = wait_for_image(depth, colour, patience);
+    require(sensor.has_value(), "{}: no further image, but {} are still to come: {}", uri, images_left,
             "the file is cut or damaged");
     --images_left;
-    return read_image(*streams[ready], ready == 0 ? Sensor::kDepth : Sensor::kColour);
+    return read_image(*sensor == Sensor::kDepth ? depth : colour, *sensor);
   }
 };
 

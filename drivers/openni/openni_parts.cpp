@@ -99,6 +99,16 @@ std::string serial_of(const openni::Device& device) {
   return told ? serial : "";
 }
 
+std::optional<Sensor> wait_for_image(openni::VideoStream& depth, openni::VideoStream& colour,
+                                     std::chrono::milliseconds patience) {
+  openni::VideoStream* streams[] = {&depth, &colour};
+  int ready = 0;
+  const openni::Status status =
+      openni::OpenNI::waitForAnyStream(streams, 2, &ready, static_cast<int>(patience.count()));
+  if (status != openni::STATUS_OK) return std::nullopt;
+  return ready == 0 ? Sensor::kDepth : Sensor::kColour;
+}
+
 std::optional<SensorImage> read_image(openni::VideoStream& stream, Sensor sensor) {
   openni::VideoFrameRef frame;
   if (stream.readFrame(&frame) != openni::STATUS_OK || !frame.isValid()) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <OpenNI.h>
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,8 +40,13 @@ std::vector<CameraMode> common_modes(openni::Device& device);
 /// The serial number, or nothing where the driver does not tell.
 std::string serial_of(const openni::Device& device);
 
+/// The sensor of the image that is there first; nothing where none comes in time.
+std::optional<SensorImage::Sensor> wait_for_image(openni::VideoStream& depth, openni::VideoStream& colour,
+                                                  std::chrono::milliseconds patience);
+
 /// Reads the stream's newest image, colour still as RGB: OpenCV would convert it with the help of other threads, for
-/// which OpenNI2's must not wait. Its picture is empty where the device gave less than the frame should hold.
+/// which the one that reads a camera must not wait. Its picture is empty where the device gave less than the frame
+/// should hold.
 std::optional<SensorImage> read_image(openni::VideoStream& stream, SensorImage::Sensor sensor);
 
 }  // namespace houghstream

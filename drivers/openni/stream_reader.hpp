@@ -64,16 +64,14 @@ class StreamReader {
 
  private:
   static constexpr int kHurry = -10;
-  static constexpr int kPatienceMs = 100;
+  static constexpr std::chrono::milliseconds kPatience{100};
 
   void run() {
     setpriority(PRIO_PROCESS, 0, kHurry);  // on Linux: of the calling thread
-    openni::VideoStream* streams[] = {&depth_, &colour_};
     while (running_) {
-      int ready = 0;
-      if (openni::OpenNI::waitForAnyStream(streams, 2, &ready, kPatienceMs) != openni::STATUS_OK) continue;
-      const auto sensor = ready == 0 ? SensorImage::Sensor::kDepth : SensorImage::Sensor::kColour;
-      std::optional<SensorImage> image = read_image(*streams[ready], sensor);
+      const std::optional<SensorImage::Sensor> sensor = wait_for_image(depth_, colour_, kPatience);
+      if (!sensor) continue;
+      std::optional<SensorImage> image = read_image(*sensor == SensorImage::Sensor::kDepth ? depth_ : colour_, *sensor);
       if (image) inbox_.put(std::move(*image));
     }
   }
