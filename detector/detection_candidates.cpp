@@ -20,12 +20,6 @@ namespace {
 
 using WeighedViews = std::vector<std::pair<std::uint32_t, float>>;
 
-/// A remembered view, put at the hypothesis.
-struct ComparedView {
-  std::uint32_t view = 0;
-  ViewFit fit;
-};
-
 /// Appends the first views that most votes remember, compared with the frame; more where a class was taught in many
 /// attitudes.
 void compare_views(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame, float spread,
@@ -46,18 +40,15 @@ struct ClassHypothesis {
   Hypothesis hypothesis;
 };
 
-/// The view that agrees best with the frame, aligned with it; ties go to the first. What is hopeless where it stands is
-/// left there: most maxima are of that kind, and aligning takes longer than all else about them. `evidence`: without
-/// fit.
+/// The view that agrees best with the frame, aligned with it. What is hopeless where it stands is left there: most
+/// maxima are of that kind, and aligning takes longer than all else about them. `evidence`: without fit.
 ViewFit best_fit(const Forest& forest, const ClassHypothesis& found, const LabFrame& frame, Evidence evidence,
                  const std::vector<ComparedView>& compared) {
   constexpr float kHopeless = 0.05F;  // score
   if (compared.empty()) return {};
-  const auto worse = [](const ComparedView& a, const ComparedView& b) { return agreement(a.fit) < agreement(b.fit); };
-  const ComparedView& best = *std::max_element(compared.begin(), compared.end(), worse);
-  evidence.fit = best.fit;
-  if (score(forest.classes[found.class_index].score_model, evidence) < kHopeless) return best.fit;
-  return align_view(forest.views[best.view], found.hypothesis.centre_camera, best.fit, frame);
+  evidence.fit = best_unaligned(compared).fit;
+  if (score(forest.classes[found.class_index].score_model, evidence) < kHopeless) return evidence.fit;
+  return best_aligned(forest.views, compared, found.hypothesis.centre_camera, frame);
 }
 
 /// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was

@@ -83,29 +83,24 @@ float common_shift(const Comparison& comparison) {
   return *middle;
 }
 
-/// Rows or columns of cells: how many show the object, and how many of them are visible or unknown.
-struct Lines {
-  std::array<int, kSide> whole{};
-  std::array<int, kSide> seen{};
+/// Which rows or columns of cells show some of the object.
+using Lines = std::array<bool, kSide>;
 
-  /// First and one past the last line in which enough of the object's cells are seen.
-  std::pair<int, int> range() const {
-    constexpr int kOneIn = 5;
-    int first = kSide;
-    int last = 0;
-    for (int i = 0; i < kSide; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (seen[at] == 0 || seen[at] * kOneIn < whole[at]) continue;
-      first = std::min(first, i);
-      last = i + 1;
-    }
-    return {first, last};
+/// First and one past the last line that does.
+std::pair<int, int> range(const Lines& seen) {
+  int first = kSide;
+  int last = 0;
+  for (int i = 0; i < kSide; ++i) {
+    if (!seen[static_cast<std::size_t>(i)]) continue;
+    first = std::min(first, i);
+    last = i + 1;
   }
-};
+  return {first, last};
+}
 
 cv::Rect2f visible_box(const Comparison& comparison, const Lines& columns, const Lines& rows) {
-  const auto [left, right] = columns.range();
-  const auto [top, bottom] = rows.range();
+  const auto [left, right] = range(columns);
+  const auto [top, bottom] = range(rows);
   if (left >= right || top >= bottom) return {};
   return {comparison.left + static_cast<float>(left) * comparison.cell_width,
           comparison.top + static_cast<float>(top) * comparison.cell_height,
@@ -136,8 +131,8 @@ struct Tally {
   int seen_through = 0;
   int unknown = 0;
   float unevenness = 0.0F;  // sum over the visible ones
-  Lines rows;
-  Lines columns;
+  Lines rows{};             // with cells that are visible or unknown
+  Lines columns{};
   std::size_t shown = 0;                                 // cells in front of which nothing is known to be
   std::array<std::uint16_t, kSide * kSide> shown_cells;  // the first `shown` of them
 
@@ -162,10 +157,9 @@ Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
       tally.unknown += unknown;
       tally.hidden += object & (e < -tolerance ? 1 : 0);
       tally.seen_through += object & (e > tolerance ? 1 : 0);
-      tally.rows.whole[row] += object;
-      tally.columns.whole[column] += object;
-      tally.rows.seen[row] += unknown | visible;
-      tally.columns.seen[column] += unknown | visible;
+      const bool seen = (unknown | visible) != 0;
+      tally.rows[row] = tally.rows[row] || seen;
+      tally.columns[column] = tally.columns[column] || seen;
     }
   }
   return tally;

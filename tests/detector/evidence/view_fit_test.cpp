@@ -55,6 +55,17 @@ TEST(ViewFit, AnOccluderHidesItsPartOfTheBox) {
   EXPECT_NEAR(result.visible_box_px.height, static_cast<float>(whole.height), 3.0F);
 }
 
+/// All but a strip at the left and one at the top is hidden, each narrower than a fifth of the object.
+TEST(ViewFit, TheVisibleBoxEnclosesWhatLittleIsSeen) {
+  RgbdFrame frame = tile_frame();
+  const cv::Rect whole = cv::boundingRect(toy::training_views().front().mask);
+  const cv::Point corner(whole.x + whole.width / 8, whole.y + whole.height / 8);
+  frame.depth(cv::Rect(corner, whole.br())).setTo(0.5F);
+  const ViewFit result = fit(frame);
+  EXPECT_GT(result.hidden, 0.6F);
+  EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(whole)), 0.9F);
+}
+
 TEST(ViewFit, MissingDepthIsUnknownAndNeitherForNorAgainst) {
   RgbdFrame frame = tile_frame();
   frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
