@@ -23,13 +23,14 @@ using WeighedViews = std::vector<std::pair<std::uint32_t, float>>;
 /// Appends the first views that most votes remember, compared with the frame; more where a class was taught in many
 /// attitudes.
 void compare_views(const Forest& forest, const Hypothesis& hypothesis, const LabFrame& frame, float spread,
-                   const std::vector<std::uint32_t>& forgotten, std::vector<ComparedView>& compared) {
+                   const std::vector<std::uint32_t>& forgotten, std::vector<PlacedView>& compared) {
   constexpr float kViews = 8.0F;
   const auto wanted = static_cast<std::size_t>(kViews * spread);
   for (const auto& [view, weight] : hypothesis.views) {
     if (compared.size() == wanted) break;
     if (std::find(forgotten.begin(), forgotten.end(), view) != forgotten.end()) continue;
-    compared.push_back({view, fit_view(forest.views[view], hypothesis.centre_camera, frame)});
+    const Eigen::Vector3f& centre = hypothesis.centre_camera;
+    compared.push_back({view, centre, fit_view(forest.views[view], centre, frame)});
   }
 }
 
@@ -40,25 +41,27 @@ struct ClassHypothesis {
   Hypothesis hypothesis;
 };
 
-/// The view that agrees best with the frame, aligned with it. What is hopeless where it stands is left there: most
-/// maxima are of that kind, and aligning takes longer than all else about them. `evidence`: without fit.
-ViewFit best_fit(const Forest& forest, const ClassHypothesis& found, const LabFrame& frame, Evidence evidence,
-                 const std::vector<ComparedView>& compared) {
+/// Completes the evidence by the view that agrees best with the frame, aligned with it. What is hopeless where it
+/// stands is left there: most maxima are of that kind, and aligning takes longer than all else about them.
+void add_best_fit(const Forest& forest, const ScoreModel& model, const LabFrame& frame,
+                  const std::vector<PlacedView>& compared, Evidence& evidence) {
   constexpr float kHopeless = 0.05F;  // score
-  if (compared.empty()) return {};
+  if (compared.empty()) return;
   evidence.fit = best_unaligned(compared).fit;
-  if (score(forest.classes[found.class_index].score_model, evidence) < kHopeless) return evidence.fit;
-  return best_aligned(forest.views, compared, found.hypothesis.centre_camera, frame);
+  if (score(model, evidence) < kHopeless) return;
+  const PlacedView best = best_aligned(forest.views, compared, frame);
+  evidence.fit = best.fit;
+  evidence.other_size = gain_of_other_size(forest.views[best.view], best, frame);
 }
 
 /// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was
 /// taught in many attitudes the views lie far apart, and how they agree with the frame says more; `weighed` holds them.
-const WeighedViews& weighed_views(const Hypothesis& hypothesis, float spread, const std::vector<ComparedView>& compared,
+const WeighedViews& weighed_views(const Hypothesis& hypothesis, float spread, const std::vector<PlacedView>& compared,
                                   WeighedViews& weighed) {
   constexpr float kSharpness = 4.0F;
   if (spread == 1.0F || compared.empty()) return hypothesis.views;
   weighed.clear();
-  for (const ComparedView& seen : compared) weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
+  for (const PlacedView& seen : compared) weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
   std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return weighed;
 }
@@ -78,21 +81,22 @@ Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const
   const ObjectClass& object = forest.classes[found.class_index];
   const Hypothesis& hypothesis = found.hypothesis;
   const float spread = found.spread;
-  static thread_local std::vector<ComparedView> compared;  // both kept from candidate to candidate
+  static thread_local std::vector<PlacedView> compared;  // both kept from candidate to candidate
   static thread_local WeighedViews weighed;
   compared.clear();
   Candidate candidate;
   Detection& detection = candidate.detection;
   candidate.evidence.mass_share = hypothesis.mass / object.expected_mass;
+  candidate.evidence.certainty =
+      hypothesis.weight / static_cast<float>(std::max<std::size_t>(hypothesis.patches.size(), 1));
   candidate.evidence.distance = hypothesis.centre_camera.norm();
   detection.box_px = backprojected_box(forest, hypothesis, seen.grid, frame.frame.camera);
   detection.score = vote_score(candidate.evidence.mass_share);
   if (forest.scoring == Scoring::kEvidence) {
-    ViewFit& fit = candidate.evidence.fit;
     compare_views(forest, hypothesis, frame, spread, forgotten, compared);
-    fit = best_fit(forest, found, frame, candidate.evidence, compared);
+    add_best_fit(forest, object.score_model, frame, compared, candidate.evidence);
     detection.score = score(object.score_model, candidate.evidence);
-    detection.box_px = visible_box(detection.box_px, fit.visible_box_px, frame.frame.camera);
+    detection.box_px = visible_box(detection.box_px, candidate.evidence.fit.visible_box_px, frame.frame.camera);
   }
   detection.class_id = object.class_id;
   detection.class_name = object.name;

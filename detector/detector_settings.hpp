@@ -93,21 +93,21 @@ struct DetectionSettings {
   int stride = 2;         ///< patch offset, working pixels (paper, Section 5.1.3)
   /// Metres between patches: where the stride puts them nearer to each other, some are left out, see PatchSpacing;
   /// 0 = none are. With depth normalisation only.
-  float patch_spacing = 0.025F;
+  float patch_spacing = 0.022F;
   /// A patch walks down so many trees first, and down the rest only if the mean of what their leaves are most certain
   /// of reaches min_first_share; 0 = every patch walks down all trees.
   int first_trees = 3;
   float min_first_share = 0.1F;
   /// Smallest score that is reported: in development_world_20 to 67 95 % of the detections from 0.72 on are true.
   float threshold = 0.75F;
-  float min_mass_share = 0.02F;    ///< of a class's expected mass, for a maximum to be looked at
-  int max_per_class = 250;         ///< at most so many detections of one class (paper, Section 4)
-  float min_class_share = 0.1F;    ///< of its leaves, from which a patch votes for a class
-  int candidates_per_class = 24;   ///< maxima of the Hough image that are looked at in 3-D, see candidates_of_each
-  float min_relative_peak = 0.1F;  ///< of the Hough image's highest value, for a maximum to be looked at
-  float hough_sigma_px = 3.0F;     ///< smoothing of the Hough image, working pixels
-  float vote_sigma = 0.016F;       ///< bandwidth of the 3-D maximum, metres
-  float max_overlap = 0.5F;        ///< a weaker box of another object may overlap a stronger one by this IoU
+  float min_mass_share = 0.02F;     ///< of a class's expected mass, for a maximum to be looked at
+  int max_per_class = 250;          ///< at most so many detections of one class (paper, Section 4)
+  float min_class_share = 0.1F;     ///< of its leaves, from which a patch votes for a class
+  int candidates_per_class = 24;    ///< maxima of the Hough image that are looked at in 3-D, see candidates_of_each
+  float min_relative_peak = 0.05F;  ///< of the Hough image's highest value, for a maximum to be looked at
+  float hough_sigma_px = 3.0F;      ///< smoothing of the Hough image, working pixels
+  float vote_sigma = 0.016F;        ///< bandwidth of the 3-D maximum, metres
+  float max_overlap = 0.5F;         ///< a weaker box of another object may overlap a stronger one by this IoU
   float dominance =
       2.0F;  ///< ... if that one is more likely than not and so many times as likely; of its own class always
   int max_rotations = 48;  ///< rotations handed to the pose process

@@ -37,7 +37,8 @@ ScoreTerms score_terms(const Evidence& evidence) {
   const ViewFit& fit = evidence.fit;
   const float foreign = std::min(fit.foreign_colour, 1.0F);
   constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
-  const float log_mass = std::log(std::max(evidence.mass_share, 1e-4F));
+  constexpr float kLeast = 1e-4F;   // the same of shares
+  const float log_mass = std::log(std::max(evidence.mass_share, kLeast));
   return {1.0F,
           log_mass,
           std::log(1.02F - fit.hidden),
@@ -51,7 +52,9 @@ ScoreTerms score_terms(const Evidence& evidence) {
           fit.unknown * log_mass,
           fit.unknown * fit.likeness,
           fit.unknown * std::log(std::max(evidence.distance, kNearest)),
-          fit.likeness * fit.hue_conflict};
+          fit.likeness * fit.hue_conflict,
+          evidence.other_size,
+          std::log(std::max(evidence.certainty, kLeast))};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {

@@ -7,16 +7,19 @@ namespace houghstream {
 
 /// What speaks for and against a hypothesis.
 struct Evidence {
-  float mass_share = 0.0F;  ///< vote mass over the class's expected_mass
-  float distance = 1.0F;    ///< of the centre from the camera, metres
-  ViewFit fit;              ///< of the remembered view that fits best
+  float mass_share = 0.0F;   ///< vote mass over the class's expected_mass
+  float certainty = 1.0F;    ///< weight of the votes over the number of patches that cast them
+  float distance = 1.0F;     ///< of the centre from the camera, metres
+  ViewFit fit;               ///< of the remembered view that fits best
+  float other_size = -0.4F;  ///< see gain_of_other_size; about what objects have, where it was not looked for
 };
 
 /// The evidence as the terms that ScoreModel::weights multiply: 1, the logarithms of the mass and of what is not
-/// hidden (half an object has half the mass), the rest of the fit as it is; foreign colour, of which light
-/// makes a little, squared; the share of unknown depth times the mass's logarithm and times the likeness, since
-/// both say something else of what is mostly unknown, and times the distance's logarithm: near surfaces lose their
-/// depth, far ones seldom; and the likeness times the hue conflict: print of other colours may be as like as can be.
+/// hidden (half an object has half the mass), the rest of the fit and the gain of another size as they are; foreign
+/// colour, of which light makes a little, squared; the share of unknown depth times the mass's logarithm and times the
+/// likeness, since both say something else of what is mostly unknown, and times the distance's logarithm: near surfaces
+/// lose their depth, far ones seldom; the likeness times the hue conflict: print of other colours may be as like as can
+/// be; and the logarithm of the certainty: as many votes of patches that are less sure come from something else.
 ScoreTerms score_terms(const Evidence& evidence);
 
 /// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).

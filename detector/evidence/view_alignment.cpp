@@ -10,8 +10,9 @@ float agreement(const ViewFit& fit) {
          0.2F * fit.hue_conflict;
 }
 
-ViewFit align_view(const TrainedView& view, Eigen::Vector3f centre_camera, ViewFit fit, const LabFrame& frame) {
+PlacedView align_view(const std::vector<TrainedView>& views, PlacedView placed, const LabFrame& frame) {
   constexpr int kSteps = 4;
+  const TrainedView& view = views[placed.view];
   const float right = (view.box[2] - view.box[0]) / Appearance::kBoxSide;
   const float down = (view.box[3] - view.box[1]) / Appearance::kBoxSide;
   const std::array<Eigen::Vector3f, 4> moves = {Eigen::Vector3f(right, 0, 0), Eigen::Vector3f(-right, 0, 0),
@@ -21,34 +22,42 @@ ViewFit align_view(const TrainedView& view, Eigen::Vector3f centre_camera, ViewF
     std::size_t best = moves.size();
     for (std::size_t m = 0; m < moves.size(); ++m) {
       if (m == back) continue;
-      const ViewFit moved = fit_view(view, centre_camera + moves[m], frame);
-      if (agreement(moved) <= agreement(fit)) continue;
-      fit = moved;
+      const ViewFit moved = fit_view(view, placed.centre_camera + moves[m], frame);
+      if (agreement(moved) <= agreement(placed.fit)) continue;
+      placed.fit = moved;
       best = m;
     }
     if (best == moves.size()) break;
-    centre_camera += moves[best];
+    placed.centre_camera += moves[best];
     back = best ^ 1U;
   }
-  return fit;
+  return placed;
 }
 
-const ComparedView& best_unaligned(const std::vector<ComparedView>& compared) {
-  const auto worse = [](const ComparedView& a, const ComparedView& b) { return agreement(a.fit) < agreement(b.fit); };
+const PlacedView& best_unaligned(const std::vector<PlacedView>& compared) {
+  const auto worse = [](const PlacedView& a, const PlacedView& b) { return agreement(a.fit) < agreement(b.fit); };
   return *std::max_element(compared.begin(), compared.end(), worse);
 }
 
-ViewFit best_aligned(const std::vector<TrainedView>& views, const std::vector<ComparedView>& compared,
-                     const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
+PlacedView best_aligned(const std::vector<TrainedView>& views, const std::vector<PlacedView>& compared,
+                        const LabFrame& frame) {
   constexpr float kFarBehind = 0.3F;  // in agreement: aligning gains less
-  ViewFit best = best_unaligned(compared).fit;
-  const float least = agreement(best) - kFarBehind;
-  for (const ComparedView& seen : compared) {
+  PlacedView best = best_unaligned(compared);
+  const float least = agreement(best.fit) - kFarBehind;
+  for (const PlacedView& seen : compared) {
     if (agreement(seen.fit) < least) continue;
-    const ViewFit aligned = align_view(views[seen.view], centre_camera, seen.fit, frame);
-    if (agreement(aligned) > agreement(best)) best = aligned;
+    const PlacedView aligned = align_view(views, seen, frame);
+    if (agreement(aligned.fit) > agreement(best.fit)) best = aligned;
   }
   return best;
+}
+
+float gain_of_other_size(const TrainedView& view, const PlacedView& placed, const LabFrame& frame) {
+  constexpr float kSmaller = 0.7F;
+  constexpr float kLarger = 1.4F;
+  const float smaller = agreement(fit_view(view, placed.centre_camera, frame, kSmaller));
+  const float larger = agreement(fit_view(view, placed.centre_camera, frame, kLarger));
+  return std::max(smaller, larger) - agreement(placed.fit);
 }
 
 }  // namespace houghstream

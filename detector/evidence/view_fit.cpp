@@ -35,11 +35,12 @@ struct Comparison {
   }
 };
 
-Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame) {
+Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   Comparison out;
   const Eigen::Vector2d centre_px = frame.camera.project(centre.cast<double>());
-  const auto px_per_metre = static_cast<float>(1.0 / frame.camera.metres_per_px(centre.z()));
+  const auto px_per_metre = size * static_cast<float>(1.0 / frame.camera.metres_per_px(centre.z()));  // of the view
+  const float metres = 0.001F * size;  // per millimetre of it
   out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / Appearance::kBoxSide;
   out.cell_height = px_per_metre * (view.box[3] - view.box[1]) / Appearance::kBoxSide;
   // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
@@ -61,8 +62,8 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
       const std::int16_t neighbour = view.appearance.beside[cell];
       out.on_object[cell] = remembered != Appearance::kBeside;
       out.beside[cell] = neighbour != Appearance::kBeside;
-      out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - 0.001F * remembered : kNone;
-      out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - 0.001F * neighbour : kNone;
+      out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - metres * remembered : kNone;
+      out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - metres * neighbour : kNone;
     }
   }
   return out;
@@ -194,8 +195,8 @@ LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float sca
   return {frame, lab, scale};
 }
 
-ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
-  const Comparison comparison = compare(view, centre_camera, frame.frame);
+ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
+  const Comparison comparison = compare(view, centre_camera, frame.frame, size);
   const float shift = common_shift(comparison);
   const float z = centre_camera.z();
   const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise

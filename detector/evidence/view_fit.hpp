@@ -34,7 +34,9 @@ struct ViewFit {
 
 /// The view's relief compared with the frame, pixel by pixel of the relief, after moving it along the ray by at most
 /// a few centimetres to where most of it agrees: a vote's depth is less exact than a surface's.
-/// The likeness is blind to brightness, contrast and colour cast, which the light decides.
-ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame);
+/// The likeness is blind to brightness, contrast and colour cast, which the light decides. With a `size` other than 1
+/// the view is taken for one of an object so many times as large.
+ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
+                 float size = 1.0F);
 
 }  // namespace houghstream

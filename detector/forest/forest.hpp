@@ -12,7 +12,7 @@
 
 namespace houghstream {
 
-constexpr std::size_t kScoreTerms = 14;
+constexpr std::size_t kScoreTerms = 16;
 using ScoreTerms = std::array<float, kScoreTerms>;
 
 /// How evidence becomes a probability, see score_terms(). The values here are what is believed before any example is

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "detector/evidence/view_fit.hpp"
@@ -19,6 +20,17 @@ inline TrainedView remembered_view() {
   out.box = {side(box.x, 159.5), side(box.y, 119.5), side(box.br().x, 159.5), side(box.br().y, 119.5)};
   out.appearance = remember_appearance(view.frame, view.mask, box, kDistance);
   return out;
+}
+
+/// The view of an object so many times as large, seen from as far.
+inline TrainedView resized(TrainedView view, float size) {
+  for (float& side : view.box) side *= size;
+  for (auto* cells : {&view.appearance.mm, &view.appearance.beside}) {
+    for (std::int16_t& mm : *cells) {
+      if (mm > Appearance::kNoDepth) mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(mm)));
+    }
+  }
+  return view;
 }
 
 }  // namespace houghstream::toy

@@ -77,6 +77,28 @@ TEST(Score, LikenessInOtherHuesWeighsOtherwise) {
   EXPECT_LT(score(model, evidence), score(ScoreModel{}, evidence));
 }
 
+TEST(Score, WhatAgreesBetterInAnotherSizeIsAnotherThing) {
+  ScoreModel model;
+  model.weights[14] = -3.0F;
+  Evidence evidence = with_mass(0.3F);
+  const float usual = score(model, evidence);
+  evidence.other_size = 0.2F;
+  EXPECT_LT(score(model, evidence), usual);
+  EXPECT_EQ(score(ScoreModel{}, evidence), score(ScoreModel{}, with_mass(0.3F)));
+}
+
+TEST(Score, ManyUncertainPatchesAreLessThanFewCertainOnes) {
+  ScoreModel model;
+  model.weights[15] = 1.5F;
+  Evidence evidence = with_mass(0.3F);
+  evidence.certainty = 2.0F;
+  const float certain = score(model, evidence);
+  evidence.certainty = 0.5F;
+  EXPECT_LT(score(model, evidence), certain);
+  evidence.certainty = 0.0F;
+  EXPECT_TRUE(std::isfinite(score_terms(evidence)[15]));
+}
+
 /// Examples whose truth is drawn from a model.
 std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
   Random random(4);
@@ -89,6 +111,8 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
     evidence.fit.continued = static_cast<float>(random.uniform(0.0, 1.0));
     evidence.fit.likeness = static_cast<float>(random.uniform(-0.2, 1.0));
     evidence.fit.foreign_colour = static_cast<float>(random.uniform(0.0, 2.0));
+    evidence.other_size = static_cast<float>(random.uniform(-1.0, 0.3));
+    evidence.certainty = static_cast<float>(std::exp(random.uniform(-1.0, 1.0)));
     examples.push_back({score_terms(evidence), random.uniform() < score(truth, evidence)});
   }
   return examples;
@@ -97,7 +121,7 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
 TEST(Score, TheModelThatMadeTheExamplesComesBack) {
   ScoreModel truth;
   truth.weights = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F, -1.2F};
-  const ScoreModel fitted = fit_score_model(drawn_from(truth, 20000), ScoreModel{});
+  const ScoreModel fitted = fit_score_model(drawn_from(truth, 40000), ScoreModel{});
   for (std::size_t i = 0; i < kScoreTerms; ++i) EXPECT_NEAR(fitted.weights[i], truth.weights[i], 0.35F) << i;
 }
 

@@ -16,9 +16,11 @@ TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
   const float cell = (view.box[2] - view.box[0]) / Appearance::kBoxSide;
   for (const float sideways : {-2.0F, 2.0F}) {
     const Eigen::Vector3f beside(sideways * cell, 0.0F, toy::kDistance);
-    const ViewFit before = fit_view(view, beside, frame);
-    const ViewFit after = align_view(view, beside, before, frame);
-    EXPECT_GT(agreement(after), agreement(before));
+    const PlacedView before = {0, beside, fit_view(view, beside, frame)};
+    const PlacedView placed = align_view({view}, before, frame);
+    const ViewFit& after = placed.fit;
+    EXPECT_GT(agreement(after), agreement(before.fit));
+    EXPECT_EQ(agreement(after), agreement(fit_view(view, placed.centre_camera, frame)));
     EXPECT_GT(after.visible, 0.97F);
     EXPECT_GT(box_iou(after.visible_box_px, truth), 0.9F);
   }
@@ -29,8 +31,10 @@ TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
   const TrainedView view = toy::remembered_view();
   const LabFrame frame = make_lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const Eigen::Vector3f outside(3.0F, 0.0F, toy::kDistance);
-  const ViewFit nothing = fit_view(view, outside, frame);
-  EXPECT_EQ(agreement(align_view(view, outside, nothing, frame)), agreement(nothing));
+  const PlacedView nothing = {0, outside, fit_view(view, outside, frame)};
+  const PlacedView aligned = align_view({view}, nothing, frame);
+  EXPECT_EQ(agreement(aligned.fit), agreement(nothing.fit));
+  EXPECT_EQ(aligned.centre_camera, outside);
 }
 
 /// The votes meet beside the centre, where a plain grey view of the same shape agrees better than the right one.
@@ -44,11 +48,28 @@ TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
   wrong.box[0] -= cell;
   wrong.box[2] -= cell;
   for (auto& lab : wrong.appearance.lab) lab = {128, 128, 128};
-  const std::vector<ComparedView> compared = {{0, fit_view(right, beside, frame)}, {1, fit_view(wrong, beside, frame)}};
+  const std::vector<TrainedView> views = {right, wrong};
+  const std::vector<PlacedView> compared = {{0, beside, fit_view(right, beside, frame)},
+                                            {1, beside, fit_view(wrong, beside, frame)}};
   ASSERT_EQ(best_unaligned(compared).view, 1U);
-  const ViewFit aligned = best_aligned({right, wrong}, compared, beside, frame);
-  EXPECT_EQ(agreement(aligned), agreement(align_view(right, beside, compared[0].fit, frame)));
-  EXPECT_GT(agreement(aligned), agreement(align_view(wrong, beside, compared[1].fit, frame)));
+  const PlacedView aligned = best_aligned(views, compared, frame);
+  EXPECT_EQ(aligned.view, 0U);
+  EXPECT_EQ(agreement(aligned.fit), agreement(align_view(views, compared[0], frame).fit));
+  EXPECT_GT(agreement(aligned.fit), agreement(align_view(views, compared[1], frame).fit));
+}
+
+TEST(ViewAlignment, AnObjectOfAnotherSizeAgreesBetterInThatSize) {
+  const TrainingView seen = toy::training_views().front();
+  const LabFrame frame = make_lab_frame(seen.frame, seen.frame.colour, 1.0F);
+  const TrainedView right = toy::remembered_view();
+  const Eigen::Vector3f centre(0.0F, 0.0F, toy::kDistance);
+  const auto gain = [&](const TrainedView& view) {
+    return gain_of_other_size(view, {0, centre, fit_view(view, centre, frame)}, frame);
+  };
+  EXPECT_LT(gain(right), -0.05F);
+  for (const float seen_size : {0.7F, 1.4F}) {  // of the frame's object over the remembered one
+    EXPECT_GT(gain(toy::resized(right, 1.0F / seen_size)), 0.05F) << seen_size;
+  }
 }
 
 }  // namespace

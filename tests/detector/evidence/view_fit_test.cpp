@@ -111,6 +111,17 @@ TEST(ViewFit, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
   EXPECT_EQ(beside(-0.06F), 0.0F) << "what is behind";
 }
 
+TEST(ViewFit, AViewMayBeTakenForOneOfALargerObject) {
+  const RgbdFrame frame = tile_frame();
+  const LabFrame lab = make_lab_frame(frame, frame.colour, 1.0F);
+  const ViewFit own = fit_view(toy::remembered_view(), kCentre, lab);
+  const ViewFit resized = fit_view(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab, 2.0F);
+  EXPECT_NEAR(resized.visible, own.visible, 0.01F);
+  EXPECT_NEAR(resized.likeness, own.likeness, 0.01F);
+  EXPECT_GT(box_iou(resized.visible_box_px, own.visible_box_px), 0.99F);
+  EXPECT_LT(fit_view(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab).likeness, own.likeness - 0.1F);
+}
+
 TEST(ViewFit, LikenessIgnoresLightButNotPattern) {
   RgbdFrame dim = tile_frame();
   dim.colour.convertTo(dim.colour, -1, 0.5, 20.0);
