@@ -69,14 +69,14 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
   return out;
 }
 
-/// Median of what lies within reach of the expected depth.
+/// Median of what lies in the frame and within reach of the expected depth.
 float common_shift(const Comparison& comparison) {
   constexpr float kReach = 0.03F;
   std::array<float, kSide * kSide> near;
   std::size_t count = 0;
   for (std::size_t cell = 0; cell < near.size(); ++cell) {
     near[count] = comparison.excess[cell];
-    count += std::abs(near[count]) < kReach ? 1 : 0;
+    count += comparison.on_object[cell] && std::abs(near[count]) < kReach ? 1 : 0;
   }
   if (count == 0) return 0.0F;
   auto* middle = near.data() + count / 2;
