@@ -14,43 +14,54 @@ namespace {
 
 constexpr int kSide = Appearance::kSide;
 
-/// Where the cells of a relief are seen, and how much farther than remembered the frame's surface is there.
+struct Cell {
+  std::uint16_t index = 0;  // in the relief
+  std::uint8_t row = 0;
+  std::uint8_t column = 0;
+};
+
+/// Where the cells of a relief are seen, and how much farther than remembered the frame's surface is there. Only those
+/// that are in the frame, row by row.
 struct Comparison {
-  std::array<float, kSide * kSide>
-      excess{};  // on the object, metres; NaN where depth is not measured or not remembered
-  std::array<float, kSide * kSide> excess_beside{};  // beside its outline
-  std::array<bool, kSide * kSide> on_object{};
-  std::array<bool, kSide * kSide> beside{};
-  float left = 0.0F;  // of the first cell, frame pixels
+  std::size_t object_cells = 0;
+  std::array<Cell, kSide * kSide> cells;    // the first object_cells: on the object
+  std::array<float, kSide * kSide> excess;  // at these, metres; NaN where depth is not measured or not remembered
+  std::size_t beside_cells = 0;
+  std::array<float, kSide * kSide> excess_beside;  // the first beside_cells: beside the outline
+  float left = 0.0F;                               // of the first cell, frame pixels
   float top = 0.0F;
   float cell_width = 0.0F;
   float cell_height = 0.0F;
 
   /// Frame pixels from the left upper edge of the first pixel.
-  cv::Point2f cell_centre(std::size_t cell) const {
-    const std::size_t column = cell % kSide;
-    const std::size_t row = cell / kSide;
+  cv::Point2f cell_centre(std::size_t row, std::size_t column) const {
     return {left + (static_cast<float>(column) + 0.5F) * cell_width,
             top + (static_cast<float>(row) + 0.5F) * cell_height};
   }
 };
 
-Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  Comparison out;
-  const Eigen::Vector2d centre_px = frame.camera.project(centre.cast<double>());
-  const auto px_per_metre = size * static_cast<float>(1.0 / frame.camera.metres_per_px(centre.z()));  // of the view
-  const float metres = 0.001F * size;  // per millimetre of it
+/// Where the relief's cells lie.
+void place(const TrainedView& view, const Eigen::Vector3f& centre, const Camera& camera, float size, Comparison& out) {
+  const Eigen::Vector2d centre_px = camera.project(centre.cast<double>());
+  const auto px_per_metre = size * static_cast<float>(1.0 / camera.metres_per_px(centre.z()));  // of the view
   out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / Appearance::kBoxSide;
   out.cell_height = px_per_metre * (view.box[3] - view.box[1]) / Appearance::kBoxSide;
   // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
   out.left = static_cast<float>(centre_px.x()) + 0.5F + px_per_metre * view.box[0] - Appearance::kRim * out.cell_width;
   out.top = static_cast<float>(centre_px.y()) + 0.5F + px_per_metre * view.box[1] - Appearance::kRim * out.cell_height;
+}
+
+/// Without branches on what the cells are, which nobody could predict.
+void compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size,
+             Comparison& out) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  place(view, centre, frame.camera, size, out);
+  const float metres = 0.001F * size;  // per millimetre of the view
   std::array<int, kSide> column_px{};
   for (std::size_t column = 0; column < kSide; ++column)
-    column_px[column] = static_cast<int>(std::floor(out.cell_centre(column).x));
+    column_px[column] = static_cast<int>(std::floor(out.cell_centre(0, column).x));
   for (std::size_t row = 0; row < kSide; ++row) {
-    const int y = static_cast<int>(std::floor(out.cell_centre(row * kSide).y));
+    const int y = static_cast<int>(std::floor(out.cell_centre(row, 0).y));
     if (y < 0 || y >= frame.depth.rows) continue;
     const auto* depth = frame.depth.ptr<float>(y);
     for (std::size_t column = 0; column < kSide; ++column) {
@@ -60,23 +71,25 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
       const float beyond_centre = depth[x] - centre.z();
       const std::int16_t remembered = view.appearance.mm[cell];
       const std::int16_t neighbour = view.appearance.beside[cell];
-      out.on_object[cell] = remembered != Appearance::kBeside;
-      out.beside[cell] = neighbour != Appearance::kBeside;
-      out.excess[cell] = remembered > Appearance::kNoDepth ? beyond_centre - metres * remembered : kNone;
-      out.excess_beside[cell] = neighbour > Appearance::kNoDepth ? beyond_centre - metres * neighbour : kNone;
+      out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),
+                                     static_cast<std::uint8_t>(column)};
+      out.excess[out.object_cells] = remembered > Appearance::kNoDepth ? beyond_centre - metres * remembered : kNone;
+      out.object_cells += remembered != Appearance::kBeside ? 1 : 0;
+      out.excess_beside[out.beside_cells] =
+          neighbour > Appearance::kNoDepth ? beyond_centre - metres * neighbour : kNone;
+      out.beside_cells += neighbour != Appearance::kBeside ? 1 : 0;
     }
   }
-  return out;
 }
 
-/// Median of what lies in the frame and within reach of the expected depth.
+/// Median of what lies within reach of the expected depth.
 float common_shift(const Comparison& comparison) {
   constexpr float kReach = 0.03F;
   std::array<float, kSide * kSide> near;
   std::size_t count = 0;
-  for (std::size_t cell = 0; cell < near.size(); ++cell) {
-    near[count] = comparison.excess[cell];
-    count += comparison.on_object[cell] && std::abs(near[count]) < kReach ? 1 : 0;
+  for (std::size_t i = 0; i < comparison.object_cells; ++i) {
+    near[count] = comparison.excess[i];
+    count += std::abs(near[count]) < kReach ? 1 : 0;
   }
   if (count == 0) return 0.0F;
   auto* middle = near.data() + count / 2;
@@ -84,25 +97,23 @@ float common_shift(const Comparison& comparison) {
   return *middle;
 }
 
-/// Which rows or columns of cells show some of the object.
-using Lines = std::array<bool, kSide>;
+/// Which rows or columns of cells show some of the object: a bit for each.
+using Lines = std::uint32_t;
+static_assert(kSide <= 32);
 
-/// First and one past the last line that does.
-std::pair<int, int> range(const Lines& seen) {
-  int first = kSide;
-  int last = 0;
-  for (int i = 0; i < kSide; ++i) {
-    if (!seen[static_cast<std::size_t>(i)]) continue;
-    first = std::min(first, i);
-    last = i + 1;
-  }
+/// First and one past the last line that does; `seen` is not 0.
+std::pair<int, int> range(Lines seen) {
+  int first = 0;
+  while ((seen >> first & 1U) == 0) ++first;
+  int last = kSide;
+  while ((seen >> (last - 1) & 1U) == 0) --last;
   return {first, last};
 }
 
-cv::Rect2f visible_box(const Comparison& comparison, const Lines& columns, const Lines& rows) {
+cv::Rect2f visible_box(const Comparison& comparison, Lines columns, Lines rows) {
+  if (columns == 0 || rows == 0) return {};
   const auto [left, right] = range(columns);
   const auto [top, bottom] = range(rows);
-  if (left >= right || top >= bottom) return {};
   return {comparison.left + static_cast<float>(left) * comparison.cell_width,
           comparison.top + static_cast<float>(top) * comparison.cell_height,
           static_cast<float>(right - left) * comparison.cell_width,
@@ -113,57 +124,51 @@ cv::Rect2f visible_box(const Comparison& comparison, const Lines& columns, const
 /// comes nearer there before it turns away.
 float continued_share(const Comparison& comparison, float shift, float tolerance) {
   constexpr float kNearer = 0.03F;
-  int beside = 0;
   int continued = 0;
-  for (std::size_t cell = 0; cell < comparison.beside.size(); ++cell) {
-    if (!comparison.beside[cell]) continue;
-    ++beside;
-    const float e = comparison.excess_beside[cell] - shift;
-    continued += e >= -kNearer && e <= 2.0F * tolerance ? 1 : 0;
+  for (std::size_t i = 0; i < comparison.beside_cells; ++i) {
+    const float e = comparison.excess_beside[i] - shift;
+    continued += (e >= -kNearer ? 1 : 0) & (e <= 2.0F * tolerance ? 1 : 0);
   }
-  return static_cast<float>(continued) / static_cast<float>(std::max(beside, 1));
+  return static_cast<float>(continued) / static_cast<float>(std::max<std::size_t>(comparison.beside_cells, 1));
 }
 
 /// How the object's cells compare.
 struct Tally {
-  int cells = 0;
+  std::size_t cells = 0;
   int visible = 0;
   int hidden = 0;
   int seen_through = 0;
   int unknown = 0;
   float unevenness = 0.0F;  // sum over the visible ones
-  Lines rows{};             // with cells that are visible or unknown
-  Lines columns{};
-  std::size_t shown = 0;                                 // cells in front of which nothing is known to be
-  std::array<std::uint16_t, kSide * kSide> shown_cells;  // the first `shown` of them
+  Lines rows = 0;           // with cells that are visible or unknown
+  Lines columns = 0;
+  std::size_t shown = 0;                        // cells in front of which nothing is known to be
+  std::array<Cell, kSide * kSide> shown_cells;  // the first `shown` of them
 
-  float share(int count) const { return static_cast<float>(count) / static_cast<float>(std::max(cells, 1)); }
+  float share(int count) const {
+    return static_cast<float>(count) / static_cast<float>(std::max<std::size_t>(cells, 1));
+  }
 };
 
-/// Without branches, which nobody could predict.
-Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
-  Tally tally;
-  for (std::size_t row = 0; row < kSide; ++row) {
-    for (std::size_t column = 0; column < kSide; ++column) {
-      const std::size_t cell = row * kSide + column;
-      const int object = comparison.on_object[cell] ? 1 : 0;
-      const float e = comparison.excess[cell] - shift;
-      const int unknown = object & (std::isnan(e) ? 1 : 0);
-      const int visible = object & (std::abs(e) <= tolerance ? 1 : 0);
-      tally.shown_cells[tally.shown] = static_cast<std::uint16_t>(cell);
-      tally.shown += static_cast<std::size_t>(visible | unknown);
-      tally.unevenness += visible != 0 ? std::abs(e) / tolerance : 0.0F;
-      tally.cells += object;
-      tally.visible += visible;
-      tally.unknown += unknown;
-      tally.hidden += object & (e < -tolerance ? 1 : 0);
-      tally.seen_through += object & (e > tolerance ? 1 : 0);
-      const bool seen = (unknown | visible) != 0;
-      tally.rows[row] = tally.rows[row] || seen;
-      tally.columns[column] = tally.columns[column] || seen;
-    }
+/// Without branches, as compare().
+void tally_cells(const Comparison& comparison, float shift, float tolerance, Tally& tally) {
+  tally.cells = comparison.object_cells;
+  for (std::size_t i = 0; i < comparison.object_cells; ++i) {
+    const Cell cell = comparison.cells[i];
+    const float e = comparison.excess[i] - shift;
+    const int unknown = std::isnan(e) ? 1 : 0;
+    const int visible = std::abs(e) <= tolerance ? 1 : 0;
+    const int seen = visible | unknown;
+    tally.shown_cells[tally.shown] = cell;
+    tally.shown += static_cast<std::size_t>(seen);
+    tally.unevenness += visible != 0 ? std::abs(e) / tolerance : 0.0F;
+    tally.visible += visible;
+    tally.unknown += unknown;
+    tally.hidden += e < -tolerance ? 1 : 0;
+    tally.seen_through += e > tolerance ? 1 : 0;
+    tally.rows |= static_cast<Lines>(seen) << cell.row;
+    tally.columns |= static_cast<Lines>(seen) << cell.column;
   }
-  return tally;
 }
 
 /// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
@@ -172,14 +177,14 @@ Likeness compare_colours(const Comparison& comparison, const Tally& tally, const
   std::array<int, kSide> x_px{};
   std::array<int, kSide> y_px{};
   for (std::size_t i = 0; i < kSide; ++i) {
-    const cv::Point2f px = comparison.cell_centre(i * kSide + i);
+    const cv::Point2f px = comparison.cell_centre(i, i);
     x_px[i] = std::min(static_cast<int>(px.x * frame.scale), frame.lab.cols - 1);
     y_px[i] = std::min(static_cast<int>(px.y * frame.scale), frame.lab.rows - 1);
   }
   Likeness likeness;
   for (std::size_t i = 0; i < tally.shown; ++i) {
-    const std::size_t cell = tally.shown_cells[i];
-    likeness.add(appearance.lab[cell], frame.lab.ptr<cv::Vec3b>(y_px[cell / kSide])[x_px[cell % kSide]]);
+    const Cell cell = tally.shown_cells[i];
+    likeness.add(appearance.lab[cell.index], frame.lab.ptr<cv::Vec3b>(y_px[cell.row])[x_px[cell.column]]);
   }
   return likeness;
 }
@@ -196,11 +201,13 @@ LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float sca
 }
 
 ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
-  const Comparison comparison = compare(view, centre_camera, frame.frame, size);
+  Comparison comparison;
+  compare(view, centre_camera, frame.frame, size, comparison);
   const float shift = common_shift(comparison);
   const float z = centre_camera.z();
   const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
-  const Tally tally = tally_cells(comparison, shift, tolerance);
+  Tally tally;
+  tally_cells(comparison, shift, tolerance, tally);
   const Likeness likeness = compare_colours(comparison, tally, view.appearance, frame);
   ViewFit fit;
   fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));

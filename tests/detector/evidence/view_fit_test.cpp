@@ -165,5 +165,16 @@ TEST(ViewFit, OutsideTheFrameNothingIsCompared) {
   EXPECT_TRUE(result.visible_box_px.empty());
 }
 
+TEST(ViewFit, WhatLiesOutsideTheFrameHasNoSayInTheDepth) {
+  const TrainingView view = toy::training_views().front();
+  const cv::Rect box = cv::boundingRect(view.mask);
+  RgbdFrame frame = view.frame;  // of which a third of the object is left
+  const int columns = box.x + box.width / 3;
+  frame.colour = frame.colour.colRange(0, columns).clone();
+  frame.depth = frame.depth.colRange(0, columns).clone();
+  frame.camera.width = columns;
+  EXPECT_GT(fit(frame, {0, 0, kDistance + 0.025F}).visible, 0.9F);
+}
+
 }  // namespace
 }  // namespace houghstream
