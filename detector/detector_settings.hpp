@@ -93,7 +93,7 @@ struct DetectionSettings {
   int stride = 2;         ///< patch offset, working pixels (paper, Section 5.1.3)
   /// Metres between patches: where the stride puts them nearer to each other, some are left out, see PatchSpacing;
   /// 0 = none are. With depth normalisation only.
-  float patch_spacing = 0.018F;
+  float patch_spacing = 0.022F;
   /// A patch walks down so many trees first, and down the rest only if the mean of what their leaves are most certain
   /// of reaches min_first_share; 0 = every patch walks down all trees.
   int first_trees = 3;

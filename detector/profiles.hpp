@@ -26,7 +26,7 @@ struct Profile {
 /// paper     Section 6: final features, image scale 0.7, patches of 10x10 pixels (at 1 m), depth normalisation, every
 ///           pixel.
 /// realtime  the default: half the image size (full size for what is far), at most every other pixel and patches
-///           at most 18 mm apart, and what the first trees take for background is not shown to the others.
+///           at most 22 mm apart, and what the first trees take for background is not shown to the others.
 ///
 /// paper and realtime share what goes beyond the paper: 3-D votes, occluders in training, evidence, calibrated scores.
 /// `objects`: how many are taught; the paper teaches four. Throws InputError that lists the names for an unknown name.
