@@ -77,7 +77,8 @@ cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const 
 }
 
 Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const SeenPatches& seen,
-                       const LabFrame& frame, int max_rotations, const std::vector<std::uint32_t>& forgotten) {
+                       const LabFrame& frame, const DetectionSettings& settings,
+                       const std::vector<std::uint32_t>& forgotten) {
   const ObjectClass& object = forest.classes[found.class_index];
   const Hypothesis& hypothesis = found.hypothesis;
   const float spread = found.spread;
@@ -103,8 +104,9 @@ Candidate to_candidate(const Forest& forest, const ClassHypothesis& found, const
   detection.centre_camera = hypothesis.centre_camera;
   detection.vote_weight = hypothesis.weight;
   detection.vote_count = hypothesis.vote_count;
+  if (detection.score < settings.threshold) return candidate;  // most, whose rotations nobody will ask for
   const Eigen::Quaternionf R_camera_ray(ray_rotation(hypothesis.centre_camera));
-  const auto room = static_cast<std::size_t>(std::max(max_rotations, 0));
+  const auto room = static_cast<std::size_t>(std::max(settings.max_rotations, 0));
   detection.rotations.reserve(std::min(room, hypothesis.views.size()));
   for (const auto& [view, weight] : weighed_views(hypothesis, spread, compared, weighed)) {
     if (detection.rotations.size() >= room) break;
@@ -181,7 +183,7 @@ std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& fr
   std::vector<Candidate> all(found.size());
   parallel_for(settings.threads, static_cast<int>(found.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    all[at] = to_candidate(forest, found[at], seen, *in_lab, settings.max_rotations, forgotten);
+    all[at] = to_candidate(forest, found[at], seen, *in_lab, settings, forgotten);
   });
   clock.mark("detect.voting");
   return all;

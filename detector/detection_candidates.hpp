@@ -18,6 +18,7 @@ struct Candidate {
 /// All hypotheses of all classes, class by class, each class's strongest vote mass first. Closes the stages "detect.*"
 /// on the clock. Views in `forgotten` are not compared with the frame: validation must not recognise the very picture
 /// it shows.
+/// Candidates below settings.threshold come without rotations.
 std::vector<Candidate> find_candidates(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings,
                                        StageClock& clock, const std::vector<std::uint32_t>& forgotten = {});
 

@@ -95,7 +95,10 @@ void sum_by_view(const Forest& forest, const HoughSpace& space, const Weights& b
     }
   }
   sums.take(by_view);
-  std::stable_sort(by_view.begin(), by_view.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  // ties by index, as a stable sort would leave them, which takes memory for each maximum
+  std::sort(by_view.begin(), by_view.end(), [](const auto& a, const auto& b) {
+    return a.second > b.second || (a.second == b.second && a.first < b.first);
+  });
 }
 
 /// A maximum with what supports it; its mass is what is seen of the object, the weight times the area of the patches.

@@ -31,11 +31,12 @@ bool is_maximum(const HoughSpace& space, int x, int y) {
   return true;
 }
 
-/// Local maxima of the Hough image, strongest first.
-std::vector<Cell> image_maxima(const HoughSpace& space, const DetectionSettings& settings) {
+/// Local maxima of the Hough image, strongest first; valid until the thread's next call.
+const std::vector<Cell>& image_maxima(const HoughSpace& space, const DetectionSettings& settings) {
   const float largest = *std::max_element(space.image.begin(), space.image.end());
   const float least = std::max(1e-4F, settings.min_relative_peak * largest);
-  std::vector<Cell> maxima;
+  static thread_local std::vector<Cell> maxima;  // kept from class to class
+  maxima.clear();
   for (int y = 0; y < space.height; ++y) {
     const float* row = space.image.data() + static_cast<std::ptrdiff_t>(y) * space.width;
     for (int x = 0; x < space.width; ++x) {
@@ -73,8 +74,10 @@ int candidates_of_each(const DetectionSettings& settings, std::size_t classes) {
 
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& working_camera,
                                          const DetectionSettings& settings) {
+  const std::vector<Cell>& cells = image_maxima(space, settings);
   std::vector<Eigen::Vector3f> centres;
-  for (const Cell& cell : image_maxima(space, settings)) {
+  centres.reserve(cells.size());
+  for (const Cell& cell : cells) {
     const float z = start_depth(space, cell);
     if (z <= 0.0F) continue;
     const double u = (cell.x + 0.5) * space.cell_px - 0.5;

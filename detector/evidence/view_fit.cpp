@@ -52,9 +52,9 @@ void place(const TrainedView& view, const Eigen::Vector3f& centre, const Camera&
 }
 
 /// Without branches on what the cells are, which nobody could predict.
-void compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size,
-             Comparison& out) {
+Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  Comparison out;
   place(view, centre, frame.camera, size, out);
   const float metres = 0.001F * size;  // per millimetre of the view
   std::array<int, kSide> column_px{};
@@ -80,6 +80,7 @@ void compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdF
       out.beside_cells += neighbour != Appearance::kBeside ? 1 : 0;
     }
   }
+  return out;
 }
 
 /// Median of what lies within reach of the expected depth. Only the class of a histogram that holds it is searched:
@@ -168,7 +169,8 @@ struct Tally {
 };
 
 /// Without branches, as compare().
-void tally_cells(const Comparison& comparison, float shift, float tolerance, Tally& tally) {
+Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
+  Tally tally;
   tally.cells = comparison.object_cells;
   for (std::size_t i = 0; i < comparison.object_cells; ++i) {
     const Cell cell = comparison.cells[i];
@@ -186,6 +188,7 @@ void tally_cells(const Comparison& comparison, float shift, float tolerance, Tal
     tally.rows |= static_cast<Lines>(seen) << cell.row;
     tally.columns |= static_cast<Lines>(seen) << cell.column;
   }
+  return tally;
 }
 
 /// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
@@ -218,13 +221,11 @@ LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float sca
 }
 
 ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
-  Comparison comparison;
-  compare(view, centre_camera, frame.frame, size, comparison);
+  const Comparison comparison = compare(view, centre_camera, frame.frame, size);
   const float shift = common_shift(comparison);
   const float z = centre_camera.z();
   const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
-  Tally tally;
-  tally_cells(comparison, shift, tolerance, tally);
+  const Tally tally = tally_cells(comparison, shift, tolerance);
   const Likeness likeness = compare_colours(comparison, tally, view.appearance, frame);
   ViewFit fit;
   fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));

@@ -24,9 +24,8 @@ namespace {
 
 constexpr std::size_t kLarge = 16 << 10;  // bytes
 // The lists of maxima, hypotheses and candidates, of which the last ones' rotations are handed to the caller, some
-// lists of the levels and their planes, and what OpenCV's filters need for themselves: none grows with the picture. At
-// most 24 maxima of each of two classes have three lists each.
-constexpr std::size_t kFew = 250;
+// lists of the levels and their planes, and what OpenCV's filters need for themselves: none grows with the picture.
+constexpr std::size_t kFew = 150;
 std::atomic<std::size_t> small_ones{0};
 std::atomic<std::size_t> large_ones{0};
 
