@@ -76,6 +76,7 @@ double axial_noise(double z) {
 }
 
 void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
+  if (strength == 0.0) return;
   const double gain = std::exp2(strength * random.uniform(darkest_stops, brightest_stops));
   const double gamma = std::exp2(strength * random.uniform(-0.25, 0.25));
   const double haze = strength * std::max(0.0, random.uniform(-20.0, 20.0));
