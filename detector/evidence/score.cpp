@@ -14,8 +14,11 @@ double logistic(double x) {
   return 1.0 / (1.0 + std::exp(-x));
 }
 
-Vector to_vector(const ScoreTerms& values) {
-  return Eigen::Map<const Eigen::Array<float, kScoreTerms, 1>>(values.data()).cast<double>();
+template <typename Values>
+Vector to_vector(const Values& values) {
+  Vector out;
+  for (std::size_t i = 0; i < kScoreTerms; ++i) out(static_cast<Eigen::Index>(i)) = values[i];
+  return out;
 }
 
 /// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
@@ -28,19 +31,6 @@ double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights,
   return loss;
 }
 
-/// Newton's step. Example by example: a product of large matrices sums in an order that depends on the caches.
-Vector step_from(const std::vector<ScoreExample>& examples, const Vector& weights, const Vector& believed) {
-  Vector gradient = believed - weights;
-  Matrix curvature = Matrix::Identity();
-  for (const ScoreExample& example : examples) {
-    const Vector x = to_vector(example.terms);
-    const double p = logistic(weights.dot(x));
-    gradient += ((example.is_object ? 1.0 : 0.0) - p) * x;
-    curvature.selfadjointView<Eigen::Lower>().rankUpdate(x, p * (1.0 - p));
-  }
-  return curvature.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
-}
-
 }  // namespace
 
 ScoreTerms score_terms(const Evidence& evidence) {
@@ -49,26 +39,29 @@ ScoreTerms score_terms(const Evidence& evidence) {
   constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
   constexpr float kLeast = 1e-4F;   // the same of shares
   const float log_mass = std::log(std::max(evidence.mass_share, kLeast));
-  const std::array<float, kScoreMeasures> measures = {log_mass,
-                                                      std::log(1.02F - fit.hidden),
-                                                      fit.seen_through,
-                                                      fit.unknown,
-                                                      fit.continued,
-                                                      fit.likeness,
-                                                      fit.hue_conflict,
-                                                      foreign * foreign,
-                                                      fit.unevenness,
-                                                      evidence.other_size,
-                                                      std::log(std::max(evidence.certainty, kLeast))};
-  ScoreTerms terms{};
-  terms[0] = 1.0F;
-  std::copy(measures.begin(), measures.end(), terms.begin() + 1);
-  terms[kScoreMeasures + 1] = fit.unknown * std::log(std::max(evidence.distance, kNearest));
-  std::size_t next = kScoreMeasures + 2;
-  for (std::size_t a = 0; a < kScoreMeasures; ++a) {
-    for (std::size_t b = a; b < kScoreMeasures; ++b) terms[next++] = measures[a] * measures[b];
-  }
-  return terms;
+  const float log_shown = std::log(1.02F - fit.hidden);
+  const float log_certainty = std::log(std::max(evidence.certainty, kLeast));
+  return {1.0F,
+          log_mass,
+          log_shown,
+          fit.seen_through,
+          fit.unknown,
+          fit.continued,
+          fit.likeness,
+          fit.hue_conflict,
+          foreign * foreign,
+          fit.unevenness,
+          fit.unknown * log_mass,
+          fit.unknown * fit.likeness,
+          fit.unknown * std::log(std::max(evidence.distance, kNearest)),
+          fit.likeness * fit.hue_conflict,
+          evidence.other_size,
+          log_certainty,
+          log_shown * log_shown,
+          evidence.other_size * evidence.other_size,
+          fit.seen_through * log_certainty,
+          fit.hue_conflict * foreign * foreign,
+          fit.unevenness * fit.unevenness};
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {
@@ -76,19 +69,24 @@ float score(const ScoreModel& model, const Evidence& evidence) {
 }
 
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
-  constexpr int kSteps = 50;  // of Newton's method, which needs about ten
-  constexpr double kEnough = 1e-9;
+  constexpr int kSteps = 30;  // of Newton's method, which needs about eight
   const Vector believed = to_vector(prior.weights);
   Vector weights = believed;
   double loss = loss_of(examples, weights, believed);
   for (int step = 0; step < kSteps; ++step) {
-    Vector change = step_from(examples, weights, believed);
+    Vector gradient = believed - weights;
+    Matrix curvature = Matrix::Identity();
+    for (const ScoreExample& example : examples) {
+      const Vector x = to_vector(example.terms);
+      const double p = logistic(weights.dot(x));
+      gradient += ((example.is_object ? 1.0 : 0.0) - p) * x;
+      curvature += p * (1.0 - p) * x * x.transpose();
+    }
+    Vector change = curvature.ldlt().solve(gradient);
     // Far from the minimum a whole step may lead away from it.
-    while (loss_of(examples, weights + change, believed) > loss && change.norm() > kEnough) change *= 0.5;
+    while (loss_of(examples, weights + change, believed) > loss && change.norm() > 1e-9) change *= 0.5;
     weights += change;
-    const double before = loss;
     loss = loss_of(examples, weights, believed);
-    if (before - loss < kEnough) break;
   }
   ScoreModel model;
   for (std::size_t i = 0; i < kScoreTerms; ++i)

@@ -12,15 +12,13 @@
 
 namespace houghstream {
 
-constexpr std::size_t kScoreMeasures = 11;
-/// 1, the measures, one that only counts where depth is missing, and the products of every two measures.
-constexpr std::size_t kScoreTerms = 2 + kScoreMeasures + kScoreMeasures * (kScoreMeasures + 1) / 2;
+constexpr std::size_t kScoreTerms = 21;
 using ScoreTerms = std::array<float, kScoreTerms>;
 
 /// How evidence becomes a probability, see score_terms(). The values here are what is believed before any example is
 /// seen: even odds at about a third of the expected mass.
 struct ScoreModel {
-  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F, 2.0F, -1.0F};
+  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F, 2.0F, -1.0F, 0.0F, 0.0F};
 };
 
 /// Inner node: left child at `child`, right child at `child` + 1. A child below 0 is leaf number -1 - child.

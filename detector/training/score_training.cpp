@@ -88,13 +88,11 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
     }
   }
   const ScoreModel common = fit_score_model(all, ScoreModel{});
-  parallel_for(settings.threads, static_cast<int>(forest.classes.size()), [&](int c) {
-    ObjectClass& object = forest.classes[static_cast<std::size_t>(c)];
+  for (ObjectClass& object : forest.classes) {
     const auto shows = [&](const TrainingView* view) { return view->class_id == object.class_id; };
-    if (std::none_of(objects.begin(), objects.end(), shows)) return;  // an older object, judged before
-    const auto own = by_class.find(object.class_id);
-    object.score_model = own == by_class.end() ? common : fit_score_model(own->second, common);
-  });
+    if (std::none_of(objects.begin(), objects.end(), shows)) continue;  // an older object, judged before
+    object.score_model = fit_score_model(by_class[object.class_id], common);
+  }
 }
 
 }  // namespace houghstream
