@@ -44,7 +44,8 @@ def add_comparison(planner, source):
     add_profiles(planner, source, first)
     add_features(planner, source, first)
     planner.linemod("linemod", source, SCENES, "6", every, CHECK_DEPTH)
-    planner.linemod("linemod_no_check", source, SCENES, "6", every)
+    if "linemod_no_check" not in planner.protocol.left_out:
+        planner.linemod("linemod_no_check", source, SCENES, "6", every)
     add_single_studies(planner, source, first)
     planner.hough_pictures(source)
     planner.failure_pictures(source, SCENES)
@@ -57,7 +58,8 @@ def add_real(planner, source):
     planner.evaluate("realtime", source, "scenes", first, "real", prefix="real_", every=1)
     planner.evaluate("realtime", source, "clutter", first, "real", prefix="real_", every=1)
     planner.linemod("real_linemod", source, ["scenes"], "real", 1, CHECK_DEPTH)
-    planner.linemod("real_linemod_no_check", source, ["scenes"], "real", 1)
+    if "real_linemod_no_check" not in planner.protocol.left_out:
+        planner.linemod("real_linemod_no_check", source, ["scenes"], "real", 1)
     for what in (name for name in ("gall", "paper") if "real_" + name not in planner.protocol.left_out):
         planner.evaluate(what, source, "scenes", first, "real", prefix="real_", every=1)
 

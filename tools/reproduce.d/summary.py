@@ -107,7 +107,7 @@ def timings(results):
 
 def was_left_out(path, left_out):
     of_real = {f"real.auc_{name.removeprefix('real_')}_mean" for name in left_out if name.startswith("real_")}
-    return path.split(".")[0] in left_out or path in of_real
+    return path.split(".")[0].removeprefix("auc_") in left_out or path in of_real
 
 
 def missing(value, path=""):

@@ -17,6 +17,8 @@ LEFT_OUT = {
     "objects_20": "twenty objects",
     "real_gall": "gall on recorded pictures",
     "real_paper": "paper on recorded pictures",
+    "linemod_no_check": "LINEMOD without depth check",
+    "real_linemod_no_check": "the same on recorded pictures",
 }
 
 SECTIONS = {

@@ -27,10 +27,12 @@ SCALE_HANDLING = {
 HALF_SIZE = {"half_size": ("--profile", "gall", "--image-scale", "0.5")}
 TRAINING = {**FEATURES, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 
-# What a quick run does without: features, the study of twenty objects, two of the profiles on recorded pictures.
+# What a quick run does without: features, the study of twenty objects, two of the profiles on recorded pictures, and
+# what the paper did not compare.
 NOT_IN_QUICK = (
     *OTHER_KERNELS,
     *("honv", "curvature", "pfh", "fpfh", "objects_20", "real_gall", "real_paper"),
+    *("final_depth_by_pixel", "linemod_no_check", "real_linemod_no_check"),
 )
 
 # The same forest under two names: the study's baseline is the profile, as is the one with five scales.
