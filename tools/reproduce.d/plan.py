@@ -15,12 +15,12 @@ def add_profiles(planner, source, seed):
 
 
 def add_features(planner, source, seed):
-    for what in (name for name in FEATURES if name not in (*planner.protocol.left_out, *OTHER_KERNELS)):
+    for what in (name for name in FEATURES if name not in OTHER_KERNELS):
         planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
 
 
 def add_single_studies(planner, source, seed):
-    for what in (name for name in OTHER_KERNELS if name not in planner.protocol.left_out):
+    for what in OTHER_KERNELS:
         planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
     for scene in SCALE_SCENES:
         for what in ("five", *SCALE_HANDLING):
@@ -44,8 +44,7 @@ def add_comparison(planner, source):
     add_profiles(planner, source, first)
     add_features(planner, source, first)
     planner.linemod("linemod", source, SCENES, "6", every, CHECK_DEPTH)
-    if "linemod_no_check" not in planner.protocol.left_out:
-        planner.linemod("linemod_no_check", source, SCENES, "6", every)
+    planner.linemod("linemod_no_check", source, SCENES, "6", every)
     add_single_studies(planner, source, first)
     planner.hough_pictures(source)
     planner.failure_pictures(source, SCENES)
@@ -58,9 +57,8 @@ def add_real(planner, source):
     planner.evaluate("realtime", source, "scenes", first, "real", prefix="real_", every=1)
     planner.evaluate("realtime", source, "clutter", first, "real", prefix="real_", every=1)
     planner.linemod("real_linemod", source, ["scenes"], "real", 1, CHECK_DEPTH)
-    if "real_linemod_no_check" not in planner.protocol.left_out:
-        planner.linemod("real_linemod_no_check", source, ["scenes"], "real", 1)
-    for what in (name for name in ("gall", "paper") if "real_" + name not in planner.protocol.left_out):
+    planner.linemod("real_linemod_no_check", source, ["scenes"], "real", 1)
+    for what in ("gall", "paper"):
         planner.evaluate(what, source, "scenes", first, "real", prefix="real_", every=1)
 
 

@@ -42,7 +42,9 @@ class Planner:
         return self.units.add(name, figure, "hs-train", *options, "--out", "{out}", what=prefix + forest, seed=seed)
 
     def evaluate(self, what, source, scene, seed, figure, prefix="", every=None):
-        """Trains the forest where no other figure has, and measures it."""
+        """Trains the forest where no other figure has, and measures it; nothing where the protocol leaves it out."""
+        if prefix + what in self.protocol.left_out:
+            return
         what = forest_of(what)
         forest = self.train(what, source, seed, figure, prefix)
         options = variants.detection_options(what)
@@ -66,7 +68,9 @@ class Planner:
         return ("hs-evaluate", *files, "--every", every, "--out", "{out}")
 
     def linemod(self, what, source, scenes, figure, every, extra=()):
-        """Learns its templates without chance: one run stands for all."""
+        """Learns its templates without chance: one run stands for all. As evaluate() where it is left out."""
+        if what in self.protocol.left_out:
+            return
         listed = [word for scene in scenes for word in ("--scene", source.scenes[scene])]
         command = ("hs-linemod", *source.training, *source.distances, *listed, "--every", every, *extra)
         self.units.add(
