@@ -8,8 +8,8 @@ void FeatureImage::reset(int width, int height, int pixel_stride) {
   width_ = width;
   height_ = height;
   pixel_stride_ = pixel_stride;
-  const std::size_t rows = static_cast<std::size_t>(height) + 2 * kPad;
-  const std::size_t size = rows * static_cast<std::size_t>(row_stride()) + kSpare;
+  held_ = {-kPad, -kPad, width + 2 * kPad, height + 2 * kPad};
+  const std::size_t size = static_cast<std::size_t>(held_.height) * static_cast<std::size_t>(row_stride()) + kSpare;
   if (data_.size() < size) data_.resize(size);
 }
 
@@ -30,6 +30,21 @@ void FeatureImage::replicate_border(cv::Rect part) {
     if (part.y == 0) std::memcpy(at(begin, -p), at(begin, 0), row_bytes);
     if (part.y + part.height == height_) std::memcpy(at(begin, height_ - 1 + p), at(begin, height_ - 1), row_bytes);
   }
+}
+
+FeatureImage FeatureImage::cut_out(cv::Rect kept) const {
+  FeatureImage out;
+  out.width_ = width_;
+  out.height_ = height_;
+  out.pixel_stride_ = pixel_stride_;
+  out.held_ = kept & held_;
+  const auto row_bytes = static_cast<std::size_t>(out.row_stride());
+  out.data_.reserve(static_cast<std::size_t>(out.held_.height) * row_bytes + kSpare);  // never cleared, only written
+  for (int y = out.held_.y; y < out.held_.br().y; ++y) {
+    out.data_.insert(out.data_.end(), at(out.held_.x, y), at(out.held_.x, y) + row_bytes);
+  }
+  out.data_.resize(out.data_.size() + kSpare);
+  return out;
 }
 
 }  // namespace houghstream

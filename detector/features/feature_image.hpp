@@ -33,9 +33,12 @@ class FeatureImage {
   int width() const { return width_; }
   int height() const { return height_; }
   int pixel_stride() const { return pixel_stride_; }
-  int row_stride() const { return (width_ + 2 * kPad) * pixel_stride_; }
+  int row_stride() const { return held_.width * pixel_stride_; }
 
-  /// The values of pixel (x,y); valid from -kPad to size + kPad - 1.
+  /// The pixels that there are: the picture and its border, or what cut_out() has kept.
+  const cv::Rect& held() const { return held_; }
+
+  /// The values of pixel (x,y), which must be one of held().
   const std::uint8_t* at(int x, int y) const { return data_.data() + offset(x, y); }
   std::uint8_t* at(int x, int y) { return data_.data() + offset(x, y); }
 
@@ -46,14 +49,18 @@ class FeatureImage {
   /// The border beside a part of the picture; nothing where the part lies inside.
   void replicate_border(cv::Rect part);
 
+  /// Only these of the pixels, under the same x and y, for those who look nowhere else.
+  FeatureImage cut_out(cv::Rect kept) const;
+
  private:
   std::size_t offset(int x, int y) const {
-    return static_cast<std::size_t>(y + kPad) * row_stride() + static_cast<std::size_t>(x + kPad) * pixel_stride_;
+    return static_cast<std::size_t>(y - held_.y) * row_stride() + static_cast<std::size_t>(x - held_.x) * pixel_stride_;
   }
 
   int width_ = 0;
   int height_ = 0;
   int pixel_stride_ = 0;
+  cv::Rect held_;
   LineBytes data_;
 };
 

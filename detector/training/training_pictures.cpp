@@ -114,6 +114,28 @@ Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const 
   return canvas;
 }
 
+/// All features of a picture; they stay until this thread's next picture. Memory that pictures share is written to much
+/// faster than new memory: the system has to clear that first.
+const FeatureImage& shared_features(const WorkingFrame& frame, const FeatureSettings& settings) {
+  static thread_local FeatureImage features;
+  static thread_local FeatureTiles tiles;
+  tiles.want_all(frame.colour.size());
+  compute_features(frame, settings, tiles, 1, features);
+  return features;
+}
+
+/// What the patches of a picture look at.
+cv::Rect seen_by(const TrainingPicture& picture, const PatchSettings& patch) {
+  cv::Rect seen;
+  for (const auto* list : {&picture.samples, &picture.spare_background}) {
+    for (const TrainingSample& sample : *list) {
+      const int reach = farthest_offset(patch, sample.scale);
+      seen |= cv::Rect(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
+    }
+  }
+  return seen;
+}
+
 /// A part of the background that the level sees something in, or any part where there is none.
 cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& level, const Profile& profile,
                            Random& random) {
@@ -156,7 +178,6 @@ TrainingPicture object_picture(const TrainingView& view, int label, std::uint32_
   }
   const FeatureLevel level = level_for(distance, profile, random);
   const Canvas canvas = make_canvas(*composite, level, profile);
-  picture.features = compute_features(canvas.frame, profile.features, 1);
   const bool needs_depth = !in_scale_space(profile);
   const auto known = [&](int x, int y) { return teaches(level, profile, canvas.frame.filled_depth.at<float>(y, x)); };
   const auto on_object = [&](int x, int y) {
@@ -178,6 +199,7 @@ TrainingPicture object_picture(const TrainingView& view, int label, std::uint32_
   }
   const double px = composite->frame.camera.metres_per_px(needs_depth ? distance : 1.0);
   picture.whole_area = static_cast<float>(composite->whole_px * px * px);
+  picture.features = shared_features(canvas.frame, profile.features).cut_out(seen_by(picture, profile.patch));
   return picture;
 }
 
@@ -193,7 +215,6 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
 
   const WorkingFrame frame = make_working_frame(part, level, profile.features);
   TrainingPicture picture;
-  picture.features = compute_features(frame, profile.features, 1);
   const auto known = [&](int x, int y) { return teaches(level, profile, frame.filled_depth.at<float>(y, x)); };
   const auto count = static_cast<std::size_t>(settings.patches_per_view / kBackgroundPictures);
   const int drawn = static_cast<int>(count) * (1 + settings.spare_background);
@@ -201,6 +222,7 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
     auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;
     list.push_back(sample_at(at, frame, profile));
   }
+  picture.features = shared_features(frame, profile.features).cut_out(seen_by(picture, profile.patch));
   return picture;
 }
 

@@ -120,6 +120,31 @@ TEST(TrainingPictures, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
   EXPECT_GT(rough, 2.0 * smooth);
 }
 
+/// Whether a picture holds all that its patches look at, and how much more it could hold.
+void expect_held(const TrainingPicture& picture, const PatchSettings& patch) {
+  const cv::Rect held = picture.features.held();
+  for (const auto* list : {&picture.samples, &picture.spare_background}) {
+    for (const TrainingSample& sample : *list) {
+      const int reach = farthest_offset(patch, sample.scale);
+      const cv::Rect seen(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
+      ASSERT_EQ(seen & held, seen) << sample.x << " " << sample.y;
+    }
+  }
+  EXPECT_LT(held.width, picture.features.width() + 2 * FeatureImage::kPad);
+  EXPECT_LT(held.height, picture.features.height() + 2 * FeatureImage::kPad);
+}
+
+TEST(TrainingPictures, PicturesHoldWhatTheirPatchesLookAtOnly) {
+  const Profile profile = open_profile("realtime");
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    expect_held(picture_of(round_view(), profile, seed), profile.patch);
+    Random random(seed);
+    for (const FeatureLevel& level : feature_levels(profile.features)) {
+      expect_held(background_picture(toy::room(3), level, profile, random), profile.patch);
+    }
+  }
+}
+
 TEST(TrainingPictures, NoPixelIsDrawnTwice) {
   const TrainingPicture picture = picture_of(round_view(), open_profile("gall"), 4);
   std::vector<std::pair<int, int>> places;
