@@ -2,6 +2,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <algorithm>
+
 namespace houghstream {
 namespace {
 
@@ -11,8 +13,19 @@ void sum_certainties(const Forest& forest, const RunLeaves& seen, std::vector<fl
   sums.assign(seen.count, 0.0F);
   const std::int32_t* leaves = seen.leaves;
   for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {
-    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += forest.leaf_certainty[leaves[i]];
+    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += forest.leaf_heads[leaves[i]].certainty;
   }
+}
+
+/// What a leaf knows, which is little even where there are many classes.
+struct Known {
+  const LeafClass* begin;
+  const LeafClass* end;
+};
+
+Known known_to(const Forest& forest, std::int32_t leaf) {
+  const LeafHead* head = &forest.leaf_heads[static_cast<std::size_t>(leaf)];
+  return {forest.leaf_classes.data() + head[0].first_class, forest.leaf_classes.data() + head[1].first_class};
 }
 
 /// Sums over the trees of p(class | leaf) for some of the patches of a run: element [i * classes + class].
@@ -23,13 +36,11 @@ void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, 
   sums.assign(some.size() * classes, 0.0F);
   const std::int32_t* leaves = seen.leaves;
   for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
-    const auto shares_of = [&](std::size_t i) {
-      return forest.leaf_shares.data() + static_cast<std::size_t>(leaves[some[i]]) * classes;
-    };
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      if (i + kAhead < some.size()) hwy::Prefetch(shares_of(i + kAhead));
-      const LeafShare* shares = shares_of(i);
-      for (std::size_t c = 0; c < classes; ++c) sums[i * classes + c] += shares[c].probability;
+    float* sums_of_patch = sums.data();
+    for (std::size_t i = 0; i < some.size(); ++i, sums_of_patch += classes) {
+      if (i + kAhead < some.size()) hwy::Prefetch(known_to(forest, leaves[some[i + kAhead]]).begin);
+      const Known known = known_to(forest, leaves[some[i]]);
+      for (const LeafClass* of = known.begin; of != known.end; ++of) sums_of_patch[of->class_index] += of->probability;
     }
   }
 }
@@ -37,16 +48,12 @@ void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, 
 /// What the leaves of a run's patch number `i` know of a class.
 void append_entries(const Forest& forest, std::size_t class_index, std::size_t i, const RunLeaves& seen,
                     std::vector<std::uint32_t>& entries) {
-  const std::size_t classes = forest.classes.size();
-  std::size_t count = entries.size();
-  entries.resize(count + forest.roots.size());
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {  // without a branch that nobody can predict
-    const auto leaf = static_cast<std::size_t>(seen.leaves[tree * seen.count + i]);
-    const std::uint32_t entry = forest.leaf_shares[leaf * classes + class_index].entry;
-    entries[count] = entry;
-    count += entry != LeafShare::kNothing ? 1 : 0;
+  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
+    const Known known = known_to(forest, seen.leaves[tree * seen.count + i]);
+    const auto is_it = [&](const LeafClass& of) { return of.class_index == class_index; };
+    const LeafClass* found = std::find_if(known.begin, known.end, is_it);
+    if (found != known.end) entries.push_back(static_cast<std::uint32_t>(found - forest.leaf_classes.data()));
   }
-  entries.resize(count);
 }
 
 }  // namespace

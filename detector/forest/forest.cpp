@@ -4,14 +4,14 @@
 
 namespace houghstream {
 
-void note_certainty(Forest& forest) {
-  forest.leaf_certainty.assign(forest.leaves.size() - 1, 0.0F);
-  forest.leaf_shares.assign(forest.leaf_certainty.size() * forest.classes.size(), LeafShare{});
-  for (std::size_t leaf = 0; leaf < forest.leaf_certainty.size(); ++leaf) {
-    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
-      const LeafClass& entry = forest.leaf_classes[e];
-      forest.leaf_certainty[leaf] = std::max(forest.leaf_certainty[leaf], entry.probability);
-      forest.leaf_shares[leaf * forest.classes.size() + entry.class_index] = {entry.probability, e};
+void note_leaf_heads(Forest& forest) {
+  forest.leaf_heads.assign(forest.leaves.size(), LeafHead{});
+  for (std::size_t leaf = 0; leaf < forest.leaves.size(); ++leaf) {
+    LeafHead& head = forest.leaf_heads[leaf];
+    head.first_class = forest.leaves[leaf];
+    const std::uint32_t end = leaf + 1 < forest.leaves.size() ? forest.leaves[leaf + 1] : head.first_class;
+    for (std::uint32_t e = head.first_class; e < end; ++e) {
+      head.certainty = std::max(head.certainty, forest.leaf_classes[e].probability);
     }
   }
 }

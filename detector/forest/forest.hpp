@@ -69,12 +69,10 @@ struct TrainedView {
   Appearance appearance;
 };
 
-/// What a leaf knows of one class, if anything, where the class is given.
-struct LeafShare {
-  static constexpr std::uint32_t kNothing = UINT32_MAX;
-
-  float probability = 0.0F;        ///< of LeafClass
-  std::uint32_t entry = kNothing;  ///< into Forest::leaf_classes
+/// What detection asks of every leaf it meets.
+struct LeafHead {
+  float certainty = 0.0F;         ///< the largest p(class | leaf)
+  std::uint32_t first_class = 0;  ///< as Forest::leaves
 };
 
 /// A node or leaf as walk_wide reads it, see packed_trees.hpp.
@@ -105,14 +103,12 @@ struct Forest {
   std::vector<LeafClass> leaf_classes;
   std::vector<LeafVote> votes;
   std::vector<LeafView> leaf_views;
-  std::vector<float> leaf_certainty;   ///< per leaf: its largest p(class | leaf); not in files, see note_certainty
-  std::vector<LeafShare> leaf_shares;  ///< [leaf * classes + class]; as leaf_certainty
-  PackedTrees packed;                  ///< not in files, see pack_trees
+  std::vector<LeafHead> leaf_heads;  ///< number of leaves + 1; not in files, see note_leaf_heads
+  PackedTrees packed;                ///< not in files, see pack_trees
 };
 
-/// Fills leaf_certainty and leaf_shares from the leaves; to be called whenever they have changed, before a frame is
-/// searched.
-void note_certainty(Forest& forest);
+/// Fills leaf_heads from the leaves; to be called whenever they have changed, before a frame is searched.
+void note_leaf_heads(Forest& forest);
 
 /// Smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <type_traits>
 
 #include "detector/features/features.hpp"
@@ -233,6 +232,17 @@ void save_forest(const Forest& forest, const std::filesystem::path& file) {
   require(!error, "{}: cannot be written: {}", file.string(), error.message());
 }
 
+/// Read at once: a forest of many objects has hundreds of megabytes.
+static std::string rest_of(std::ifstream& in) {
+  const std::istream::pos_type begin = in.tellg();
+  const std::istream::pos_type end = in.seekg(0, std::ios::end).tellg();
+  if (!in.good() || end < begin) return {};  // cut within what goes before
+  std::string rest(static_cast<std::size_t>(end - begin), '\0');
+  in.seekg(begin).read(rest.data(), end - begin);
+  rest.resize(static_cast<std::size_t>(in.gcount()));
+  return rest;
+}
+
 Forest load_forest(const std::filesystem::path& file) {
   const std::string source = file.string();
   std::ifstream in(file, std::ios::binary);
@@ -249,9 +259,7 @@ Forest load_forest(const std::filesystem::path& file) {
   std::uint32_t crc = 0;
   in.read(reinterpret_cast<char*>(&size), sizeof size);
   in.read(reinterpret_cast<char*>(&crc), sizeof crc);
-  std::ostringstream rest;
-  rest << in.rdbuf();
-  const std::string payload = rest.str();
+  const std::string payload = rest_of(in);
   require(payload.size() == size, "{}: payload of {} bytes, expected {}: the file is truncated or damaged", source,
           payload.size(), size);
   require(checksum(payload) == crc, "{}: checksum {:08x}, expected {:08x}: the file is damaged", source,
@@ -264,7 +272,7 @@ Forest load_forest(const std::filesystem::path& file) {
   check_settings(forest, source);
   check_indices(forest, source);
   check_leaves(forest, source);
-  note_certainty(forest);
+  note_leaf_heads(forest);
   pack_trees(forest);
   return forest;
 }

@@ -57,7 +57,7 @@ void give_up(const Forest& forest, const EarlyEnd& early_end, const PatchRun& ru
   scratch.sums.assign(run.count, 0.0F);
   const std::int32_t* leaves = scratch.leaves.data();
   for (int tree = 0; tree < early_end.trees; ++tree, leaves += run.count) {
-    for (std::size_t i = 0; i < run.count; ++i) scratch.sums[i] += forest.leaf_certainty[leaves[i]];
+    for (std::size_t i = 0; i < run.count; ++i) scratch.sums[i] += forest.leaf_heads[leaves[i]].certainty;
   }
   scratch.patches.clear();
   for (std::size_t i = 0; i < run.count; ++i) {
@@ -137,7 +137,7 @@ void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>&
       const PatchView patch = features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
       float certainty = 0.0F;
       for (int tree = 0; early_end.is_used(forest) && tree < early_end.trees; ++tree) {
-        certainty += forest.leaf_certainty[find_leaf(forest, tree, patch)];
+        certainty += forest.leaf_heads[find_leaf(forest, tree, patch)].certainty;
       }
       if (early_end.is_used(forest) && !early_end.goes_on(certainty)) continue;
       left.push_back(static_cast<std::uint32_t>(p));

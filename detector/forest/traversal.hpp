@@ -13,7 +13,7 @@ namespace houghstream {
 /// After how many trees a patch may be given up, and when, see DetectionSettings.
 struct EarlyEnd {
   int trees = 0;       ///< 0 = no patch is given up
-  float share = 0.0F;  ///< mean of Forest::leaf_certainty that must be reached
+  float share = 0.0F;  ///< mean of LeafHead::certainty that must be reached
 
   bool is_used(const Forest& forest) const { return trees > 0 && trees < static_cast<int>(forest.roots.size()); }
   /// `sum`: of the certainties, added in the trees' order.

@@ -130,7 +130,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   forest.classes = set.classes;
   forest.views = set.views;
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
-  note_certainty(forest);
+  note_leaf_heads(forest);
   pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.vote_sigma, forest);
   if (settings.scoring == Scoring::kVotes) return forest;
@@ -161,7 +161,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
     forest.views.push_back(view);
   }
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
-  note_certainty(forest);
+  note_leaf_heads(forest);
   pack_trees(forest);
   calibrate_masses(set, profile.training, profile.detection.vote_sigma, forest);
   if (forest.scoring == Scoring::kEvidence) train_score_model(rooms.objects, rooms.for_score, profile, forest);

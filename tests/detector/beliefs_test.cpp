@@ -22,7 +22,7 @@ Forest three_leaves() {
   forest.leaf_classes[1].class_index = 1;
   forest.leaf_classes[2].probability = 0.6F;
   forest.leaf_classes[2].class_index = 1;
-  note_certainty(forest);
+  note_leaf_heads(forest);
   return forest;
 }
 

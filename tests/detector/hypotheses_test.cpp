@@ -23,7 +23,7 @@ Forest centre_forest() {
   forest.leaf_classes.push_back(entry);
   forest.votes.push_back({Eigen::Vector3f::Zero(), 1.0F});
   forest.leaf_views = {{0, 0.25F}, {1, 0.75F}};
-  note_certainty(forest);
+  note_leaf_heads(forest);
   return forest;
 }
 

@@ -21,7 +21,7 @@ Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
   entry.vote_count = 1;
   forest.leaf_classes.push_back(entry);
   forest.votes.push_back({offset, 1.0F});
-  note_certainty(forest);
+  note_leaf_heads(forest);
   return forest;
 }
 

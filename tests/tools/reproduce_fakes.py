@@ -14,6 +14,7 @@ import sys
 import time
 
 NAMES = ("hs-render", "hs-import", "hs-log", "hs-train", "hs-evaluate", "hs-linemod", "hs-hough", "hs-failures")
+NAMES += ("hs-bench-speed",)
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can")
 PICTURE = base64.b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
@@ -99,6 +100,12 @@ def linemod(words, out, chance):
     print("train_seconds 3.5")
 
 
+def bench_speed(words, out):
+    """Twenty objects take half as long again as four."""
+    names = [words[i + 1].split("=")[0] for i, word in enumerate(words) if word == "--detector"]
+    out.write_text(json.dumps({name: {"ms": {"p50": 30.0 if "20" in name else 20.0}} for name in names}))
+
+
 def run(name, words):
     out = pathlib.Path(option(words, "--out", words[-1]))
     chance = random.Random(" ".join(words[1:-1]))
@@ -109,6 +116,8 @@ def run(name, words):
         evaluate(words, out, chance)
     elif name == "hs-linemod":
         linemod(words, out, chance)
+    elif name == "hs-bench-speed":
+        bench_speed(words, out)
     elif name in ("hs-hough", "hs-failures"):
         out.write_bytes(PICTURE)
     else:

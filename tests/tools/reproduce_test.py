@@ -173,10 +173,11 @@ class Choosing(Case):
         self.assertNotIn("auc.paper.desk_1", summary["missing"])
 
     def test_twenty_objects_are_compared_with_four_on_the_same_frames(self):
-        for only in ("evaluate/realtime/objects_20", "evaluate/objects_20_realtime"):
+        for only in ("evaluate/realtime/objects_20", "evaluate/objects_20_realtime", "side_by_side"):
+            self.assertIsNone(self.summary()["objects_20"]["time_ratio"] if self.out.exists() else None)
             self.assertEqual(self.run_it("--only", only).returncode, 0)
         found = self.summary()["objects_20"]
-        self.assertEqual(found["time_ratio"], 1.0)
+        self.assertEqual((found["ms_4"], found["ms_20"], found["time_ratio"]), (20.0, 30.0, 1.5))
         self.assertAlmostEqual(found["auc_mean_of_four"], 0.9, delta=0.1)
         self.assertEqual(found["auc_same_four"], found["auc_mean"])  # the stand-in knows four objects only
 

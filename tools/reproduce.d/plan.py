@@ -32,9 +32,14 @@ def add_single_studies(planner, source, seed):
 def add_twenty_objects(planner, few):
     """Both forests look at the same frames, so that only the number of objects differs."""
     source, twenty = sources.twenty(planner.units, few)
+    forests = {
+        "realtime": planner.train("realtime", source, 1, "objects"),
+        "objects_20_realtime": planner.train("realtime", twenty, 1, "objects", "objects_20_"),
+    }
     for scene in SCENES_20:
         planner.evaluate("realtime", source, scene, 1, "objects")
         planner.evaluate("realtime", twenty, scene, 1, "objects", prefix="objects_20_")
+        planner.side_by_side(forests, source, scene, "objects")
 
 
 def add_comparison(planner, source):

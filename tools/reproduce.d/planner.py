@@ -95,6 +95,13 @@ class Planner:
                 f"{every_nth('time', every)}/{what}", "time", *command, what=what, scene=FEATURE_SCENE, seed=1
             )
 
+    def side_by_side(self, forests, source, scene, figure):
+        """Times forests, units by name, on every frame in turn: a machine is not always as fast."""
+        named = (f"{name}={{{forest}}},threads={self.protocol.threads}" for name, forest in forests.items())
+        detectors = [word for text in named for word in ("--detector", text)]
+        command = ("hs-bench-speed", "--scene", source.scenes[scene], *detectors, "--out", "{out}")
+        self.units.add(f"side_by_side/{scene}.json", figure, *command, scene=scene, seed=1)
+
     def hough_pictures(self, source):
         for name, what in (("before", "gall"), ("after", "final")):
             forest = self.train(what, source, 1, "3")

@@ -47,13 +47,16 @@ class Results:
             self._read_evaluation(unit, unit.scene, folder)
         elif unit.kind == "time":
             self._add(unit, unit.scene, time_rows(read_json(folder / "summary.json")))
+        elif unit.kind == "side_by_side":
+            for name, measured in read_json(folder).items():
+                self._add(unit, unit.scene, [("", "ms", measured["ms"]["p50"])], what=name)
 
     def _read_evaluation(self, unit, scene, folder):
         self._add(unit, scene, evaluation_rows(read_json(folder / "summary.json")))
         self.curves.setdefault((unit.what, scene), []).append(folder / "curves.csv")
 
-    def _add(self, unit, scene, rows):
-        facts = {"kind": unit.kind, "what": unit.what, "scene": scene, "seed": unit.seed}
+    def _add(self, unit, scene, rows, what=None):
+        facts = {"kind": unit.kind, "what": what or unit.what, "scene": scene, "seed": unit.seed}
         self.rows += [{**facts, "object": name, "metric": metric, "value": value} for name, metric, value in rows]
 
     def values(self, metric, **facts):

@@ -52,8 +52,10 @@ def auc_by_object(results, what):
 
 def twenty_objects(results):
     """Of a forest of twenty and one of four, on the same frames. All None until all scenes are measured by both."""
-    ms_20 = mean_of(results.milliseconds("objects_20_realtime", scene) for scene in SCENES_20)
-    ms_4 = mean_of(results.milliseconds("realtime", scene) for scene in SCENES_20)
+    ms_20, ms_4 = (
+        mean_of(results.mean("ms", what=what, scene=scene, kind="side_by_side") for scene in SCENES_20)
+        for what in ("objects_20_realtime", "realtime")
+    )
     is_complete = ms_20 is not None and ms_4 is not None
     twenty = auc_by_object(results, "objects_20_realtime") if is_complete else {}
     four = auc_by_object(results, "realtime") if is_complete else {}

@@ -47,7 +47,7 @@ TEST(PixelTest, AloneItComparesOnePixelOnly) {
   EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 200);
 }
 
-TEST(LeafCertainty, IsWhatALeafKnowsBest) {
+TEST(LeafHeads, TellWhatALeafKnowsBestAndWhereItsClassesBegin) {
   Forest forest;
   forest.classes.resize(2);
   forest.leaves = {0, 2, 2, 3};
@@ -56,17 +56,15 @@ TEST(LeafCertainty, IsWhatALeafKnowsBest) {
   forest.leaf_classes[1].probability = 0.7F;
   forest.leaf_classes[1].class_index = 1;
   forest.leaf_classes[2].probability = 0.1F;
-  note_certainty(forest);
-  EXPECT_EQ(forest.leaf_certainty, (std::vector<float>{0.7F, 0.0F, 0.1F}));
-  std::vector<std::uint32_t> entries;
-  std::vector<float> probabilities;
-  for (const LeafShare& share : forest.leaf_shares) {
-    entries.push_back(share.entry);
-    probabilities.push_back(share.probability);
+  note_leaf_heads(forest);
+  std::vector<float> certainties;
+  std::vector<std::uint32_t> firsts;
+  for (const LeafHead& head : forest.leaf_heads) {
+    certainties.push_back(head.certainty);
+    firsts.push_back(head.first_class);
   }
-  constexpr std::uint32_t kNothing = LeafShare::kNothing;
-  EXPECT_EQ(entries, (std::vector<std::uint32_t>{0, 1, kNothing, kNothing, 2, kNothing}));
-  EXPECT_EQ(probabilities, (std::vector<float>{0.2F, 0.7F, 0.0F, 0.0F, 0.1F, 0.0F}));
+  EXPECT_EQ(certainties, (std::vector<float>{0.7F, 0.0F, 0.1F, 0.0F}));
+  EXPECT_EQ(firsts, forest.leaves);
 }
 
 TEST(FindLeaf, WalksRightFromTheThresholdOn) {

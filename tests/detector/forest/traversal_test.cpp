@@ -64,7 +64,7 @@ class Traversal : public ::testing::Test {
     std::size_t given_up = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       float sum = 0.0F;
-      for (int tree = 0; tree < trees; ++tree) sum += forest.leaf_certainty[expected[p * all + tree]];
+      for (int tree = 0; tree < trees; ++tree) sum += forest.leaf_heads[expected[p * all + tree]].certainty;
       if (sum >= share * static_cast<float>(trees)) continue;
       ++given_up;
       std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(p * all), all, -1);
