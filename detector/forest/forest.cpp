@@ -6,14 +6,14 @@ namespace houghstream {
 
 void note_leaf_heads(Forest& forest) {
   forest.leaf_heads.assign(forest.leaves.size(), LeafHead{});
-  for (std::size_t leaf = 0; leaf < forest.leaves.size(); ++leaf) {
+  for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) {
     LeafHead& head = forest.leaf_heads[leaf];
     head.first_class = forest.leaves[leaf];
-    const std::uint32_t end = leaf + 1 < forest.leaves.size() ? forest.leaves[leaf + 1] : head.first_class;
-    for (std::uint32_t e = head.first_class; e < end; ++e) {
+    for (std::uint32_t e = forest.leaves[leaf]; e < forest.leaves[leaf + 1]; ++e) {
       head.certainty = std::max(head.certainty, forest.leaf_classes[e].probability);
     }
   }
+  forest.leaf_heads.back().first_class = forest.leaves.back();
 }
 
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray) {

@@ -69,7 +69,7 @@ struct TrainedView {
   Appearance appearance;
 };
 
-/// What detection asks of every leaf it meets.
+/// What detection asks of every leaf it meets, side by side: one cache miss instead of two.
 struct LeafHead {
   float certainty = 0.0F;         ///< the largest p(class | leaf)
   std::uint32_t first_class = 0;  ///< as Forest::leaves

@@ -13,8 +13,10 @@ import stat
 import sys
 import time
 
-NAMES = ("hs-render", "hs-import", "hs-log", "hs-train", "hs-evaluate", "hs-linemod", "hs-hough", "hs-failures")
-NAMES += ("hs-bench-speed",)
+NAMES = (
+    *("hs-render", "hs-import", "hs-log", "hs-train", "hs-evaluate", "hs-linemod", "hs-hough", "hs-failures"),
+    "hs-bench-speed",
+)
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can")
 PICTURE = base64.b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="

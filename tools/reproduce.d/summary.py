@@ -42,7 +42,10 @@ def real(results):
 
 
 def auc_by_object(results, what):
-    """Mean over the scenes that hold the object: each counts once, however many those are."""
+    """Mean over the scenes that hold the object: each counts once, however many those are. Empty until all scenes are
+    measured."""
+    if None in [results.auc(what, scene) for scene in SCENES_20]:
+        return {}
     found = {}
     for scene in SCENES_20:
         for name in results.objects(what, scene):
@@ -51,14 +54,13 @@ def auc_by_object(results, what):
 
 
 def twenty_objects(results):
-    """Of a forest of twenty and one of four, on the same frames. All None until all scenes are measured by both."""
+    """Of a forest of twenty and one of four, on the same frames. None what is not measured in all scenes."""
     ms_20, ms_4 = (
         mean_of(results.mean("ms", what=what, scene=scene, kind="side_by_side") for scene in SCENES_20)
         for what in ("objects_20_realtime", "realtime")
     )
-    is_complete = ms_20 is not None and ms_4 is not None
-    twenty = auc_by_object(results, "objects_20_realtime") if is_complete else {}
-    four = auc_by_object(results, "realtime") if is_complete else {}
+    twenty = auc_by_object(results, "objects_20_realtime")
+    four = auc_by_object(results, "realtime")
     return {
         "time_ratio": ratio(ms_20, ms_4),
         "auc_mean": mean_of(twenty.values()),
