@@ -6,14 +6,14 @@
 #include <optional>
 #include <utility>
 
-#include "detector/boxes.hpp"
+#include "detector/baseline/scale_space_search.hpp"
 #include "detector/evidence/attitude_spread.hpp"
 #include "detector/evidence/view_alignment.hpp"
-#include "detector/maxima.hpp"
-#include "detector/scale_space_search.hpp"
-#include "detector/seen_patches.hpp"
-#include "detector/voting.hpp"
-#include "pipeline/parallel.hpp"
+#include "detector/forest/seen_patches.hpp"
+#include "detector/voting/boxes.hpp"
+#include "detector/voting/maxima.hpp"
+#include "detector/voting/voting.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "detector/detector_settings.hpp"
 #include "detector/evidence/score.hpp"
-#include "pipeline/detection.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 

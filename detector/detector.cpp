@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "detector/boxes.hpp"
 #include "detector/detection_candidates.hpp"
+#include "detector/voting/boxes.hpp"
 
 namespace houghstream {
 

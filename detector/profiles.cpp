@@ -8,7 +8,7 @@
 
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/forest.hpp"
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

@@ -1,10 +1,9 @@
 #include "drivers/frame_source.hpp"
 
-#include "drivers/bop_source.hpp"
-#include "drivers/render_source.hpp"
-#include "drivers/tum_source.hpp"
-#include "drivers/uw_source.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_source.hpp"
+#include "drivers/datasets/tum_source.hpp"
+#include "drivers/datasets/uw_source.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {
@@ -28,8 +27,7 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& specification)
   if (kind == "bop" && !value.empty()) return open_bop_source(value);
   if (kind == "uw" && !value.empty()) return open_with_camera(value, open_uw_source);
   if (kind == "tum" && !value.empty()) return open_with_camera(value, open_tum_source);
-  if (kind == "render" && !value.empty()) return open_render_source(value);
-  fail("source '{}', expected bop:DIR, uw:DIR, tum:DIR or render:NAME", specification);
+  fail("source '{}', expected bop:DIR, uw:DIR or tum:DIR", specification);
 }
 
 }  // namespace houghstream

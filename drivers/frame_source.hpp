@@ -4,11 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/frame.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 
-/// Where frames come from: a dataset folder, a rendered scene, a camera. The project's only virtual interface,
+/// Where frames come from: a dataset folder, a recording, a camera. The project's only virtual interface,
 /// since several sensors stand behind it.
 class FrameSource {
  public:
@@ -26,8 +26,8 @@ class FrameSource {
 
 /// Opens "bop:DIR" (a BOP scene folder), "uw:DIR" (a UW RGB-D scene folder: NAME_color.png or NAME.png with
 /// NAME_depth.png, at the dataset's 640x480 with the nominal camera 525,525,319.5,239.5, or as
-/// "uw:DIR,WIDTHxHEIGHT,fx,fy,cx,cy"), "tum:DIR" (a sequence of the TUM RGB-D benchmark, with the same nominal camera
-/// or its own) or "render:NAME" (a rendered test scene). Throws InputError naming what is known.
+/// "uw:DIR,WIDTHxHEIGHT,fx,fy,cx,cy") or "tum:DIR" (a sequence of the TUM RGB-D benchmark, with the same nominal camera
+/// or its own). Throws InputError naming what is known.
 std::unique_ptr<FrameSource> open_frame_source(const std::string& specification);
 
 }  // namespace houghstream

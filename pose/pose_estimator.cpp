@@ -5,13 +5,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/parallel.hpp"
-#include "pose/candidates.hpp"
-#include "pose/quality.hpp"
-#include "pose/refinement.hpp"
-#include "pose/region.hpp"
-#include "pose/rotation_clusters.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
+#include "pose/registration/candidates.hpp"
+#include "pose/registration/refinement.hpp"
+#include "pose/registration/region.hpp"
+#include "pose/registration/rotation_clusters.hpp"
+#include "pose/verification/quality.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "pipeline/detection.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/mesh.hpp"
-#include "pipeline/object_pose.hpp"
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/object_pose.hpp"
 #include "pose/pose_settings.hpp"
 
 namespace houghstream {

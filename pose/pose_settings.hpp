@@ -97,9 +97,10 @@ struct VerificationSettings {
   double tolerance_m = 0.008;  ///< measured and model depth agree; 3 sigma is added
 };
 
-/// The probability that a pose is right, by logistic regression on the evidence (pose/quality.hpp). Fitted to 1482
-/// poses of detections from score 0.1 on in the scenes development_world_0 to 17, of which 773 were right. `least` is
-/// the round number from which 98 % of the poses are right in scenes that the fit has not seen (a quarter in turn).
+/// The probability that a pose is right, by logistic regression on the evidence (pose/verification/quality.hpp). Fitted
+/// to 1482 poses of detections from score 0.1 on in the scenes development_world_0 to 17, of which 773 were right.
+/// `least` is the round number from which 98 % of the poses are right in scenes that the fit has not seen (a quarter in
+/// turn).
 struct QualitySettings {
   double bias = -3.71;
   std::array<double, 6> weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16};

@@ -7,32 +7,32 @@ import unittest
 import include_direction
 
 GOOD = {
-    "pipeline/CMakeLists.txt": "houghstream_library(pipeline SOURCES frame.cpp LINK x)\n"
+    "pipeline/CMakeLists.txt": "houghstream_library(pipeline SOURCES types/frame.cpp LINK x)\n"
     "houghstream_library(pipeline_lcm SOURCES messages.cpp LINK x)\n",
-    "pipeline/frame.hpp": "#pragma once\n#include <vector>\n",
-    "pipeline/frame.cpp": '#include "pipeline/frame.hpp"\n',
-    "pipeline/messages.hpp": '#include <houghstream/images_t.hpp>\n#include "pipeline/frame.hpp"\n',
-    "pipeline/messages.cpp": '#include "pipeline/messages.hpp"\n#include <lcm/lcm-cpp.hpp>\n',
-    "drivers/camera.cpp": '#include <OpenNI.h>\n#include "pipeline/frame.hpp"\n',
-    "detector/features/surface_normals.cpp": "#include <pcl/features/normal_3d.h>\n",
+    "pipeline/types/frame.hpp": "#pragma once\n#include <vector>\n",
+    "pipeline/types/frame.cpp": '#include "pipeline/types/frame.hpp"\n',
+    "pipeline/messages/messages.hpp": '#include <houghstream/images_t.hpp>\n#include "pipeline/types/frame.hpp"\n',
+    "pipeline/messages.cpp": '#include "pipeline/messages/messages.hpp"\n#include <lcm/lcm-cpp.hpp>\n',
+    "drivers/camera.cpp": '#include <OpenNI.h>\n#include "pipeline/types/frame.hpp"\n',
+    "detector/baseline/surface_normals.cpp": "#include <pcl/features/normal_3d.h>\n",
     "pose/icp.cpp": "#include <pcl/registration/icp.h>\n",
     "tools/view/main.cpp": '#include <lcm/lcm-cpp.hpp>\n#include "detector/surface.hpp"\n',
-    "tests/pose/icp_test.cpp": '#include "pose/icp.hpp"\n#include "tools/view/overlay.hpp"\n',
+    "tests/pose/icp_test.cpp": '#include "pose/icp.hpp"\n#include "tools/view/drawing/overlay.hpp"\n',
 }
 
 WRONG = {
-    "pipeline/frame.cpp": '#include "pose/icp.hpp"\n',
+    "pipeline/types/frame.cpp": '#include "pose/icp.hpp"\n',
     "drivers/camera.cpp": '#include "detector/detector.hpp"\n',
-    "detector/detector.cpp": '#include "tools/view/overlay.hpp"\n',
+    "detector/detector.cpp": '#include "tools/view/drawing/overlay.hpp"\n',
     "pose/icp.cpp": '#  include "drivers/camera.hpp"\n',
     "tools/view/main.cpp": '#include "tests/helpers.hpp"\n',
     "pose/camera.cpp": "#include <OpenNI.h>\n",
     "tools/capture/main.cpp": "#include <OpenNI.h>\n",
     "detector/forest.cpp": "#include <pcl/point_types.h>\n",
-    "pipeline/mesh.hpp": "#include <pcl/point_types.h>\n",
+    "pipeline/geometry/mesh.hpp": "#include <pcl/point_types.h>\n",
     "detector/stream.cpp": "#include <lcm/lcm-cpp.hpp>\n",
-    "drivers/log.cpp": '#include "pipeline/messages.hpp"\n',
-    "pipeline/frame.hpp": '#include "pipeline/messages.hpp"\n',
+    "drivers/log.cpp": '#include "pipeline/messages/messages.hpp"\n',
+    "pipeline/types/frame.hpp": '#include "pipeline/messages/messages.hpp"\n',
 }
 
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "pipeline/frame.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "detector/forest/forest.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 

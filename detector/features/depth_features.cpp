@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "detector/features/features.hpp"
-#include "detector/features/tile_derivatives.hpp"
+#include "detector/features/tiles/tile_derivatives.hpp"
 
 namespace houghstream {
 

@@ -2,8 +2,8 @@
 
 #include <sstream>
 
-#include "detector/features/surface_curvature.hpp"
-#include "pipeline/checks.hpp"
+#include "detector/baseline/surface_curvature.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

@@ -5,11 +5,11 @@
 #include <climits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/baseline/surface_planes.hpp"
 #include "detector/features/picture_memory.hpp"
-#include "detector/features/surface_planes.hpp"
-#include "detector/features/tile_features.hpp"
-#include "detector/features/tile_turn.hpp"
-#include "pipeline/parallel.hpp"
+#include "detector/features/tiles/tile_features.hpp"
+#include "detector/features/tiles/tile_turn.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,7 +6,7 @@
 #include "detector/features/feature_families.hpp"
 #include "detector/features/feature_image.hpp"
 #include "detector/features/feature_tiles.hpp"
-#include "detector/features/tile_extremes.hpp"
+#include "detector/features/tiles/tile_extremes.hpp"
 #include "detector/features/working_frame.hpp"
 
 namespace houghstream {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "detector/features/features.hpp"
-#include "detector/features/tile_histograms.hpp"
+#include "detector/features/tiles/tile_histograms.hpp"
 
 namespace houghstream {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "detector/detector_settings.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 

@@ -12,7 +12,7 @@
 #include "detector/features/features.hpp"
 #include "detector/forest/packed_trees.hpp"
 #include "detector/profiles.hpp"
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

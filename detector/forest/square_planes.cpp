@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "detector/features/byte_turn-inl.hpp"
+#include "detector/features/tiles/byte_turn-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {

@@ -9,7 +9,7 @@
 #include "detector/forest/square_planes.hpp"
 #include "detector/forest/square_walk.hpp"
 #include "detector/forest/wide_walk.hpp"
-#include "pipeline/parallel.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

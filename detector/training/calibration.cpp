@@ -1,8 +1,8 @@
 #include "detector/training/calibration.hpp"
 
 #include "detector/training/tree_trainer.hpp"
-#include "detector/voting.hpp"
-#include "pipeline/parallel.hpp"
+#include "detector/voting/voting.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "detector/forest/packed_trees.hpp"
 #include "detector/training/calibration.hpp"
-#include "detector/training/hard_negatives.hpp"
+#include "detector/training/pictures/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
 #include "detector/training/tree_trainer.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/parallel.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "detector/forest/forest.hpp"
 #include "detector/profiles.hpp"
-#include "pipeline/training_view.hpp"
+#include "pipeline/types/training_view.hpp"
 
 namespace houghstream {
 

@@ -5,9 +5,9 @@
 #include <map>
 
 #include "detector/detection_candidates.hpp"
-#include "detector/training/near_loss.hpp"
-#include "detector/training/validation_frames.hpp"
-#include "pipeline/parallel.hpp"
+#include "detector/training/pictures/near_loss.hpp"
+#include "detector/training/pictures/validation_frames.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

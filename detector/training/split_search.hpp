@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "detector/training/training_set.hpp"
-#include "pipeline/random.hpp"
+#include "detector/training/pictures/training_set.hpp"
+#include "pipeline/base/random.hpp"
 
 namespace houghstream {
 

@@ -6,7 +6,7 @@
 #include "detector/training/leaf_builder.hpp"
 #include "detector/training/leaf_mixer.hpp"
 #include "detector/training/split_search.hpp"
-#include "pipeline/random.hpp"
+#include "pipeline/base/random.hpp"
 
 namespace houghstream {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

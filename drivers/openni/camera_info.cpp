@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 
 namespace houghstream {
 namespace {

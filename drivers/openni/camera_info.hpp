@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/camera.hpp"
+#include "pipeline/types/camera.hpp"
 
 namespace houghstream {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "drivers/openni/camera_mode.hpp"
-#include "pipeline/camera.hpp"
+#include "pipeline/types/camera.hpp"
 
 namespace houghstream {
 

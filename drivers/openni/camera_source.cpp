@@ -7,7 +7,7 @@
 
 #include "drivers/openni/device_clock.hpp"
 #include "drivers/openni/frame_of_pair.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/log_line.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "drivers/openni/openni_device.hpp"
 #include "drivers/openni/timestamp_pairing.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/types/frame.hpp"
 
 // What the source of a camera and that of a .oni file share.
 

@@ -6,10 +6,10 @@
 
 #include "drivers/openni/departure.hpp"
 #include "drivers/openni/openni_parts.hpp"
-#include "drivers/openni/openni_recording.hpp"
+#include "drivers/openni/recording/openni_recording.hpp"
 #include "drivers/openni/stream_reader.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 
 namespace houghstream {
 namespace {

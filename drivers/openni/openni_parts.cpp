@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/host_clock.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/host_clock.hpp"
 
 namespace houghstream {
 namespace {

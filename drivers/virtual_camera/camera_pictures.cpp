@@ -3,8 +3,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "drivers/bop_dataset.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "pipeline/camera.hpp"
+#include "pipeline/types/camera.hpp"
 
 namespace houghstream {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

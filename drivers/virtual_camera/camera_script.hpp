@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/camera.hpp"
+#include "pipeline/types/camera.hpp"
 
 namespace houghstream {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "pipeline/host_clock.hpp"
+#include "pipeline/base/host_clock.hpp"
 
 namespace houghstream {
 namespace {

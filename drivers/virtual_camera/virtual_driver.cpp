@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "drivers/virtual_camera/virtual_device.hpp"
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 // An OpenNI2 driver whose cameras exist in a file only: so that all that happens between a camera and this program can
 // be tried, by tests and by people without one. $HOUGHSTREAM_VIRTUAL_CAMERA names the script (camera_script.hpp).

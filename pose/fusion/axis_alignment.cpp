@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/parallel.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/training_view.hpp"
+#include "pipeline/types/training_view.hpp"
 
 namespace houghstream {
 

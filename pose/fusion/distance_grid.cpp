@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/parallel.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

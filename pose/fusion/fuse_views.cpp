@@ -1,7 +1,7 @@
 #include "pose/fusion/fuse_views.hpp"
 
-#include "pipeline/checks.hpp"
-#include "pipeline/parallel.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
 #include "pose/fusion/grid_surface.hpp"
 #include "pose/fusion/view_colours.hpp"
 

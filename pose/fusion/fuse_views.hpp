@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/mesh.hpp"
-#include "pipeline/training_view.hpp"
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/types/training_view.hpp"
 #include "pose/fusion/axis_alignment.hpp"
 #include "pose/fusion/distance_grid.hpp"
 

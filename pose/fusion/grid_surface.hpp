@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/mesh.hpp"
+#include "pipeline/geometry/mesh.hpp"
 #include "pose/fusion/distance_grid.hpp"
 
 namespace houghstream {

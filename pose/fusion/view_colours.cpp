@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pipeline/parallel.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pipeline/mesh.hpp"
+#include "pipeline/geometry/mesh.hpp"
 #include "pose/fusion/depth_view.hpp"
 
 namespace houghstream {

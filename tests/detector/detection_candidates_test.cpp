@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/training/forest_trainer.hpp"
-#include "toy_data.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {

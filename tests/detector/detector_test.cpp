@@ -6,9 +6,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/training/forest_trainer.hpp"
-#include "pipeline/checks.hpp"
-#include "same_detections.hpp"
-#include "toy_data.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tests/detector/same_detections.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {

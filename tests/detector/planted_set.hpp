@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "detector/training/training_set.hpp"
-#include "pipeline/random.hpp"
+#include "detector/training/pictures/training_set.hpp"
+#include "pipeline/base/random.hpp"
 
 namespace houghstream::toy {
 

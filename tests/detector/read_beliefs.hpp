@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "detector/beliefs.hpp"
+#include "detector/forest/beliefs.hpp"
 
 namespace houghstream {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/detection.hpp"
+#include "pipeline/types/detection.hpp"
 
 namespace houghstream {
 

@@ -1,8 +1,8 @@
-#include "toy_data.hpp"
+#include "tests/detector/toy_data.hpp"
 
 #include <cmath>
 
-#include "pipeline/random.hpp"
+#include "pipeline/base/random.hpp"
 
 namespace houghstream::toy {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "detector/profiles.hpp"
-#include "pipeline/training_view.hpp"
+#include "pipeline/types/training_view.hpp"
 
 namespace houghstream::toy {
 

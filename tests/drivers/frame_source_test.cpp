@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/bop_dataset.hpp"
-#include "drivers/bop_writer.hpp"
-#include "drivers/image_file.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
 namespace houghstream {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 

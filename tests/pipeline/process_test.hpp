@@ -10,10 +10,10 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/channels.hpp"
-#include "pipeline/lcm_bus.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/stop_signal.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
 
 namespace houghstream {

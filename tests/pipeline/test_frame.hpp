@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pipeline/frame.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 

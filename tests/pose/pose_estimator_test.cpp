@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/pose/test_scene.hpp"
 
 namespace houghstream {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "pipeline/detection.hpp"
-#include "pipeline/frame.hpp"
-#include "pipeline/random.hpp"
-#include "pipeline/renderer.hpp"
+#include "pipeline/base/random.hpp"
+#include "pipeline/geometry/renderer.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
 
 // Objects and noisy frames with a known truth for the tests of the pose library.
 

@@ -3,7 +3,7 @@
 #include "drivers/openni/camera_info.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "drivers/openni/openni_device.hpp"
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {
@@ -32,7 +32,7 @@ CameraOptions camera_options(const SourceOptions& options) {
 void add_source_options(CommandLine& app, SourceOptions& options) {
   app.add_option("--source", options.source,
                  "openni2[:CAMERA] (CAMERA is a URI, #1, #2, ... or a serial number; default: the first), oni:FILE, "
-                 "bop:DIR, uw:DIR, tum:DIR or render:NAME");
+                 "bop:DIR, uw:DIR or tum:DIR");
   app.add_option("--camera", options.camera,
                  "openni2, oni: intrinsics, a ROS camera_info YAML file or WIDTHxHEIGHT,fx,fy,cx,cy; default: from the "
                  "field of view that the device states");

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <thread>
 
-#include "pipeline/channels.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/event_log.hpp"
-#include "pipeline/lcm_bus.hpp"
-#include "pipeline/status_reporter.hpp"
-#include "pipeline/stop_signal.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/bus/status_reporter.hpp"
 
 namespace houghstream {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_options.hpp"
-#include "pipeline/messages.hpp"
+#include "pipeline/messages/messages.hpp"
 
 namespace houghstream {
 

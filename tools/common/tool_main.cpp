@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/log_line.hpp"
 
 namespace houghstream {
 

@@ -1,8 +1,8 @@
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
-#include "pipeline/detect_process.hpp"
-#include "pipeline/log_line.hpp"
-#include "pipeline/stop_signal.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/process/detect_process.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 

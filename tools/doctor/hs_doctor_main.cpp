@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/doctor/examination.hpp"
 

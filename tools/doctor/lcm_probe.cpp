@@ -6,7 +6,7 @@
 #include <chrono>
 #include <vector>
 
-#include "pipeline/lcm_bus.hpp"
+#include "pipeline/bus/lcm_bus.hpp"
 
 namespace houghstream {
 namespace {

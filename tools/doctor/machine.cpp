@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "pipeline/receive_buffer.hpp"
+#include "pipeline/bus/receive_buffer.hpp"
 #include "tools/doctor/lcm_probe.hpp"
 
 namespace houghstream {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "pipeline/receive_buffer.hpp"
+#include "pipeline/bus/receive_buffer.hpp"
 
 namespace houghstream {
 namespace {

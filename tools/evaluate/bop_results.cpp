@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/bop_dataset.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
 #include "tools/evaluate/evaluated_frame.hpp"
 
 namespace houghstream {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "drivers/json_file.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/files/json_file.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

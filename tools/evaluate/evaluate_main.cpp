@@ -4,7 +4,7 @@
 #include <set>
 
 #include "detector/forest/forest_file.hpp"
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/bop_results.hpp"

@@ -1,6 +1,6 @@
 #include "tools/evaluate/evaluated_frame.hpp"
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/bop_dataset.hpp"
-#include "pipeline/detection.hpp"
-#include "pipeline/object_pose.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/object_pose.hpp"
 
 namespace houghstream {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "pipeline/percentiles.hpp"
+#include "pipeline/bus/percentiles.hpp"
 
 namespace houghstream {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/evaluate/average_recall.hpp"
-#include "tools/evaluate/detection_metrics.hpp"
-#include "tools/evaluate/pose_metrics.hpp"
+#include "tools/evaluate/metrics/average_recall.hpp"
+#include "tools/evaluate/metrics/detection_metrics.hpp"
+#include "tools/evaluate/metrics/pose_metrics.hpp"
 
 namespace houghstream {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "drivers/bop_writer.hpp"
-#include "drivers/frame_folder.hpp"
-#include "drivers/uw_scenes.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/datasets/uw_scenes.hpp"
+#include "drivers/files/frame_folder.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tools/evaluate/drawn_boxes.hpp"
 
 namespace houghstream {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "pipeline/camera.hpp"
+#include "pipeline/types/camera.hpp"
 
 namespace houghstream {
 
@@ -11,8 +11,8 @@ namespace houghstream {
 /// the order of the names. Returns the number of frames. Throws InputError.
 int import_boxes(const std::filesystem::path& source, const std::filesystem::path& scene_folder);
 
-/// Turns a video of the UW RGB-D Scenes Dataset (drivers/uw_scenes.hpp) into a BOP scene whose objects have boxes only,
-/// as import_boxes() writes them. Returns the number of frames. Throws InputError.
+/// Turns a video of the UW RGB-D Scenes Dataset (drivers/datasets/uw_scenes.hpp) into a BOP scene whose objects have
+/// boxes only, as import_boxes() writes them. Returns the number of frames. Throws InputError.
 int import_uw_scene(const std::filesystem::path& video, const Camera& camera,
                     const std::filesystem::path& scene_folder);
 

@@ -1,7 +1,7 @@
 #include "tools/evaluate/in_process.hpp"
 
 #include "detector/detector.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pose/pose_estimator.hpp"
 
 namespace houghstream {

@@ -6,8 +6,8 @@
 
 #include "detector/detector_settings.hpp"
 #include "detector/forest/forest.hpp"
-#include "drivers/bop_dataset.hpp"
-#include "pipeline/mesh.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pipeline/geometry/mesh.hpp"
 #include "tools/evaluate/result_log.hpp"
 
 namespace houghstream {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/percentiles.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/percentiles.hpp"
 #include "tools/common/rounded.hpp"
 
 namespace houghstream {

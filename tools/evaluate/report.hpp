@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "drivers/json_file.hpp"
+#include "drivers/files/json_file.hpp"
 #include "tools/evaluate/evaluation.hpp"
 #include "tools/evaluate/latency.hpp"
 

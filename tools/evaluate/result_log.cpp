@@ -1,10 +1,10 @@
 #include "tools/evaluate/result_log.hpp"
 
-#include "pipeline/channels.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/event_log.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/wire_check.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream {
 

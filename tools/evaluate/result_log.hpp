@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "pipeline/detection.hpp"
-#include "pipeline/object_pose.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/object_pose.hpp"
 
 namespace houghstream {
 

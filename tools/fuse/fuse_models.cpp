@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "drivers/bop_writer.hpp"
-#include "drivers/image_file.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "tools/fuse/model_picture.hpp"
 
 namespace houghstream {

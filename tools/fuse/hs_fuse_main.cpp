@@ -1,4 +1,4 @@
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/fuse/fuse_models.hpp"
 #include "tools/train/training_sources.hpp"

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "pipeline/renderer.hpp"
+#include "pipeline/geometry/renderer.hpp"
 
 namespace houghstream {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "pipeline/mesh.hpp"
+#include "pipeline/geometry/mesh.hpp"
 
 namespace houghstream {
 

@@ -2,9 +2,9 @@
 #include <houghstream/drake_image_array_t.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/codecs.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/codecs.hpp"
+#include "pipeline/types/frame.hpp"
 #include "tools/log/foreign_frames.hpp"
 #include "tools/log/image_parts.hpp"
 

@@ -2,10 +2,10 @@
 
 #include <fstream>
 
-#include "drivers/bop_writer.hpp"
-#include "drivers/image_file.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/messages.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/messages.hpp"
 
 namespace houghstream {
 namespace {

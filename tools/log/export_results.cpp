@@ -4,11 +4,11 @@
 #include <fstream>
 #include <map>
 
-#include "drivers/json_file.hpp"
-#include "pipeline/channels.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/wire_check.hpp"
+#include "drivers/files/json_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream {
 namespace {

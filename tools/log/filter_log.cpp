@@ -2,7 +2,7 @@
 
 #include <regex>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

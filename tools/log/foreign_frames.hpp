@@ -2,7 +2,7 @@
 
 #include <houghstream/images_t.hpp>
 
-#include "pipeline/wire_reader.hpp"
+#include "pipeline/messages/wire_reader.hpp"
 
 // Other people's RGB-D messages as images_t. What travels compressed stays as it is, bit for bit. Throws InputError
 // where a message is damaged, or its images are of a kind that images_t cannot carry.

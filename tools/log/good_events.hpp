@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/event_log.hpp"
+#include "pipeline/bus/event_log.hpp"
 
 namespace houghstream {
 

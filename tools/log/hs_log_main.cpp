@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"
 #include "tools/log/export_results.hpp"

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/wire_reader.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/wire_reader.hpp"
 
 namespace houghstream {
 

@@ -1,7 +1,7 @@
 #include "tools/log/import_log.hpp"
 
-#include "pipeline/checks.hpp"
-#include "pipeline/wire_check.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream {
 

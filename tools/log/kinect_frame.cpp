@@ -1,6 +1,6 @@
 #include <houghstream/kinect_frame_msg_t.hpp>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tools/log/foreign_frames.hpp"
 #include "tools/log/image_parts.hpp"
 

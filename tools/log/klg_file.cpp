@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/codecs.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/codecs.hpp"
 #include "tools/log/image_parts.hpp"
 
 namespace houghstream {

@@ -8,9 +8,9 @@
 #include <ctime>
 #include <houghstream/images_t.hpp>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/wire_check.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 #include "tools/log/message_types.hpp"
 
 namespace houghstream {

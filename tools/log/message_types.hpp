@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "pipeline/wire_reader.hpp"
+#include "pipeline/messages/wire_reader.hpp"
 
 namespace houghstream {
 

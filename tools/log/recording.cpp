@@ -6,9 +6,9 @@
 
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_source.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/wire_check.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 #include "tools/log/foreign_frames.hpp"
 #include "tools/log/klg_file.hpp"
 #include "tools/log/message_types.hpp"

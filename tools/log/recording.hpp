@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/camera.hpp"
+#include "pipeline/types/camera.hpp"
 #include "tools/log/good_events.hpp"
 
 namespace houghstream {

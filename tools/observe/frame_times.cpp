@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/host_clock.hpp"
-#include "pipeline/percentiles.hpp"
+#include "pipeline/base/host_clock.hpp"
+#include "pipeline/bus/percentiles.hpp"
 #include "tools/common/rounded.hpp"
 
 namespace houghstream {

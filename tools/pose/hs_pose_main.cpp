@@ -1,7 +1,7 @@
-#include "drivers/bop_dataset.hpp"
-#include "pipeline/log_line.hpp"
-#include "pipeline/pose_process.hpp"
-#include "pipeline/stop_signal.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/process/pose_process.hpp"
 #include "pose/pose_estimator.hpp"
 #include "tools/common/tool_main.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <mutex>
 
-#include "pipeline/parallel.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {

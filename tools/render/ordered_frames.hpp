@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "drivers/synth/scene_frames.hpp"
+#include "tools/render/world/scene_frames.hpp"
 
 namespace houghstream {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "drivers/bop_writer.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tools/render/ordered_frames.hpp"
 
 namespace houghstream {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/synth/training_views.hpp"
+#include "tools/render/world/training_views.hpp"
 
 namespace houghstream {
 

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

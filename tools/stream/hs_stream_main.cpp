@@ -1,10 +1,10 @@
 #include <cstdlib>
 
-#include "pipeline/channels.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/lcm_bus.hpp"
-#include "pipeline/log_line.hpp"
-#include "pipeline/stop_signal.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/lcm_bus.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/stream/state_board.hpp"
 #include "tools/stream/stream_plan.hpp"

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <thread>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 

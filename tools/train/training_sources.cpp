@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "drivers/bop_dataset.hpp"
-#include "drivers/uw_dataset.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/datasets/uw_dataset.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

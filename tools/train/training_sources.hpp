@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/training_view.hpp"
+#include "pipeline/types/training_view.hpp"
 
 namespace houghstream {
 

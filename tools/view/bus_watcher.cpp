@@ -3,11 +3,11 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/channels.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/stop_signal.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/messages.hpp"
 #include "tools/view/preview.hpp"
 
 namespace houghstream {

@@ -7,9 +7,9 @@
 #include <string>
 #include <thread>
 
-#include "pipeline/lcm_bus.hpp"
-#include "pipeline/process_loop.hpp"
-#include "pipeline/status_reporter.hpp"
+#include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/bus/status_reporter.hpp"
+#include "pipeline/process/process_loop.hpp"
 #include "tools/view/match_queue.hpp"
 #include "tools/view/stream_watch.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/detection.hpp"
-#include "pipeline/object_pose.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/object_pose.hpp"
 
 namespace houghstream {
 

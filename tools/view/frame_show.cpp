@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "drivers/bop_dataset.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/wire_check.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream {
 namespace {

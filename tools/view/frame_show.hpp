@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tools/view/bus_watcher.hpp"
-#include "tools/view/frame_view.hpp"
+#include "tools/view/drawing/frame_view.hpp"
 #include "tools/view/view_outputs.hpp"
 #include "tools/view/view_window.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/codecs.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/codecs.hpp"
 
 namespace houghstream {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 

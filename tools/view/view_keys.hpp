@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/view/frame_view.hpp"
+#include "tools/view/drawing/frame_view.hpp"
 
 namespace houghstream {
 

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

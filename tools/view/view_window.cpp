@@ -11,8 +11,8 @@
 #include <opencv2/highgui.hpp>
 #include <string>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/log_line.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "tools/view/view_outputs.hpp"
 
 namespace houghstream {

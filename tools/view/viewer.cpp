@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "pipeline/log_line.hpp"
-#include "pipeline/stop_signal.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
 #include "tools/view/bus_watcher.hpp"
 
 namespace houghstream {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "pipeline/channels.hpp"
+#include "pipeline/bus/channels.hpp"
 #include "tools/view/frame_show.hpp"
 
 namespace houghstream {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "pipeline/random.hpp"
+#include "pipeline/base/random.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/evidence/view_fit.hpp"
-#include "toy_data.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream::toy {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/detection.hpp"
-#include "pipeline/random.hpp"
+#include "pipeline/base/random.hpp"
+#include "pipeline/types/detection.hpp"
 #include "tests/detector/evidence/remembered_view.hpp"
-#include "toy_data.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {

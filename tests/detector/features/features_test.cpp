@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "toy_data.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {

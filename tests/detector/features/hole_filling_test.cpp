@@ -6,7 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/random.hpp"
+#include "pipeline/base/random.hpp"
 
 namespace houghstream {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "detector/features/feature_families.hpp"
 #include "detector/training/forest_trainer.hpp"
-#include "pipeline/checks.hpp"
-#include "toy_data.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {

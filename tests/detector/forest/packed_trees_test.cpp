@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "random_forest.hpp"
+#include "tests/detector/forest/random_forest.hpp"
 
 namespace houghstream {
 namespace {

@@ -5,7 +5,7 @@
 #include "detector/features/feature_image.hpp"
 #include "detector/forest/forest.hpp"
 #include "detector/forest/packed_trees.hpp"
-#include "pipeline/random.hpp"
+#include "pipeline/base/random.hpp"
 
 namespace houghstream::chance {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
-#include "random_forest.hpp"
+#include "tests/detector/forest/random_forest.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,7 +4,7 @@
 #include <hwy/highway.h>
 
 #include "detector/forest/square_planes.hpp"
-#include "random_forest.hpp"
+#include "tests/detector/forest/random_forest.hpp"
 
 namespace houghstream {
 namespace {

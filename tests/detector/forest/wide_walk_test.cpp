@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
-#include "pipeline/random.hpp"
-#include "random_forest.hpp"
+#include "pipeline/base/random.hpp"
+#include "tests/detector/forest/random_forest.hpp"
 
 namespace houghstream {
 namespace {

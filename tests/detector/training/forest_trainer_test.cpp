@@ -11,8 +11,8 @@
 
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
-#include "pipeline/checks.hpp"
-#include "toy_data.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "detector/evidence/score.hpp"
 #include "detector/training/forest_trainer.hpp"
-#include "toy_data.hpp"
+#include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {

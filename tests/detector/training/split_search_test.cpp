@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "planted_set.hpp"
+#include "tests/detector/planted_set.hpp"
 
 namespace houghstream {
 namespace {

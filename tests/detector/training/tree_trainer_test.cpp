@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "detector/profiles.hpp"
-#include "planted_set.hpp"
+#include "tests/detector/planted_set.hpp"
 
 namespace houghstream {
 namespace {

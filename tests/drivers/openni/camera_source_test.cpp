@@ -4,8 +4,8 @@
 #include <thread>
 
 #include "drivers/openni/frame_of_pair.hpp"
-#include "pipeline/checks.hpp"
-#include "pipeline/host_clock.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/host_clock.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 #include "tests/drivers/test_files.hpp"
 

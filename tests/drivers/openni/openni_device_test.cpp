@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 
 namespace houghstream {

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 
 namespace houghstream {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/bop_writer.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
 namespace houghstream {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/pose/fusion/turntable_views.hpp"
 
 namespace houghstream {

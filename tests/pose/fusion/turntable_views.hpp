@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "pipeline/random.hpp"
-#include "pipeline/renderer.hpp"
-#include "pipeline/training_view.hpp"
+#include "pipeline/base/random.hpp"
+#include "pipeline/geometry/renderer.hpp"
+#include "pipeline/types/training_view.hpp"
 #include "tests/pose/test_scene.hpp"
 
 // Views of a turning object with a known shape, for the tests of fusion.

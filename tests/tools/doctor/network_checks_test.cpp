@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/receive_buffer.hpp"
+#include "pipeline/bus/receive_buffer.hpp"
 #include "tests/tools/doctor/healthy_machine.hpp"
 
 namespace houghstream {

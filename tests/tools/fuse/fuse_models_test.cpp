@@ -4,9 +4,9 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "drivers/bop_dataset.hpp"
-#include "drivers/image_file.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/pose/fusion/turntable_views.hpp"
 #include "tools/fuse/model_picture.hpp"

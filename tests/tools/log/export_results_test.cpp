@@ -4,9 +4,9 @@
 
 #include <sstream>
 
-#include "drivers/json_file.hpp"
-#include "pipeline/channels.hpp"
-#include "pipeline/checks.hpp"
+#include "drivers/files/json_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 

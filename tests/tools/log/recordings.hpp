@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/codecs.hpp"
-#include "pipeline/event_log.hpp"
-#include "pipeline/messages.hpp"
-#include "pipeline/wire_check.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/codecs.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 #include "tests/pipeline/test_frame.hpp"
 
 // Recordings as other programs make them, of make_test_frame().

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "drivers/bop_dataset.hpp"
-#include "drivers/bop_writer.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/files/image_file.hpp"
 #include "drivers/frame_source.hpp"
-#include "drivers/image_file.hpp"
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/export_frames.hpp"

@@ -5,7 +5,7 @@
 
 #include <thread>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
 namespace houghstream {

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/event_log.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/event_log.hpp"
 #include "tests/tools/view/watched_bus.hpp"
 
 namespace houghstream {

@@ -4,7 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/view/watched_bus.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/checks.hpp"
-#include "pipeline/codecs.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/codecs.hpp"
 
 namespace houghstream {
 namespace {

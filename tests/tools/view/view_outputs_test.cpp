@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

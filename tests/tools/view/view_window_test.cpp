@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "pipeline/checks.hpp"
+#include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {

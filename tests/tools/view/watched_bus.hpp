@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/channels.hpp"
-#include "pipeline/messages.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
 #include "tools/view/bus_watcher.hpp"
 

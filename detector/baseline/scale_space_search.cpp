@@ -1,0 +1,213 @@
+#include "detector/baseline/scale_space_search.hpp"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "detector/baseline/scale_peaks.hpp"
+#include "detector/features/features.hpp"
+#include "detector/forest/beliefs.hpp"
+#include "detector/voting/boxes.hpp"
+#include "detector/voting/voting.hpp"
+#include "pipeline/base/parallel.hpp"
+
+namespace houghstream {
+namespace {
+
+/// One size of the frame, classified.
+struct SeenLevel {
+  PatchGrid grid;  // without points and areas, which need depth
+  PatchBeliefs beliefs;
+  Camera camera;               // of the level's image
+  float px_per_offset = 0.0F;  // level pixels per unit of a leaf's offset, see ScaleHandling::kScaleSpace
+  float size_ratio = 1.0F;
+  int size = 0;  // its number
+};
+
+SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureLevel& level,
+                    const DetectionSettings& settings, StageClock& clock) {
+  const WorkingFrame working = make_working_frame(frame, level, forest.features);
+  clock.mark("detect.resize");
+  std::vector<FeatureImage> features;
+  features.push_back(settings.readable ? compute_features_readably(working, forest.features)
+                                       : compute_features(working, forest.features, settings.threads));
+  clock.mark("detect.features");
+  SeenLevel seen;
+  seen.camera = working.camera;
+  seen.size_ratio = level.size_ratio;
+  seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
+  add_patches_everywhere(working, level, forest.patch, settings.stride, seen.grid);
+  classify(forest, features, seen.grid, settings, seen.beliefs);
+  clock.mark("detect.forest");
+  return seen;
+}
+
+/// Calls visit(patch, x, y, weight, who) for each vote for a class that falls into the level's image, at its pixel.
+template <typename Visit>
+void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, const Visit& visit) {
+  const float share = 1.0F / static_cast<float>(forest.roots.size());
+  const auto width = static_cast<float>(seen.camera.width);
+  const auto height = static_cast<float>(seen.camera.height);
+  seen.beliefs.for_believers(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+    for (std::uint32_t e = 0; e < count; ++e) {  // the cache misses below overlap
+      hwy::Prefetch(forest.votes.data() + forest.leaf_classes[entries[e]].first_vote);
+    }
+    const auto patch_x = static_cast<float>(seen.grid.x[p]);
+    const auto patch_y = static_cast<float>(seen.grid.y[p]);
+    for (std::uint32_t e = 0; e < count; ++e) {
+      const LeafClass& entry = forest.leaf_classes[entries[e]];
+      for (std::uint32_t v = entry.first_vote; v < entry.first_vote + entry.vote_count; ++v) {
+        const LeafVote& vote = forest.votes[v];
+        // rounded: positions inside the image are positive
+        const float x = patch_x + vote.offset.x() * seen.px_per_offset + 0.5F;
+        const float y = patch_y + vote.offset.y() * seen.px_per_offset + 0.5F;
+        if (x < 0.0F || y < 0.0F || x >= width || y >= height) continue;
+        visit(p, static_cast<int>(x), static_cast<int>(y), entry.probability * vote.weight * share, entry);
+      }
+    }
+  });
+}
+
+/// Vote mass per pixel over the class's expected mass.
+cv::Mat hough_image(const Forest& forest, int class_index, const SeenLevel& seen, const DetectionSettings& settings) {
+  cv::Mat image = cv::Mat::zeros(seen.camera.height, seen.camera.width, CV_32FC1);
+  for_votes_of(forest, class_index, seen,
+               [&](std::uint32_t, int x, int y, float weight, const LeafClass&) { image.at<float>(y, x) += weight; });
+  const double sigma = static_cast<double>(settings.vote_sigma) * seen.px_per_offset;
+  cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
+  const double patch_side = settings.stride / static_cast<double>(seen.px_per_offset);
+  const double kernel_sum = 2.0 * M_PI * sigma * sigma;  // a vote at the centre counts as 1
+  const float expected = forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
+  return image * (kernel_sum * patch_side * patch_side / expected);
+}
+
+/// Local maxima, strongest first.
+std::vector<cv::Point> maxima_of(const cv::Mat& image, int reach_px, float least, std::size_t limit) {
+  cv::Mat around;
+  cv::dilate(image, around, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * reach_px + 1, 2 * reach_px + 1)));
+  std::vector<cv::Point> maxima;
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      const float value = image.at<float>(y, x);
+      if (value >= least && value >= around.at<float>(y, x)) maxima.emplace_back(x, y);
+    }
+  }
+  std::stable_sort(maxima.begin(), maxima.end(),
+                   [&](const cv::Point& a, const cv::Point& b) { return image.at<float>(a) > image.at<float>(b); });
+  if (maxima.size() > limit) maxima.resize(limit);
+  return maxima;
+}
+
+/// Which maximum the votes at a pixel support: its number, or kNobody. The stronger of two that are near.
+constexpr std::int16_t kNobody = -1;
+cv::Mat supported_maximum(const std::vector<cv::Point>& maxima, cv::Size size, float reach_px) {
+  cv::Mat number(size, CV_16SC1, cv::Scalar(kNobody));
+  for (std::size_t i = maxima.size(); i-- > 0;) {
+    cv::circle(number, maxima[i], static_cast<int>(reach_px), cv::Scalar(static_cast<double>(i)), cv::FILLED);
+  }
+  return number;
+}
+
+/// The patches, and the views that they remember, whose votes meet at each maximum.
+std::vector<Hypothesis> gather_supporters(const Forest& forest, int class_index, const SeenLevel& seen,
+                                          const std::vector<cv::Point>& maxima, const DetectionSettings& settings) {
+  const float sigma = settings.vote_sigma * seen.px_per_offset;
+  const cv::Mat number = supported_maximum(maxima, cv::Size(seen.camera.width, seen.camera.height), kVoteReach * sigma);
+  std::vector<Hypothesis> hypotheses(maxima.size());
+  if (maxima.empty()) return hypotheses;
+  std::vector<std::vector<float>> by_view(maxima.size(), std::vector<float>(forest.views.size(), 0.0F));
+  for_votes_of(forest, class_index, seen, [&](std::uint32_t p, int x, int y, float weight, const LeafClass& entry) {
+    const std::int16_t supported = number.at<std::int16_t>(y, x);
+    if (supported == kNobody) return;
+    const auto m = static_cast<std::size_t>(supported);
+    const auto dx = static_cast<float>(x - maxima[m].x);
+    const auto dy = static_cast<float>(y - maxima[m].y);
+    const float share = weight * vote_kernel(dx * dx + dy * dy, sigma);
+    Hypothesis& hypothesis = hypotheses[m];
+    hypothesis.weight += share;
+    ++hypothesis.vote_count;
+    if (hypothesis.patches.empty() || hypothesis.patches.back().first != p) hypothesis.patches.emplace_back(p, 0.0F);
+    hypothesis.patches.back().second += share;
+    for (std::uint32_t v = entry.first_view; v < entry.first_view + entry.view_count; ++v) {
+      by_view[m][forest.leaf_views[v].view] += share * forest.leaf_views[v].weight;
+    }
+  });
+  for (std::size_t m = 0; m < maxima.size(); ++m) {
+    for (std::uint32_t v = 0; v < by_view[m].size(); ++v) {
+      if (by_view[m][v] > 0.0F) hypotheses[m].views.emplace_back(v, by_view[m][v]);
+    }
+  }
+  return hypotheses;
+}
+
+Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis, float mass_share, cv::Rect2f box_px) {
+  Candidate candidate;
+  candidate.evidence.mass_share = mass_share;
+  Detection& detection = candidate.detection;
+  detection.class_id = object.class_id;
+  detection.class_name = object.name;
+  detection.score = vote_score(mass_share);
+  detection.box_px = box_px;
+  detection.centre_camera.setConstant(std::numeric_limits<float>::quiet_NaN());
+  detection.vote_weight = hypothesis.weight;
+  detection.vote_count = hypothesis.vote_count;
+  return candidate;
+}
+
+/// All maxima of one class in one size.
+std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const SeenLevel& seen, const Camera& camera,
+                                   const DetectionSettings& settings) {
+  const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
+  const cv::Mat image = hough_image(forest, class_index, seen, settings);
+  const int reach_px = static_cast<int>(std::lround(kVoteReach * settings.vote_sigma * seen.px_per_offset));
+  const auto limit = static_cast<std::size_t>(settings.candidates_per_class);
+  const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
+  std::vector<Hypothesis> hypotheses = gather_supporters(forest, class_index, seen, maxima, settings);
+  const float to_frame = static_cast<float>(camera.width) / static_cast<float>(seen.camera.width);
+  const cv::Point2f half(0.5F, 0.5F);
+  std::vector<ScalePeak> peaks;
+  for (std::size_t m = 0; m < maxima.size(); ++m) {
+    const cv::Point at = maxima[m];
+    Hypothesis& hypothesis = hypotheses[m];
+    hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
+    const cv::Rect2f box_px = backprojected_box(forest, hypothesis, seen.grid, camera);
+    if (box_px.empty()) continue;
+    peaks.push_back({make_candidate(object, hypothesis, image.at<float>(at), box_px),
+                     (cv::Point2f(at) + half) * to_frame - half, static_cast<float>(reach_px) * to_frame, seen.size});
+  }
+  return peaks;
+}
+
+}  // namespace
+
+std::vector<Candidate> search_scale_space(const Forest& forest, const RgbdFrame& frame,
+                                          const DetectionSettings& settings, StageClock& clock) {
+  std::vector<ScalePeak> all;
+  int sizes = 0;
+  for (const FeatureLevel& level : feature_levels(forest.features)) {
+    SeenLevel seen = see_level(forest, frame, level, settings, clock);
+    seen.size = sizes++;
+    std::vector<std::vector<ScalePeak>> by_class(forest.classes.size());
+    parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {
+      by_class[static_cast<std::size_t>(c)] = level_peaks(forest, c, seen, frame.camera, settings);
+    });
+    for (std::vector<ScalePeak>& part : by_class) std::move(part.begin(), part.end(), std::back_inserter(all));
+    clock.mark("detect.voting");
+  }
+  return maxima_over_sizes(all);
+}
+
+std::vector<cv::Mat> scale_space_hough_images(const Forest& forest, int class_index, const RgbdFrame& frame,
+                                              const DetectionSettings& settings) {
+  std::vector<cv::Mat> images;
+  StageClock clock;
+  for (const FeatureLevel& level : feature_levels(forest.features)) {
+    images.push_back(hough_image(forest, class_index, see_level(forest, frame, level, settings, clock), settings));
+  }
+  return images;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "detector/baseline/surface_window.hpp"
+#include "detector/features/working_frame.hpp"
+
+namespace houghstream {
+
+/// Unit normals, CV_32FC3 in the camera frame, pointing towards the camera: of the plane fitted by covariance (as PCL's
+/// NormalEstimation does) to the surface around each pixel, in the organised image (surface_window.hpp), not by search.
+/// NaN where depth is missing and where less than a quarter of the window lies on the same surface.
+cv::Mat surface_normals(const WorkingFrame& frame, int neighbours, int threads);
+
+/// Of the plane that fits points of this covariance best, turned against the ray that sees it.
+Eigen::Vector3d facing_normal(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray);
+
+/// The normals as vectors whose windows can be summed.
+SurfaceVectors normal_vectors(const WorkingFrame& frame, const cv::Mat& normals);
+
+}  // namespace houghstream

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "detector/features/tiles/tile_plane.hpp"
+#include "detector/features/tiles/tile_rows.hpp"
+
+namespace houghstream {
+
+/// The side of a square around each pixel; where it is even, one pixel more lies to the left and above.
+struct Neighbourhood {
+  int side = 1;
+  int before() const { return side / 2; }
+  int after() const { return side - 1 - side / 2; }
+};
+
+/// Largest and smallest value around each pixel of a part, which has a margin of at least `around.before()` pixels.
+void byte_extremes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, int largest, int smallest,
+                   TileRows& rows);
+
+/// How steps of depth become bytes.
+enum class StepBytes : std::uint8_t { kWrapped, kLimited };
+
+/// The same of 16 bits a value, which become bytes afterwards.
+void step_extremes(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes bytes, int largest,
+                   int smallest, TileRows& rows);
+
+}  // namespace houghstream

@@ -1,0 +1,139 @@
+#include "detector/training/pictures/composites.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "detector/training/pictures/clearing.hpp"
+#include "detector/training/pictures/occluders.hpp"
+
+namespace houghstream {
+namespace {
+
+std::uint8_t to_byte(double value) {
+  return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
+}
+
+struct Patchwork {
+  cv::Mat colour;
+  cv::Mat depth;
+  cv::Mat mask;
+  cv::Rect box_px;  // of the object in the view
+};
+
+Patchwork resized_object(const TrainingView& view, double scale, double sharpness) {
+  Patchwork part;
+  part.box_px = cv::boundingRect(view.mask);
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(part.box_px.width * scale))),
+                      std::max(1, static_cast<int>(std::lround(part.box_px.height * scale))));
+  cv::resize(sharpened(view.frame.colour(part.box_px), sharpness), part.colour, size, 0, 0,
+             scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::resize(view.frame.depth(part.box_px), part.depth, size, 0, 0, cv::INTER_NEAREST);
+  cv::resize(view.mask(part.box_px), part.mask, size, 0, 0, cv::INTER_NEAREST);
+  return part;
+}
+
+void paste(const Patchwork& part, cv::Point at, float depth_shift, double extra_sigma, Composite& out, Random& random) {
+  for (int y = 0; y < part.mask.rows; ++y) {
+    for (int x = 0; x < part.mask.cols; ++x) {
+      if (part.mask.at<std::uint8_t>(y, x) == 0) continue;
+      const cv::Point to(at.x + x, at.y + y);
+      out.frame.colour.at<cv::Vec3b>(to) = part.colour.at<cv::Vec3b>(y, x);
+      const auto noise = static_cast<float>(extra_sigma > 0 ? extra_sigma * random.normal() : 0.0);
+      out.frame.depth.at<float>(to) = part.depth.at<float>(y, x) + depth_shift + noise;
+      out.mask.at<std::uint8_t>(to) = 255;
+    }
+  }
+}
+
+/// A part of the room that could lie behind something at this distance: little of it is nearer.
+cv::Rect place_behind(const RgbdFrame& background, cv::Size size, double distance, Random& random) {
+  constexpr int kTries = 12;
+  constexpr int kStep = 8;
+  cv::Rect best;
+  int best_nearer = size.area();
+  for (int i = 0; i < kTries && best_nearer * kStep * kStep > size.area() / 20; ++i) {
+    const cv::Rect place(random.between(0, background.colour.cols - size.width),
+                         random.between(0, background.colour.rows - size.height), size.width, size.height);
+    int nearer = 0;
+    for (int y = place.y; y < place.br().y; y += kStep) {
+      for (int x = place.x; x < place.br().x; x += kStep) {
+        nearer += background.depth.at<float>(y, x) < distance - 0.02 ? 1 : 0;
+      }
+    }
+    if (nearer >= best_nearer) continue;
+    best = place;
+    best_nearer = nearer;
+  }
+  return best;
+}
+
+}  // namespace
+
+double axial_noise(double z) {
+  return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+}
+
+void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random) {
+  if (strength == 0.0) return;
+  const double gain = std::exp2(strength * random.uniform(darkest_stops, brightest_stops));
+  const double gamma = std::exp2(strength * random.uniform(-0.25, 0.25));
+  const double haze = strength * std::max(0.0, random.uniform(-20.0, 20.0));
+  const double noise = strength * random.uniform(0.0, 4.0);
+  std::array<std::array<double, 256>, 3> table{};
+  for (auto& channel : table) {
+    const double cast = std::exp2(strength * random.uniform(-0.12, 0.12));
+    for (std::size_t v = 0; v < channel.size(); ++v) {
+      const double toned = 255.0 * std::pow(static_cast<double>(v) / 255.0, gamma) * gain * cast;
+      channel[v] = haze + toned * (255.0 - haze) / 255.0;
+    }
+  }
+  for (int y = 0; y < colour.rows; ++y) {
+    for (int x = 0; x < colour.cols; ++x) {
+      cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
+      for (int c = 0; c < 3; ++c) {
+        const double value = table[static_cast<std::size_t>(c)][pixel[c]];
+        pixel[c] = to_byte(value + noise * (random.uniform(-1.7, 1.7)));
+      }
+    }
+  }
+}
+
+void vary_exposure(cv::Mat& colour, double strength, Random& random) {
+  vary_light(colour, strength, -1.4, 0.7, random);
+}
+
+std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
+                                        const TrainingSettings& settings, Random& random) {
+  constexpr double kMostSharpness = 1.5;
+  constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
+  const double view_distance = view.T_camera_object.translation().z();
+  Composite out;
+  out.scale = view_distance / distance;
+  out.depth_shift = static_cast<float>(distance - view_distance);
+  const bool sharpen = settings.sharpened_share > 0.0 && random.uniform() < settings.sharpened_share;
+  const Patchwork part = resized_object(view, out.scale, sharpen ? kMostSharpness * random.uniform() : 0.0);
+  const cv::Size window(part.mask.cols + 2 * kMargin, part.mask.rows + 2 * kMargin);
+  if (window.width > background.colour.cols || window.height > background.colour.rows) return std::nullopt;
+
+  const cv::Rect place = place_behind(background, window, distance, random);
+  out.frame.colour = background.colour(place).clone();
+  out.frame.depth = background.depth(place).clone();
+  out.frame.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
+  out.mask = cv::Mat::zeros(window, CV_8UC1);
+  out.origin_px = cv::Point2d(kMargin - part.box_px.x * out.scale, kMargin - part.box_px.y * out.scale);
+
+  Patchwork lit = part;
+  if (random.uniform() < settings.cleared_share) clear_haze(lit.mask, lit.colour, random);
+  vary_light(lit.colour, settings.light_variation, -0.4, 0.4, random);
+  const double sigma_sq =
+      axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
+  paste(lit, cv::Point(kMargin, kMargin), out.depth_shift, sigma_sq > 0 ? std::sqrt(sigma_sq) : 0.0, out, random);
+  out.whole_px = cv::countNonZero(out.mask);
+  if (random.uniform() < settings.occluded_share) add_occluder(background, distance, out, random);
+  vary_exposure(out.frame.colour, settings.light_variation, random);
+  return out;
+}
+
+}  // namespace houghstream

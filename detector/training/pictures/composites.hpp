@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include "detector/detector_settings.hpp"
+#include "pipeline/base/random.hpp"
+#include "pipeline/types/training_view.hpp"
+
+namespace houghstream {
+
+/// A training view put into a room at another distance, in another light: what the camera could have seen there.
+/// Made from training data only.
+struct Composite {
+  RgbdFrame frame;           ///< part of the background frame around the object; its camera is the part's
+  cv::Mat mask;              ///< CV_8UC1, 255 where the object is seen
+  cv::Mat occluder;          ///< CV_8UC1, 255 where something was put in front; empty where nothing was
+  int whole_px = 0;          ///< pixels of the object, hidden ones included
+  double scale = 1.0;        ///< size in the composite over size in the view
+  cv::Point2d origin_px;     ///< pixel p of the composite shows pixel (p - origin_px) / scale of the view
+  float depth_shift = 0.0F;  ///< metres added to the view's depth
+};
+
+/// Nothing where the object would not fit the frame. `background` is a whole frame of the same camera.
+std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
+                                        const TrainingSettings& settings, Random& random);
+
+/// Standard deviation of a structured-light camera's depth at depth z, metres (Nguyen, Izadi & Lovell 2012, axial
+/// noise).
+double axial_noise(double z);
+
+/// Changes a picture's light in place: gain between two limits in stops (powers of two), contrast, colour cast, haze,
+/// noise.
+void vary_light(cv::Mat& colour, double strength, double darkest_stops, double brightest_stops, Random& random);
+
+/// The same with the limits of a camera's exposure: dim rooms are commoner than overexposed ones.
+void vary_exposure(cv::Mat& colour, double strength, Random& random);
+
+}  // namespace houghstream

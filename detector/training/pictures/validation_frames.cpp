@@ -1,0 +1,119 @@
+#include "detector/training/pictures/validation_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "detector/training/pictures/composites.hpp"
+#include "detector/training/pictures/misfits.hpp"
+
+namespace houghstream {
+namespace {
+
+double draw_distance(const TrainingSettings& settings, Random& random) {
+  return std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
+}
+
+/// Copies the composite into the whole frame it was cut from; `labels` says which object each pixel shows.
+void put_back(const Composite& composite, std::uint8_t label, RgbdFrame& frame, cv::Mat& labels) {
+  const cv::Rect place(static_cast<int>(std::lround(frame.camera.cx - composite.frame.camera.cx)),
+                       static_cast<int>(std::lround(frame.camera.cy - composite.frame.camera.cy)), composite.mask.cols,
+                       composite.mask.rows);
+  composite.frame.colour.copyTo(frame.colour(place));
+  composite.frame.depth.copyTo(frame.depth(place));
+  if (!composite.occluder.empty()) labels(place).setTo(0, composite.occluder);
+  labels(place).setTo(label, composite.mask);
+}
+
+/// The view of a thing that has the object's shape and pattern, but other colours: hues turned, and where there are
+/// none, some put on; darker or brighter.
+TrainingView recoloured(const TrainingView& view, Random& random) {
+  constexpr double kNeutral = 128.0;
+  const double angle = random.uniform(0.5 * M_PI, 1.5 * M_PI);
+  const double cast_angle = random.uniform(0.0, 2.0 * M_PI);
+  const double cast = random.uniform(10.0, 30.0);
+  const double lightness = std::exp2(random.uniform(-1.3, 0.4));
+  TrainingView out = view;
+  cv::Mat lab;
+  cv::cvtColor(view.frame.colour, lab, cv::COLOR_BGR2Lab);
+  for (int y = 0; y < lab.rows; ++y) {
+    for (int x = 0; x < lab.cols; ++x) {
+      cv::Vec3b& pixel = lab.at<cv::Vec3b>(y, x);
+      const double a = pixel[1] - kNeutral;
+      const double b = pixel[2] - kNeutral;
+      pixel[0] = cv::saturate_cast<std::uint8_t>(lightness * pixel[0]);
+      pixel[1] = cv::saturate_cast<std::uint8_t>(kNeutral + std::cos(angle) * a - std::sin(angle) * b +
+                                                 cast * std::cos(cast_angle));
+      pixel[2] = cv::saturate_cast<std::uint8_t>(kNeutral + std::sin(angle) * a + std::cos(angle) * b +
+                                                 cast * std::sin(cast_angle));
+    }
+  }
+  out.frame.colour = cv::Mat();  // the view's own pixels stay as they are
+  cv::cvtColor(lab, out.frame.colour, cv::COLOR_Lab2BGR);
+  return out;
+}
+
+/// The view of a thing that looks like the object, but is clearly smaller or larger.
+TrainingView resized(const TrainingView& view, Random& random) {
+  const double size = random.uniform() < 0.5 ? random.uniform(0.5, 0.75) : random.uniform(1.33, 1.8);
+  TrainingView out = view;
+  out.frame.depth = cv::Mat();  // the view's own pixels stay as they are
+  view.frame.depth.convertTo(out.frame.depth, CV_32FC1, size);
+  out.T_camera_object.translation() *= size;
+  return out;
+}
+
+/// Puts things that look nearly like objects into the frame, `count` of each sort.
+void add_look_alikes(const std::vector<const TrainingView*>& objects, int count, const TrainingSettings& settings,
+                     ValidationFrame& out, cv::Mat& labels, Random& random) {
+  for (int i = 0; i < 2 * count; ++i) {
+    const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
+    out.look_alikes.push_back(static_cast<std::uint32_t>(index));
+    const TrainingView other = i % 2 == 0 ? recoloured(*objects[index], random) : resized(*objects[index], random);
+    const double distance = draw_distance(settings, random);
+    const TrainingView misfit = bent(other, settings.misfit, random);
+    const std::optional<Composite> composite = make_composite(misfit, out.frame, distance, settings, random);
+    if (composite) put_back(*composite, 0, out.frame, labels);
+  }
+}
+
+}  // namespace
+
+ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
+                                      const ComposedThings& things, const TrainingSettings& settings, Random& random) {
+  constexpr double kOtherLight = 2.0;  // colours must not be trusted further than light lets them
+  TrainingSettings even_light = settings;
+  even_light.light_variation = 0.0;  // one light for the whole frame
+  even_light.sharpened_share = 0.0;  // and one camera, as blind to detail as the one that taught
+  ValidationFrame out;
+  out.frame = room;
+  out.frame.colour = room.colour.clone();
+  out.frame.depth = room.depth.clone();
+  cv::Mat labels = cv::Mat::zeros(room.colour.size(), CV_8UC1);
+  std::vector<int> whole_px;
+  add_look_alikes(objects, things.look_alikes, even_light, out, labels, random);
+  for (int label = 1; label <= things.objects; ++label) {
+    const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
+    const TrainingView& view = *objects[index];
+    const double distance = draw_distance(settings, random);
+    const TrainingView misfit = bent(view, settings.misfit, random);
+    const std::optional<Composite> composite = make_composite(misfit, out.frame, distance, even_light, random);
+    out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
+    whole_px.push_back(composite ? composite->whole_px : 1);
+    if (composite) put_back(*composite, static_cast<std::uint8_t>(label), out.frame, labels);
+  }
+  for (int label = 1; label <= things.objects; ++label) {
+    const auto index = static_cast<std::size_t>(label - 1);
+    ValidationFrame::Object& object = out.objects[index];
+    const cv::Mat seen = labels == label;
+    object.box_visible_px = cv::boundingRect(seen);
+    object.visible_fraction = static_cast<double>(cv::countNonZero(seen)) / whole_px[index];
+  }
+  const auto unseen = [](const ValidationFrame::Object& object) { return object.box_visible_px.empty(); };
+  out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());
+  misregister(settings.misfit, out.frame.depth, random);
+  vary_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
+  return out;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "detector/detector_settings.hpp"
+#include "pipeline/base/random.hpp"
+#include "pipeline/types/training_view.hpp"
+
+namespace houghstream {
+
+/// A room into which training views were put, to see what the finished forest makes of it.
+struct ValidationFrame {
+  struct Object {
+    int class_id = 0;
+    std::uint32_t view = 0;  ///< which of the training views it is
+    cv::Rect box_visible_px;
+    double visible_fraction = 0.0;
+  };
+  RgbdFrame frame;
+  std::vector<Object> objects;             ///< those of which anything is seen
+  std::vector<std::uint32_t> look_alikes;  ///< training views whose recoloured copies stand there too: not objects
+};
+
+/// How many things are put into a room.
+struct ComposedThings {
+  int objects = 0;      ///< at most 255
+  int look_alikes = 0;  ///< of either sort: an object's shape and pattern in other colours, and in another size
+};
+
+/// Random views in one room, each as in a composite: other distance, light, half of them partly hidden; behind them the
+/// look-alikes. Depth misfits colours and views, see misfits.hpp.
+ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
+                                      const ComposedThings& things, const TrainingSettings& settings, Random& random);
+
+}  // namespace houghstream

@@ -1,0 +1,95 @@
+#include "detector/voting/boxes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "detector/voting/weighted_median.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Left, top, right and bottom of a box, frame pixels; 0 is the left edge of the first pixel.
+using Sides = std::array<float, 4>;
+
+/// Where the supporting patches lie. Patches that hardly believe in the object lie beside it; the median supporter
+/// says what believing is here.
+Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches) {
+  static thread_local std::vector<float> weights;  // both kept from hypothesis to hypothesis
+  static thread_local std::array<std::vector<float>, 4> values;
+  weights.clear();
+  for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
+  std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
+  const float least = 0.3F * weights[weights.size() / 2];
+  for (std::vector<float>& side : values) side.clear();
+  for (const auto& [patch, weight] : hypothesis.patches) {
+    if (weight < least) continue;
+    const cv::Rect2f& cell = patches.cell_px[patch];
+    values[0].push_back(cell.x);
+    values[1].push_back(cell.y);
+    values[2].push_back(cell.br().x);
+    values[3].push_back(cell.br().y);
+  }
+  Sides sides{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const std::size_t outliers = values[i].size() / 50;
+    const std::size_t rank = i < 2 ? outliers : values[i].size() - 1 - outliers;
+    std::nth_element(values[i].begin(), values[i].begin() + static_cast<std::ptrdiff_t>(rank), values[i].end());
+    sides[i] = values[i][rank];
+  }
+  return sides;
+}
+
+/// Where the remembered training views have their sides: weighted medians.
+Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera) {
+  const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
+  const Eigen::Vector2d centre_px = camera.project(centre);
+  const auto px_per_metre = static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
+  static thread_local std::vector<std::pair<float, float>> values;  // kept from side to side
+  Sides sides{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    values.clear();
+    for (const auto& [view, weight] : hypothesis.views) {
+      values.emplace_back(forest.views[view].box[i], weight);
+    }
+    // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
+    const auto origin_px = static_cast<float>(centre_px[static_cast<Eigen::Index>(i % 2)]) + 0.5F;
+    sides[i] = origin_px + px_per_metre * weighted_median(values);
+  }
+  return sides;
+}
+
+}  // namespace
+
+cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
+                             const Camera& camera) {
+  if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
+  constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
+  const Sides seen = supporting_sides(hypothesis, patches);
+  const Sides whole = remembered_sides(forest, hypothesis, camera);
+  Sides sides{};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const float size = whole[(i % 2) + 2] - whole[i % 2];
+    const float outwards = i < 2 ? seen[i] - whole[i] : whole[i] - seen[i];
+    sides[i] = outwards < kHidden * size ? whole[i] : seen[i];
+  }
+  const cv::Rect2f box(sides[0], sides[1], sides[2] - sides[0], sides[3] - sides[1]);
+  return box & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
+}
+
+std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const DetectionSettings& settings) {
+  std::stable_sort(detections.begin(), detections.end(),
+                   [](const Detection& a, const Detection& b) { return a.score > b.score; });
+  std::vector<Detection> kept;
+  for (Detection& detection : detections) {
+    const auto overlaps = [&](const Detection& other) {
+      const bool dominates = other.class_id == detection.class_id ||
+                             (other.score > 0.5F && other.score > settings.dominance * detection.score);
+      return dominates && box_iou(other.box_px, detection.box_px) > settings.max_overlap;
+    };
+    if (std::none_of(kept.begin(), kept.end(), overlaps)) kept.push_back(std::move(detection));
+  }
+  return kept;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "detector/voting/voting.hpp"
+#include "pipeline/types/camera.hpp"
+
+namespace houghstream {
+
+/// From `begin` on, up to but not including `end`; into HoughSpace::votes.
+struct VoteRange {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
+/// The votes seen within `radius_cells` of a cell, row by row. `ranges` is overwritten.
+void ranges_near(const HoughSpace& space, int cell_x, int cell_y, int radius_cells, std::vector<VoteRange>& ranges);
+
+/// The same for all votes within reach of a centre (camera frame, metres), and for some beyond it.
+void ranges_around(const HoughSpace& space, const Camera& camera, const Eigen::Vector3f& centre, float vote_sigma,
+                   std::vector<VoteRange>& ranges);
+
+constexpr std::size_t kSumLanes = 8;  ///< partial sums: the order of a sum is its rounding
+using SumLanes = std::array<std::array<float, kSumLanes>, 4>;
+static_assert(kSpareVotes == kSumLanes - 1);
+
+/// Votes' centres times what each supports a maximum with, and the support itself: both summed.
+struct Support {
+  Eigen::Vector3f moment = Eigen::Vector3f::Zero();
+  float total = 0.0F;
+};
+
+/// Support of `centre` by the votes in the ranges. Many votes are looked at at once, in an order that is the same on
+/// every machine: see sum_support_readably.
+Support sum_support(const HoughSpace& space, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre,
+                    float vote_sigma);
+
+/// The same, bit for bit, one vote after another.
+Support sum_support_readably(const HoughSpace& space, const std::vector<VoteRange>& ranges,
+                             const Eigen::Vector3f& centre, float vote_sigma);
+
+/// Moves a centre to the nearest maximum of the votes (mean shift, Comaniciu & Meer 2002).
+Eigen::Vector3f climb(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma);
+
+}  // namespace houghstream

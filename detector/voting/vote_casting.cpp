@@ -1,0 +1,147 @@
+// Compiled once for each instruction set, see foreach_target.h of Highway.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detector/voting/vote_casting.cpp"
+#include "detector/voting/vote_casting.hpp"
+
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+HWY_BEFORE_NAMESPACE();
+namespace houghstream::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Float = hn::CappedTag<float, 4>;  // more votes than many leaves have would be computed in vain
+using Floats = hn::Vec<Float>;
+using Int = hn::Rebind<std::int32_t, Float>;
+
+static_assert(sizeof(LeafVote) == 4 * sizeof(float) && sizeof(Vote) == 4 * sizeof(float));
+
+/// From the frame of a patch's ray to that of the camera: a rotation and the patch's point.
+struct Motion {
+  Floats xx, xy, xz, x;
+  Floats yx, yy, yz, y;
+  Floats zx, zy, zz, z;
+};
+
+HWY_INLINE Motion motion_to(const Eigen::Vector3f& point) {
+  const Float d;
+  const Eigen::Matrix3f r = ray_rotation(point);
+  return {hn::Set(d, r(0, 0)), hn::Set(d, r(0, 1)), hn::Set(d, r(0, 2)), hn::Set(d, point.x()),
+          hn::Set(d, r(1, 0)), hn::Set(d, r(1, 1)), hn::Set(d, r(1, 2)), hn::Set(d, point.y()),
+          hn::Set(d, r(2, 0)), hn::Set(d, r(2, 1)), hn::Set(d, r(2, 2)), hn::Set(d, point.z())};
+}
+
+HWY_INLINE Floats moved(Floats ax, Floats ay, Floats az, Floats origin, Floats x, Floats y, Floats z) {
+  return hn::Add(origin, hn::Add(hn::Mul(ax, x), hn::Add(hn::Mul(ay, y), hn::Mul(az, z))));
+}
+
+/// The cells in which centres are seen.
+HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& grid) {
+  const Float d;
+  const Int di;
+  const Floats scale = hn::Div(hn::Set(d, 1.0F), z);
+  const Floats u = hn::Add(hn::Mul(hn::Mul(hn::Set(d, grid.fx), x), scale), hn::Set(d, grid.cx));
+  const Floats v = hn::Add(hn::Mul(hn::Mul(hn::Set(d, grid.fy), y), scale), hn::Set(d, grid.cy));
+  const auto in_columns = hn::And(hn::Ge(u, hn::Zero(d)), hn::Lt(u, hn::Set(d, static_cast<float>(grid.width))));
+  const auto in_rows = hn::And(hn::Ge(v, hn::Zero(d)), hn::Lt(v, hn::Set(d, static_cast<float>(grid.height))));
+  const auto seen = hn::And(hn::And(in_columns, in_rows), hn::Ge(z, hn::Set(d, 0.1F)));
+  const auto inside = [&](Floats at) { return hn::ConvertTo(di, hn::IfThenElseZero(seen, at)); };
+  const auto cell = hn::Add(hn::Mul(inside(v), hn::Set(di, grid.width)), inside(u));
+  return hn::IfThenElse(hn::RebindMask(di, seen), cell, hn::Set(di, static_cast<std::int32_t>(grid.outside())));
+}
+
+/// Writes the votes of one vector's leaf votes to the place `at`.
+HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, float probability, float share, std::uint32_t voter,
+                          const CellGrid& grid, std::size_t at, CastVotes& cast) {
+  const Float d;
+  const Int di;
+  Floats x, y, z, weight;
+  hn::LoadInterleaved4(d, leaf_votes, x, y, z, weight);
+  const Floats cx = moved(m.xx, m.xy, m.xz, m.x, x, y, z);
+  const Floats cy = moved(m.yx, m.yy, m.yz, m.y, x, y, z);
+  const Floats cz = moved(m.zx, m.zy, m.zz, m.z, x, y, z);
+  const Floats w = hn::Mul(hn::Mul(hn::Set(d, probability), weight), hn::Set(d, share));
+  hn::StoreInterleaved4(cx, cy, cz, w, d, cast.votes[at].centre_camera.data());
+  hn::StoreU(cells_of(cx, cy, cz, grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
+  hn::StoreU(hn::Set(di, static_cast<std::int32_t>(voter)), di,
+             reinterpret_cast<std::int32_t*>(cast.voters.data() + at));
+}
+
+/// Lets the cache misses of many voters overlap: what they know lies anywhere in the forest.
+HWY_INLINE void prefetch_ahead(const Forest& forest, const std::vector<Voter>& voters, std::size_t now) {
+  constexpr std::size_t kVotes = 12;  // voters ahead
+  constexpr std::size_t kClasses = 24;
+  if (now + kClasses >= voters.size()) return;
+  hwy::Prefetch(forest.leaf_classes.data() + voters[now + kClasses].leaf_class);
+  const LeafClass& soon = forest.leaf_classes[voters[now + kVotes].leaf_class];
+  for (std::size_t line = 0; line < 3; ++line) hwy::Prefetch(forest.votes.data() + soon.first_vote + 4 * line);
+}
+
+/// Casts the votes of voters from `first` on, as many as there is room for; returns the first who did not vote.
+std::size_t cast_from(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters,
+                      std::size_t first, const CellGrid& grid, CastVotes& cast) {
+  constexpr std::size_t kLanes = hn::MaxLanes(Float());
+  static_assert(kLanes <= CastVotes::kSlack);
+  const float share = 1.0F / static_cast<float>(forest.roots.size());
+  std::uint32_t patch = voters[first].patch;
+  Motion motion = motion_to(patches.point_camera[patch]);
+  std::size_t count = cast.count;
+  const std::size_t room = cast.votes.size() - CastVotes::kSlack;
+  std::size_t i = first;
+  for (; i < voters.size(); ++i) {
+    prefetch_ahead(forest, voters, i);
+    const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
+    if (count + entry.vote_count > room) break;
+    if (voters[i].patch != patch) motion = motion_to(patches.point_camera[patch = voters[i].patch]);
+    for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
+      const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
+      std::array<LeafVote, kLanes> last;
+      if (entry.first_vote + v + kLanes > forest.votes.size()) {  // no reading beyond the end
+        std::copy(votes, forest.votes.data() + forest.votes.size(), last.begin());
+        votes = last.data();
+      }
+      cast_some(votes->offset.data(), motion, entry.probability, share, static_cast<std::uint32_t>(i), grid, count + v,
+                cast);
+    }
+    count += entry.vote_count;
+  }
+  cast.count = count;
+  return i;
+}
+
+}  // namespace houghstream::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace houghstream {
+
+HWY_EXPORT(cast_from);
+
+CellGrid::CellGrid(const Camera& camera, int cell_px)
+    : width((camera.width + cell_px - 1) / cell_px),
+      height((camera.height + cell_px - 1) / cell_px),
+      fx(static_cast<float>(camera.fx / cell_px)),
+      fy(static_cast<float>(camera.fy / cell_px)),
+      cx(static_cast<float>((camera.cx + 0.5) / cell_px)),
+      cy(static_cast<float>((camera.cy + 0.5) / cell_px)) {}
+
+void cast_all(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters, const CellGrid& grid,
+              CastVotes& cast) {
+  constexpr std::size_t kMostPerVoter = UINT8_MAX;
+  cast.count = 0;
+  for (std::size_t next = 0; next < voters.size();) {
+    if (cast.count + kMostPerVoter + CastVotes::kSlack > cast.votes.size()) {
+      cast.votes.resize(2 * cast.votes.size() + kMostPerVoter + CastVotes::kSlack);
+      cast.cells.resize(cast.votes.size());
+      cast.voters.resize(cast.votes.size());
+    }
+    next = HWY_DYNAMIC_DISPATCH(cast_from)(forest, patches, voters, next, grid, cast);
+  }
+}
+
+}  // namespace houghstream
+#endif

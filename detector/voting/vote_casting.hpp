@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "detector/voting/voting.hpp"
+#include "pipeline/types/camera.hpp"
+
+namespace houghstream {
+
+/// The image of cells in which votes are counted.
+struct CellGrid {
+  CellGrid(const Camera& camera, int cell_px);
+
+  std::uint32_t outside() const { return static_cast<std::uint32_t>(width * height); }
+
+  int width = 0;  ///< cells
+  int height = 0;
+  float fx = 0.0F;  ///< of the camera, in cells; a cell's centre is at a half
+  float fy = 0.0F;
+  float cx = 0.0F;
+  float cy = 0.0F;
+};
+
+/// Votes in the order of those who cast them.
+struct CastVotes {
+  static constexpr std::size_t kSlack = 4;  ///< elements behind the last that are written but not meant
+
+  std::size_t count = 0;  ///< of the vectors' elements, which may be more
+  std::vector<Vote> votes;
+  std::vector<std::uint32_t> cells;   ///< CellGrid::outside() of votes not seen in the image or nearer than 10 cm
+  std::vector<std::uint32_t> voters;  ///< index of who cast it
+};
+
+/// Casts the votes of all voters, several at once: the same on every machine, since each vote's numbers depend on it
+/// alone. What `cast` held is overwritten and its memory used again.
+void cast_all(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters, const CellGrid& grid,
+              CastVotes& cast);
+
+}  // namespace houghstream

@@ -1,0 +1,156 @@
+#include "drivers/datasets/bop_dataset.hpp"
+
+#include <cmath>
+
+#include "drivers/files/image_file.hpp"
+#include "drivers/files/json_file.hpp"
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+fs::path colour_file(const fs::path& folder, int image_id) {
+  const fs::path png = folder / "rgb" / fmt::format("{:06d}.png", image_id);
+  const fs::path jpg = folder / "rgb" / fmt::format("{:06d}.jpg", image_id);
+  return fs::exists(jpg) && !fs::exists(png) ? jpg : png;
+}
+
+/// Metres from BOP's row-wise rotation and millimetres.
+Eigen::Isometry3d parse_pose(const json& entry, const std::string& where) {
+  const std::vector<double> r = json_numbers(entry, "cam_R_m2c", 9, where);
+  const std::vector<double> t_mm = json_numbers(entry, "cam_t_m2c", 3, where);
+  Eigen::Matrix3d R;
+  R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+  constexpr double kTolerance = 1e-3;
+  const double skew = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  require(skew < kTolerance && R.determinant() > 0.0,
+          "{}: 'cam_R_m2c' is no rotation (R R^T is {} from identity, determinant {})", where, skew, R.determinant());
+  const Eigen::Vector3d t(t_mm[0], t_mm[1], t_mm[2]);
+  constexpr double kFarthest_mm = 1e5;
+  require(t.norm() < kFarthest_mm, "{}: 'cam_t_m2c' is {} mm long, expected less than {}", where, t.norm(),
+          kFarthest_mm);
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+  T_camera_object.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  T_camera_object.translation() = t * 1e-3;
+  return T_camera_object;
+}
+
+cv::Rect parse_box(const json& info, const Camera& camera, const std::string& where) {
+  const std::vector<double> b = json_numbers(info, "bbox_visib", 4, where);
+  if (b[2] <= 0.0 || b[3] <= 0.0) return {};  // BOP writes -1 or 0 where nothing is visible
+  const bool inside = b[0] >= 0.0 && b[1] >= 0.0 && b[0] + b[2] <= camera.width && b[1] + b[3] <= camera.height;
+  require(inside, "{}: 'bbox_visib' {},{} {}x{}, expected inside the {}x{} image", where, b[0], b[1], b[2], b[3],
+          camera.width, camera.height);
+  return {static_cast<int>(std::lround(b[0])), static_cast<int>(std::lround(b[1])), static_cast<int>(std::lround(b[2])),
+          static_cast<int>(std::lround(b[3]))};
+}
+
+TrueObject parse_object(const json& entry, const json& info, const Camera& camera, const std::string& where) {
+  TrueObject object;
+  object.object_id = json_integer(entry, "obj_id", where);
+  require(object.object_id >= 1, "{}: 'obj_id' is {}, expected at least 1", where, object.object_id);
+  object.has_pose = entry.contains("cam_R_m2c") || entry.contains("cam_t_m2c");
+  if (object.has_pose) object.T_camera_object = parse_pose(entry, where);
+  object.box_visible_px = parse_box(info, camera, where);
+  object.visible_fraction = json_number(info, "visib_fract", where);
+  require(object.visible_fraction >= 0.0 && object.visible_fraction <= 1.0, "{}: 'visib_fract' is {}, expected 0 to 1",
+          where, object.visible_fraction);
+  return object;
+}
+
+BopImage parse_image(const json& entry, int image_id, const cv::Size& size_px, const std::string& where) {
+  const std::vector<double> k = json_numbers(entry, "cam_K", 9, where);
+  require(k[1] == 0.0 && k[3] == 0.0 && k[6] == 0.0 && k[7] == 0.0 && k[8] == 1.0,
+          "{}: 'cam_K' has skew or no projective last row, expected fx 0 cx 0 fy cy 0 0 1", where);
+  BopImage image;
+  image.image_id = image_id;
+  image.camera = {size_px.width, size_px.height, k[0], k[4], k[2], k[5]};
+  check_camera(image.camera, where);
+  image.depth_scale = entry.contains("depth_scale") ? json_number(entry, "depth_scale", where) : 1.0;
+  require(image.depth_scale >= 1e-3 && image.depth_scale <= 100.0,
+          "{}: 'depth_scale' is {}, expected 0.001 to 100 millimetres a step", where, image.depth_scale);
+  return image;
+}
+
+/// Image size: our own keys where they are, else that of the image itself (BOP keeps none per image).
+cv::Size image_size(const json& entry, const fs::path& folder, int image_id, const std::string& where) {
+  if (entry.contains("width") && entry.contains("height")) {
+    return {json_integer(entry, "width", where), json_integer(entry, "height", where)};
+  }
+  return read_colour_image(colour_file(folder, image_id)).size();
+}
+
+const json& frame_list(const json& frames, int image_id, const std::string& where) {
+  static const json empty = json::array();
+  const std::string key = std::to_string(image_id);
+  if (!frames.contains(key)) return empty;
+  require(frames.at(key).is_array(), "{}: image {} is no list", where, image_id);
+  return frames.at(key);
+}
+
+void read_objects(const fs::path& folder, std::vector<BopImage>& images) {
+  const fs::path gt_file = folder / "scene_gt.json";
+  if (!fs::exists(gt_file)) return;  // background: a scene without objects
+  const fs::path info_file = folder / "scene_gt_info.json";
+  const json gt = read_json_object(gt_file);
+  const json info = fs::exists(info_file) ? read_json_object(info_file) : json::object();
+  for (BopImage& image : images) {
+    const json& entries = frame_list(gt, image.image_id, gt_file.string());
+    const json& infos = frame_list(info, image.image_id, info_file.string());
+    require(entries.size() == infos.size(), "{}: image {} has {} entries, expected {} as in scene_gt.json",
+            info_file.string(), image.image_id, infos.size(), entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const std::string where = fmt::format("{} image {} object {}", folder.string(), image.image_id, i);
+      image.objects.push_back(parse_object(entries[i], infos[i], image.camera, where));
+    }
+  }
+}
+
+}  // namespace
+
+BopScene::BopScene(fs::path folder) : folder_(std::move(folder)) {
+  const fs::path camera_file = folder_ / "scene_camera.json";
+  const std::map<int, json> entries = read_json_by_id(camera_file);
+  require(!entries.empty(), "{}: no images", camera_file.string());
+  const int first_id = entries.begin()->first;
+  const cv::Size first_size = image_size(entries.begin()->second, folder_, first_id, camera_file.string());
+  for (const auto& [image_id, entry] : entries) {
+    const std::string where = fmt::format("{} image {}", camera_file.string(), image_id);
+    const cv::Size size_px = entry.contains("width") ? image_size(entry, folder_, image_id, where) : first_size;
+    images_.push_back(parse_image(entry, image_id, size_px, where));
+  }
+  read_objects(folder_, images_);
+}
+
+RgbdFrame BopScene::read_frame(std::size_t index) const {
+  const BopImage& image = images_.at(index);
+  const fs::path depth_file = folder_ / "depth" / fmt::format("{:06d}.png", image.image_id);
+  RgbdFrame frame;
+  frame.utime = dataset_utime(index);
+  frame.camera = image.camera;
+  frame.colour = read_colour_image(colour_file(folder_, image.image_id));
+  // Missing depth is NaN, and stays NaN under the scale.
+  frame.depth = depth_from_millimetres(read_depth_image(depth_file));
+  if (image.depth_scale != 1.0) frame.depth *= image.depth_scale;
+  check_frame(frame, depth_file.string());
+  return frame;
+}
+
+cv::Mat BopScene::read_mask(std::size_t index, std::size_t object_index) const {
+  const BopImage& image = images_.at(index);
+  const fs::path file = folder_ / "mask_visib" / fmt::format("{:06d}_{:06d}.png", image.image_id, object_index);
+  cv::Mat mask = read_mask_image(file);
+  require(mask.cols == image.camera.width && mask.rows == image.camera.height, "{}: {}x{}, expected {}x{} as the image",
+          file.string(), mask.cols, mask.rows, image.camera.width, image.camera.height);
+  return mask;
+}
+
+std::int64_t dataset_utime(std::size_t index) {
+  constexpr std::int64_t kFirst = 1'500'000'000'000'000;
+  return kFirst + static_cast<std::int64_t>(index) * 1'000'000 / kDatasetRateHz;
+}
+
+}  // namespace houghstream

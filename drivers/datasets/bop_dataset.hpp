@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/symmetry.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/training_view.hpp"
+
+namespace houghstream {
+
+/// One true object in one frame of a BOP scene (scene_gt.json and scene_gt_info.json).
+struct TrueObject {
+  int object_id = 0;
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
+  bool has_pose = true;                                               ///< false where the data has boxes only
+  cv::Rect box_visible_px;                                            ///< bbox_visib
+  double visible_fraction = 1.0;                                      ///< visib_fract
+};
+
+/// One image of a BOP scene.
+struct BopImage {
+  int image_id = 0;
+  Camera camera;
+  double depth_scale = 1.0;  ///< stored depth times this is millimetres
+  std::vector<TrueObject> objects;
+};
+
+/// A scene folder in BOP format (scene_camera.json, scene_gt.json, scene_gt_info.json, rgb/, depth/, mask_visib/),
+/// see bop_toolkit docs/bop_datasets_format.md. Reading the index does not read images, except one where
+/// scene_camera.json lacks our additional keys "width" and "height". Without scene_gt.json it has no objects.
+/// An object known by its box only has neither cam_R_m2c nor cam_t_m2c in scene_gt.json; its name may then come
+/// from SCENE/names.json, since there is no models/.
+class BopScene {
+ public:
+  /// Throws InputError when files are missing or their numbers absurd.
+  explicit BopScene(std::filesystem::path folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  const std::vector<BopImage>& images() const { return images_; }  ///< by image id
+  /// Frames are stamped with dataset_utime(), by their position in images().
+  RgbdFrame read_frame(std::size_t index) const;
+  cv::Mat read_mask(std::size_t index, std::size_t object_index) const;  ///< visible mask, CV_8UC1 0/255
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<BopImage> images_;
+};
+
+/// Datasets state no rate; ours are played at a camera's.
+constexpr int kDatasetRateHz = 30;
+
+/// utime of image `index` of a dataset; datasets have no clock, so ours starts in July 2017.
+std::int64_t dataset_utime(std::size_t index);
+
+/// models/models_info.json and the optional models/names.json ({"1": "bowl", ...}); without it names are "object_N".
+struct BopModels {
+  std::filesystem::path folder;
+  std::map<int, std::string> names;                      ///< by object id
+  std::map<int, double> diameters;                       ///< metres, by object id
+  std::map<int, Eigen::AlignedBox3d> bounds;             ///< metres, object frame; of those that state min and size
+  std::map<int, Symmetries> symmetries;                  ///< empty for an object without any
+  std::filesystem::path mesh_file(int object_id) const;  ///< obj_000001.ply
+};
+/// Throws InputError when files are missing or their numbers absurd.
+BopModels read_bop_models(const std::filesystem::path& models_folder);
+
+/// The meshes of a models folder by class name, metres: a BOP one, or, without models_info.json, all NAME.ply and
+/// NAME.obj in it. `unit_m` is the length of the files' unit in metres (BOP: millimetres). Throws InputError where
+/// there are none or two share a name.
+std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder, double unit_m = 1e-3);
+
+/// {"1": "bowl", ...}
+std::map<int, std::string> read_bop_names(const std::filesystem::path& names_file);
+
+/// The folder models/ in the scene's folder or up to three levels above it.
+std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path& folder);
+
+/// Names of a scene's objects by id: its own names.json, else those of find_bop_models(); empty without either.
+std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
+
+/// All training views of a BOP training folder: every scene in or under it, one object per image, cropped around its
+/// mask; its models/ lies beside or above, and its frame is the model's in all of them (`object_frame` stays empty).
+/// Images without objects are background (class_id 0, not cropped). Views without depth on the object are left out with
+/// a warning; throws InputError when nothing is left.
+std::vector<TrainingView> read_bop_training_views(const std::filesystem::path& folder, int threads = 1);
+
+}  // namespace houghstream

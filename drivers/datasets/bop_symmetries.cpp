@@ -1,0 +1,70 @@
+#include "drivers/datasets/bop_symmetries.hpp"
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+constexpr const char* kDiscrete = "symmetries_discrete";
+constexpr const char* kContinuous = "symmetries_continuous";
+
+const nlohmann::json& listed(const nlohmann::json& entry, const char* key, const std::string& where) {
+  const nlohmann::json& list = entry.at(key);
+  require(list.is_array(), "{}: '{}' is {}, expected a list", where, key, list.dump());
+  return list;
+}
+
+/// `holder` is an object of one key: json_numbers() names the key in its messages.
+Eigen::Isometry3d parse_motion(const nlohmann::json& holder, const std::string& where) {
+  const Matrix4 m = Eigen::Map<const Matrix4>(json_numbers(holder, kDiscrete, 16, where).data());
+  const Eigen::Matrix3d R = m.topLeftCorner<3, 3>();
+  constexpr double kTolerance = 1e-3;
+  const bool rigid = (R * R.transpose()).isIdentity(kTolerance) && R.determinant() > 0.0 &&
+                     m.row(3).isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0), kTolerance);
+  require(rigid, "{}: '{}' holds {}, expected rigid motions", where, kDiscrete, holder.at(kDiscrete).dump());
+  Eigen::Isometry3d motion(Eigen::Quaterniond(R).normalized());
+  motion.translation() = m.topRightCorner<3, 1>() * 1e-3;
+  return motion;
+}
+
+ContinuousSymmetry parse_axis(const nlohmann::json& entry, const std::string& where) {
+  const std::vector<double> axis = json_numbers(entry, "axis", 3, where);
+  const std::vector<double> offset_mm = json_numbers(entry, "offset", 3, where);
+  const Eigen::Vector3d direction(axis[0], axis[1], axis[2]);
+  constexpr double kShortest = 1e-6;
+  require(direction.norm() > kShortest, "{}: 'axis' of '{}' has length {}, expected a direction", where, kContinuous,
+          direction.norm());
+  return {direction.normalized(), Eigen::Vector3d(offset_mm[0], offset_mm[1], offset_mm[2]) * 1e-3};
+}
+
+}  // namespace
+
+Symmetries symmetries_from_json(const nlohmann::json& entry, const std::string& where) {
+  Symmetries symmetries;
+  if (entry.contains(kDiscrete)) {
+    for (const nlohmann::json& motion : listed(entry, kDiscrete, where))
+      symmetries.discrete.push_back(parse_motion({{kDiscrete, motion}}, where));
+  }
+  if (entry.contains(kContinuous)) {
+    for (const nlohmann::json& axis : listed(entry, kContinuous, where))
+      symmetries.continuous.push_back(parse_axis(axis, where));
+  }
+  return symmetries;
+}
+
+void add_symmetries(const Symmetries& symmetries, OrderedJson& entry) {
+  for (const Eigen::Isometry3d& motion : symmetries.discrete) {
+    Matrix4 m = motion.matrix();
+    m.topRightCorner<3, 1>() *= 1e3;
+    entry[kDiscrete].push_back(std::vector<double>(m.data(), m.data() + m.size()));
+  }
+  for (const auto& [axis, offset] : symmetries.continuous) {
+    const Eigen::Vector3d offset_mm = offset * 1e3;
+    entry[kContinuous].push_back(
+        {{"axis", {axis.x(), axis.y(), axis.z()}}, {"offset", {offset_mm.x(), offset_mm.y(), offset_mm.z()}}});
+  }
+}
+
+}  // namespace houghstream

@@ -1,0 +1,106 @@
+#include "drivers/datasets/tum_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <tuple>
+#include <vector>
+
+#include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TimedImage {
+  std::int64_t utime = 0;
+  fs::path file;
+};
+
+struct TumPair {
+  TimedImage colour;
+  TimedImage depth;
+};
+
+std::vector<TimedImage> read_list(const fs::path& folder, const char* name) {
+  const fs::path file = folder / name;
+  std::ifstream in(file);
+  require(in.good(), "{}: cannot be read, expected the image list of a TUM sequence", file.string());
+  std::vector<TimedImage> images;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (line.empty() || line.front() == '#') continue;
+    std::istringstream words(line);
+    double time_s = 0.0;
+    std::string path;
+    require(static_cast<bool>(words >> time_s >> path) && std::isfinite(time_s) && std::abs(time_s) < 1e11,
+            "{} line {}: '{}', expected SECONDS FILE", file.string(), number, line.substr(0, 80));
+    images.push_back({std::llround(time_s * 1e6), folder / path});
+  }
+  require(!images.empty(), "{}: no images", file.string());
+  std::sort(images.begin(), images.end(), [](const auto& a, const auto& b) { return a.utime < b.utime; });
+  return images;
+}
+
+std::vector<TumPair> pair_images(const std::vector<TimedImage>& colours, const std::vector<TimedImage>& depths) {
+  constexpr std::int64_t kFarthest_us = 20000;
+  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // distance, depth, colour
+  std::size_t first = 0;
+  for (std::size_t d = 0; d < depths.size(); ++d) {
+    while (first < colours.size() && colours[first].utime < depths[d].utime - kFarthest_us) ++first;
+    for (std::size_t c = first; c < colours.size() && colours[c].utime <= depths[d].utime + kFarthest_us; ++c) {
+      candidates.emplace_back(std::abs(colours[c].utime - depths[d].utime), d, c);
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  std::vector<bool> colour_used(colours.size());
+  std::vector<bool> depth_used(depths.size());
+  std::vector<TumPair> pairs;
+  for (const auto& [distance, d, c] : candidates) {
+    if (colour_used[c] || depth_used[d]) continue;
+    colour_used[c] = depth_used[d] = true;
+    pairs.push_back({colours[c], depths[d]});
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.depth.utime < b.depth.utime; });
+  return pairs;
+}
+
+class TumSource : public FrameSource {
+ public:
+  TumSource(const fs::path& folder, const Camera& camera)
+      : pairs_(pair_images(read_list(folder, "rgb.txt"), read_list(folder, "depth.txt"))), camera_(camera) {
+    require(!pairs_.empty(), "{}: no colour image within 20 ms of a depth image", folder.string());
+  }
+
+  std::optional<RgbdFrame> next() override {
+    if (index_ == pairs_.size()) return std::nullopt;
+    const TumPair& pair = pairs_[index_++];
+    constexpr double kMillimetresPerStep = 0.2;
+    RgbdFrame frame;
+    frame.utime = pair.depth.utime;
+    frame.camera = camera_;
+    frame.colour = read_colour_image(pair.colour.file);
+    frame.depth = depth_from_millimetres(read_depth_image(pair.depth.file)) * kMillimetresPerStep;
+    check_frame(frame, pair.depth.file.string());
+    return frame;
+  }
+
+  double rate_hz() const override { return kDatasetRateHz; }
+
+ private:
+  std::vector<TumPair> pairs_;
+  Camera camera_;
+  std::size_t index_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_tum_source(const fs::path& folder, const Camera& camera) {
+  return std::make_unique<TumSource>(folder, camera);
+}
+
+}  // namespace houghstream

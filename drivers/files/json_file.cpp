@@ -1,0 +1,83 @@
+#include "drivers/files/json_file.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+const nlohmann::json& member(const nlohmann::json& object, const std::string& key, const std::string& where) {
+  require(object.is_object() && object.contains(key), "{}: no '{}'", where, key);
+  return object.at(key);
+}
+
+int index_of(const std::string& key, const std::string& file) {
+  int index = -1;
+  const char* end = key.data() + key.size();
+  const auto result = std::from_chars(key.data(), end, index);
+  require(result.ec == std::errc() && result.ptr == end && index >= 0, "{}: key '{}', expected a non-negative integer",
+          file, key);
+  return index;
+}
+
+}  // namespace
+
+OrderedJson finite_or_null(double value) {
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
+}
+
+nlohmann::json read_json_object(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  require(in.good(), "{}: missing or unreadable, expected a JSON file", file.string());
+  nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  require(json.is_object(), "{}: not a JSON object, or cut short", file.string());
+  return json;
+}
+
+std::map<int, nlohmann::json> read_json_by_id(const std::filesystem::path& file) {
+  const nlohmann::json json = read_json_object(file);
+  std::map<int, nlohmann::json> entries;
+  for (const auto& [key, entry] : json.items()) entries[index_of(key, file.string())] = entry;
+  return entries;
+}
+
+void write_json(const OrderedJson& json, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  out << json.dump(1) << '\n';
+  out.close();
+  require(out.good(), "{}: cannot be written", file.string());
+}
+
+double json_number(const nlohmann::json& object, const std::string& key, const std::string& where) {
+  const nlohmann::json& value = member(object, key, where);
+  require(value.is_number(), "{}: '{}' is {}, expected a number", where, key, value.dump());
+  const auto number = value.get<double>();
+  require(std::isfinite(number), "{}: '{}' is {}, expected a finite number", where, key, number);
+  return number;
+}
+
+int json_integer(const nlohmann::json& object, const std::string& key, const std::string& where) {
+  const double number = json_number(object, key, where);
+  require(number == std::floor(number) && std::abs(number) < 1e9, "{}: '{}' is {}, expected an integer", where, key,
+          number);
+  return static_cast<int>(number);
+}
+
+std::vector<double> json_numbers(const nlohmann::json& object, const std::string& key, std::size_t count,
+                                 const std::string& where) {
+  const nlohmann::json& values = member(object, key, where);
+  require(values.is_array() && values.size() == count, "{}: '{}' is {}, expected {} numbers", where, key, values.dump(),
+          count);
+  std::vector<double> numbers;
+  for (const nlohmann::json& value : values) {
+    require(value.is_number() && std::isfinite(value.get<double>()), "{}: '{}' holds {}, expected finite numbers",
+            where, key, value.dump());
+    numbers.push_back(value.get<double>());
+  }
+  return numbers;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,45 @@
+#include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/openni/camera_source.hpp"
+#include "drivers/openni/frame_of_pair.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::chrono::seconds kPatience(5);  // with a disk that is asleep
+
+class OniSource : public FrameSource {
+ public:
+  OniSource(const std::string& file, const CameraOptions& options)
+      : device_(OpenniDevice::open_file(file)),
+        camera_(camera_of_device(*device_, options)),
+        pairing_(pairing_tolerance_us(device_->mode())) {}
+
+  std::optional<RgbdFrame> next() override {
+    while (!device_->ended()) {
+      std::optional<SensorImage> image = device_->wait(kPatience);
+      if (!image) continue;
+      const std::optional<ImagePair> pair = pairing_.put(std::move(*image));
+      if (pair) return frame_of_pair(*pair, camera_, utime_of(*pair));
+    }
+    return std::nullopt;
+  }
+
+  double rate_hz() const override { return device_->mode().rate_hz; }
+
+ private:
+  static std::int64_t utime_of(const ImagePair& pair) {
+    return dataset_utime(0) + static_cast<std::int64_t>(pair.depth.device_us);
+  }
+
+  std::unique_ptr<OpenniDevice> device_;
+  Camera camera_;
+  TimestampPairing pairing_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_oni_source(const std::string& file, const CameraOptions& options) {
+  return std::make_unique<OniSource>(file, options);
+}
+
+}  // namespace houghstream

@@ -1,0 +1,101 @@
+#include "drivers/openni/recording/oni_times.hpp"
+
+#include <array>
+#include <fstream>
+#include <vector>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+// The format, little endian: a file header, then records of a header, fields and a payload (OpenNI2's DataRecords.h).
+constexpr std::array<char, 12> kFileStart = {'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};
+constexpr std::uint64_t kFileHeader = 24;
+constexpr std::uint64_t kRecordHeader = 28;  // counted among a record's fields
+constexpr std::uint32_t kMagic = 0x0052494E;
+constexpr std::uint64_t kSeekEntry = 20;  // time, configuration, position
+constexpr std::uint64_t kRangeEnd = 24;   // before the end of a node's fields: first time, last time, seek table
+
+enum class Type : std::uint32_t { kNewData = 10, kEnd = 11, kNodeAdded = 13, kSeekTable = 14 };
+
+struct RecordHeader {
+  std::uint32_t type = 0;
+  std::uint32_t node = 0;
+  std::uint64_t fields = 0;
+  std::uint64_t payload = 0;
+};
+
+class OniFile {
+ public:
+  explicit OniFile(const std::filesystem::path& file)
+      : name_(file.string()), stream_(file, std::ios::in | std::ios::out | std::ios::binary) {
+    std::array<char, kFileStart.size()> start{};
+    stream_.read(start.data(), start.size());
+    require(stream_ && start == kFileStart, "{}: no recording of OpenNI2's, version 1.0.1", name_);
+  }
+
+  template <typename T>
+  T read(std::uint64_t at) {
+    T value{};
+    stream_.seekg(static_cast<std::streamoff>(at));
+    stream_.read(reinterpret_cast<char*>(&value), sizeof(value));
+    require(stream_.good(), "{}: ends before byte {}, expected a whole recording", name_, at + sizeof(value));
+    return value;
+  }
+
+  RecordHeader record(std::uint64_t at) {
+    const auto words = read<std::array<std::uint32_t, 5>>(at);
+    require(words[0] == kMagic && words[3] >= kRecordHeader, "{}: no record at byte {}", name_, at);
+    return {words[1], words[2], words[3], words[4]};
+  }
+
+  void add(const std::vector<std::uint64_t>& places, std::uint64_t amount) {
+    for (const std::uint64_t at : places) {
+      const std::uint64_t value = read<std::uint64_t>(at) + amount;
+      stream_.seekp(static_cast<std::streamoff>(at));
+      stream_.write(reinterpret_cast<const char*>(&value), sizeof(value));
+    }
+    stream_.flush();
+    require(stream_.good(), "{}: cannot be written", name_);
+  }
+
+ private:
+  std::string name_;
+  std::fstream stream_;
+};
+
+/// Where a record at `at` holds times.
+std::vector<std::uint64_t> times_in(const RecordHeader& record, std::uint64_t at) {
+  const std::uint64_t payload = at + record.fields;
+  switch (static_cast<Type>(record.type)) {
+    case Type::kNewData: return {at + kRecordHeader};
+    case Type::kNodeAdded: return {payload - kRangeEnd, payload - kRangeEnd + sizeof(std::uint64_t)};
+    case Type::kSeekTable: break;
+    default: return {};
+  }
+  std::vector<std::uint64_t> places;  // the first entry stands for no image
+  for (std::uint64_t entry = kSeekEntry; entry + kSeekEntry <= record.payload; entry += kSeekEntry) {
+    places.push_back(payload + entry);
+  }
+  return places;
+}
+
+}  // namespace
+
+void delay_oni_node(const std::filesystem::path& file, OniNode node, std::int64_t delay_us) {
+  require(delay_us >= 0, "{}: a delay of {} us, expected none or more", file.string(), delay_us);
+  OniFile oni(file);
+  std::vector<std::uint64_t> places;
+  std::uint64_t at = kFileHeader;
+  for (RecordHeader record = oni.record(at); static_cast<Type>(record.type) != Type::kEnd; record = oni.record(at)) {
+    if (record.node == static_cast<std::uint32_t>(node)) {
+      const std::vector<std::uint64_t> found = times_in(record, at);
+      places.insert(places.end(), found.begin(), found.end());
+    }
+    at += record.fields + record.payload;
+  }
+  oni.add(places, static_cast<std::uint64_t>(delay_us));
+}
+
+}  // namespace houghstream

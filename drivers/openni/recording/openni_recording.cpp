@@ -1,0 +1,73 @@
+#include "drivers/openni/recording/openni_recording.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+#include "drivers/openni/openni_device.hpp"
+#include "drivers/openni/openni_parts.hpp"
+#include "drivers/openni/recording/oni_times.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/host_clock.hpp"
+#include "pipeline/base/log_line.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::size_t kRemembered = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
+constexpr std::size_t kCompared = 8;      // recorded images of a stream
+constexpr std::chrono::seconds kPatience(5);
+
+/// Fewer where a recording is shorter.
+FirstImages first_recorded(const std::string& file) {
+  const auto device = OpenniDevice::open_file(file);
+  FirstImages first;
+  while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
+    const std::optional<SensorImage> image = device->wait(kPatience);
+    if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
+  }
+  return first;
+}
+
+std::int64_t device_start_us(const std::string& stream, const std::vector<Remembered>& recorded,
+                             const std::vector<Remembered>& live, bool loses) {
+  const std::optional<RecordedStart> start = find_recorded_start(recorded, live);
+  require(start && (loses || start->difference == 0.0), "{}: its first images are not among those seen", stream);
+  return start->device_us;
+}
+
+}  // namespace
+
+OpenniRecording::OpenniRecording(std::string file, bool jpeg, openni::VideoStream& depth, openni::VideoStream& colour)
+    : file_(std::move(file)), jpeg_(jpeg) {
+  // OpenNI2 would crash later.
+  require(std::ofstream(file_).good(), "{}: cannot be written, expected a place for a recording", file_);
+  check_openni(recorder_.create(file_.c_str()), file_ + ": cannot be recorded to");
+  check_openni(recorder_.attach(depth, false), file_ + ": depth");
+  check_openni(recorder_.attach(colour, jpeg_), file_ + ": colour");
+}
+
+void OpenniRecording::start() {
+  started_us_ = utime_now();
+  check_openni(recorder_.start(), file_ + ": recording");
+}
+
+void OpenniRecording::note(const SensorImage& image) {
+  std::vector<Remembered>& own = live_.of(image.sensor);
+  const bool may_be_recorded = started() && image.host_us >= started_us_;
+  if (may_be_recorded && own.size() < kRemembered) own.push_back(remember(image));
+}
+
+void OpenniRecording::mend_times() noexcept {
+  try {
+    const FirstImages recorded = first_recorded(file_);
+    const std::int64_t colour_later_us = device_start_us(file_ + ", colour", recorded.colour, live_.colour, jpeg_) -
+                                         device_start_us(file_ + ", depth", recorded.depth, live_.depth, false);
+    const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
+    if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
+  } catch (const std::exception& error) {
+    log_warning("{}; in the recording colour may lie beside its depth", error.what());
+  }
+}
+
+}  // namespace houghstream

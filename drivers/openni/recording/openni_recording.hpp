@@ -1,0 +1,53 @@
+#pragma once
+
+#include <OpenNI.h>
+
+#include <string>
+#include <vector>
+
+#include "drivers/openni/recording/recorded_start.hpp"
+#include "drivers/openni/sensor_image.hpp"
+
+// Recording of a camera to a .oni file. Included by the .cpp files of this folder only.
+
+namespace houghstream {
+
+/// The first images of a camera's two streams.
+struct FirstImages {
+  std::vector<Remembered> depth;
+  std::vector<Remembered> colour;
+  std::vector<Remembered>& of(SensorImage::Sensor sensor) {
+    return sensor == SensorImage::Sensor::kDepth ? depth : colour;
+  }
+};
+
+/// OpenNI2's recorder lets each stream begin at zero, so that colour and depth that were taken together lie apart in
+/// the file wherever their first images were not. What was seen live tells when those were taken, and with it the times
+/// in the file are mended once it is finished.
+class OpenniRecording {
+ public:
+  /// Throws InputError where the file cannot be written.
+  OpenniRecording(std::string file, bool jpeg, openni::VideoStream& depth, openni::VideoStream& colour);
+
+  bool started() const { return started_us_ > 0; }
+  void start();
+
+  /// Takes note of an image as the camera's users get it.
+  void note(const SensorImage& image);
+
+  /// Ends the recording; the streams must still exist, and have been stopped.
+  void stop() { recorder_.destroy(); }
+
+  /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero. Warns where
+  /// that fails; the file is then as OpenNI2 has left it.
+  void mend_times() noexcept;
+
+ private:
+  std::string file_;
+  bool jpeg_;
+  openni::Recorder recorder_;
+  std::int64_t started_us_ = 0;  // host's time, 0 before
+  FirstImages live_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,144 @@
+#include "pipeline/bus/event_log.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::int32_t kSync = static_cast<std::int32_t>(0xEDA1DA01U);
+constexpr std::size_t kHeaderBytes = 28;
+// LCM's reader refuses longer ones.
+constexpr std::size_t kMaxChannelBytes = 999;
+
+}  // namespace
+
+void LogWriter::Closer::operator()(lcm_eventlog_t* log) const {
+  lcm_eventlog_destroy(log);
+}
+
+LogWriter::LogWriter(const std::filesystem::path& file)
+    : file_(file.string()), log_(lcm_eventlog_create(file_.c_str(), "w")) {
+  require(log_ != nullptr, "{}: cannot be written: {}", file_, std::strerror(errno));
+}
+
+void LogWriter::write(std::int64_t timestamp, const std::string& channel, ByteView data) {
+  std::string name = channel;
+  lcm_eventlog_event_t event{};
+  event.timestamp = timestamp;
+  event.channellen = static_cast<std::int32_t>(name.size());
+  event.datalen = static_cast<std::int32_t>(data.size);
+  event.channel = name.data();
+  event.data = const_cast<std::uint8_t*>(data.data);  // the C interface reads it only
+  const int failed = lcm_eventlog_write_event(log_.get(), &event);
+  require(failed == 0, "{}: event {} could not be written: {}", file_, log_->eventcount, std::strerror(errno));
+}
+
+void LogWriter::close() {
+  if (!log_) return;
+  const bool flushed = std::fflush(log_->f) == 0;
+  const int error = errno;
+  log_.reset();
+  require(flushed, "{}: the end of the log could not be written: {}", file_, std::strerror(error));
+}
+
+LogReader::LogReader(const std::filesystem::path& file) : file_(file.string()), in_(std::fopen(file_.c_str(), "rb")) {
+  require(in_ != nullptr, "{}: cannot be read: {}", file_, std::strerror(errno));
+  std::error_code error;
+  size_ = std::filesystem::file_size(file, error);
+  require(!error, "{}: is not a log file: {}", file_, error.message());
+  require(size_ > 0, "{}: is empty, expected an LCM log", file_);
+}
+
+void LogReader::seek(std::uint64_t position) {
+  require(fseeko(in_.get(), static_cast<off_t>(position), SEEK_SET) == 0, "{}: byte {} cannot be reached: {}", file_,
+          position, std::strerror(errno));
+  position_ = position;
+}
+
+LogReader::Header LogReader::read_header() {
+  const std::uint64_t left = size_ - position_;
+  std::array<std::uint8_t, kHeaderBytes> bytes{};
+  require(left >= kHeaderBytes && std::fread(bytes.data(), 1, kHeaderBytes, in_.get()) == kHeaderBytes,
+          "{}: cut after event {}: {} bytes left at byte {}, expected a header of {}", file_, events_, left, position_,
+          kHeaderBytes);
+  WireReader reader({bytes.data(), bytes.size()}, file_);
+  const std::int32_t sync = reader.read_int32();
+  require(sync == kSync, "{}: no event header at byte {} after event {}: {:08x}, expected {:08x}", file_, position_,
+          events_, static_cast<std::uint32_t>(sync), static_cast<std::uint32_t>(kSync));
+  reader.skip(8);
+  Header header;
+  header.timestamp = reader.read_int64();
+  header.channel_bytes = static_cast<std::uint32_t>(reader.read_int32());
+  header.data_bytes = static_cast<std::uint32_t>(reader.read_int32());
+  require(header.channel_bytes >= 1 && header.channel_bytes <= kMaxChannelBytes,
+          "{}: event {} has a channel of {} bytes, expected 1 to {}", file_, events_, header.channel_bytes,
+          kMaxChannelBytes);
+  const std::uint64_t event_bytes = kHeaderBytes + std::uint64_t{header.channel_bytes} + header.data_bytes;
+  require(event_bytes <= left, "{}: cut in event {}: {} of its {} bytes are there", file_, events_, left, event_bytes);
+  return header;
+}
+
+std::optional<LogEvent> LogReader::next() {
+  if (position_ == size_) return std::nullopt;
+  const Header header = read_header();
+  LogEvent event;
+  event.timestamp = header.timestamp;
+  event.channel.resize(header.channel_bytes);
+  event.data.resize(header.data_bytes);
+  const bool read = std::fread(event.channel.data(), 1, header.channel_bytes, in_.get()) == header.channel_bytes &&
+                    std::fread(event.data.data(), 1, header.data_bytes, in_.get()) == header.data_bytes;
+  require(read, "{}: event {} cannot be read: {}", file_, events_, std::strerror(errno));
+  last_position_ = position_;
+  position_ += kHeaderBytes + std::uint64_t{header.channel_bytes} + header.data_bytes;
+  ++events_;
+  return event;
+}
+
+bool LogReader::is_event_at(std::uint64_t position) {
+  seek(position);
+  try {
+    std::string channel(read_header().channel_bytes, ' ');
+    const bool read = std::fread(channel.data(), 1, channel.size(), in_.get()) == channel.size();
+    return read && std::all_of(channel.begin(), channel.end(), [](char c) { return c > ' ' && c <= '~'; });
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+std::optional<std::uint64_t> LogReader::find_event(std::uint64_t from) {
+  constexpr std::array<char, 4> kSyncBytes = {'\xED', '\xA1', '\xDA', '\x01'};
+  constexpr std::size_t kChunk = std::size_t{1} << 20U;
+  std::vector<char> chunk(kChunk);
+  while (from + kHeaderBytes <= size_) {
+    seek(from);
+    const std::size_t read = std::fread(chunk.data(), 1, kChunk, in_.get());
+    if (read < kHeaderBytes) return std::nullopt;
+    const auto end = chunk.begin() + static_cast<std::ptrdiff_t>(read);
+    for (auto at = chunk.begin();; ++at) {
+      at = std::search(at, end, kSyncBytes.begin(), kSyncBytes.end());
+      if (at == end) break;
+      const std::uint64_t position = from + static_cast<std::uint64_t>(at - chunk.begin());
+      if (is_event_at(position)) return position;
+    }
+    from += read - (kSyncBytes.size() - 1);  // a sync word may lie across the border
+  }
+  return std::nullopt;
+}
+
+LogReader::Damage LogReader::skip_damage() {
+  const std::uint64_t damaged = position_;
+  // A wrong length in a header reaches into later events: those are looked for too.
+  const std::uint64_t from = events_ > 0 ? last_position_ + 1 : damaged + 1;
+  std::optional<std::uint64_t> found = find_event(from);
+  if (found && *found == damaged) found = find_event(damaged + 1);
+  const bool last_event_too = found && *found < damaged;
+  seek(found.value_or(size_));
+  return {position_ - (last_event_too ? last_position_ : damaged), last_event_too};
+}
+
+}  // namespace houghstream

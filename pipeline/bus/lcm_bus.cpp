@@ -1,0 +1,139 @@
+#include "pipeline/bus/lcm_bus.hpp"
+
+#include <lcm/lcm.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <list>
+#include <mutex>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "pipeline/bus/receive_buffer.hpp"
+
+namespace houghstream {
+namespace {
+
+const std::string kFileScheme = "file://";
+const std::string kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
+
+// The receiving thread hands messages on at once; this many may wait while it is kept from the processor. LCM's
+// own queue keeps the oldest when it is full.
+constexpr int kQueueCapacity = 100;
+
+std::string complete_url(const std::string& url) {
+  const char* environment = std::getenv("LCM_DEFAULT_URL");
+  const std::string chosen = !url.empty() ? url : environment != nullptr ? environment : kDefaultUrl;
+  // Asked for more than is granted, LCM would print a warning of its own that tells nothing.
+  return with_receive_buffer(chosen, std::max(granted_receive_buffer(kAskedReceiveBuffer), std::int64_t{1}));
+}
+
+struct Subscription {
+  std::string channel;
+  LcmBus::Handler handler;
+};
+
+// Nothing thrown may cross LCM's callback, which is C.
+void call_handler(const Subscription& subscription, const std::string& channel, ByteView bytes) noexcept {
+  try {
+    subscription.handler({channel, bytes, std::chrono::steady_clock::now()});
+  } catch (const std::exception& error) {
+    log_error("message on {} dropped: {}", channel, error.what());
+  }
+}
+
+void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* subscription) {
+  call_handler(*static_cast<const Subscription*>(subscription), channel,
+               {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+}
+
+struct LcmCloser {
+  void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
+};
+
+}  // namespace
+
+struct LcmBus::State {
+  std::string url;
+  std::list<Subscription> subscriptions;  // LCM keeps pointers to them
+  std::optional<LogReader> input_log;
+  std::mutex output_mutex;
+  std::optional<LogWriter> output_log;
+  std::unique_ptr<lcm_t, LcmCloser> lcm;
+};
+
+LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(std::make_unique<State>()) {
+  state_->url = complete_url(url);
+  if (state_->url.rfind(kFileScheme, 0) == 0) {
+    const std::string path = state_->url.substr(kFileScheme.size());
+    state_->input_log.emplace(path.substr(0, path.find('?')));
+    if (!output_log.empty()) state_->output_log.emplace(output_log);
+    return;
+  }
+  require(output_log.empty(), "an output log goes with a file:// URL, not with {}; record a bus with lcm-logger",
+          state_->url);
+  const BlockStopSignals block;  // LCM's threads, started here, leave signals to ours
+  state_->lcm.reset(lcm_create(state_->url.c_str()));
+  require(state_->lcm != nullptr, "LCM cannot be opened at {}; is there a multicast route?", state_->url);
+  if (state_->url.rfind("udpm://", 0) == 0) {
+    const std::string advice = receive_buffer_advice(granted_receive_buffer(kAskedReceiveBuffer));
+    if (!advice.empty()) log_warning("{}", advice);
+  }
+}
+
+LcmBus::~LcmBus() = default;
+
+void LcmBus::subscribe(const std::string& channel, Handler handler) {
+  state_->subscriptions.push_back({channel, std::move(handler)});
+  if (is_log()) return;
+  const BlockStopSignals block;
+  lcm_subscription_t* subscription =
+      lcm_subscribe(state_->lcm.get(), channel.c_str(), on_message, &state_->subscriptions.back());
+  require(subscription != nullptr, "{}: cannot subscribe to {}; is there a multicast route?", state_->url, channel);
+  lcm_subscription_set_queue_capacity(subscription, kQueueCapacity);
+}
+
+bool LcmBus::handle(std::chrono::milliseconds timeout) {
+  if (is_log()) {
+    const std::optional<LogEvent> event = state_->input_log->next();
+    if (!event) return false;
+    for (const Subscription& subscription : state_->subscriptions) {
+      if (subscription.channel == event->channel) {
+        call_handler(subscription, event->channel, {event->data.data(), event->data.size()});
+      }
+    }
+    return true;
+  }
+  const int handled = lcm_handle_timeout(state_->lcm.get(), static_cast<int>(timeout.count()));
+  require(handled >= 0 || errno == EINTR, "{}: receiving failed: {}", state_->url, std::strerror(errno));
+  return true;
+}
+
+void LcmBus::publish(const std::string& channel, ByteView bytes, std::int64_t utime) {
+  if (is_log()) {
+    const std::lock_guard<std::mutex> lock(state_->output_mutex);
+    require(state_->output_log.has_value(), "{} is a log and cannot take results; give --output-log", state_->url);
+    state_->output_log->write(utime, channel, bytes);
+    return;
+  }
+  const int failed = lcm_publish(state_->lcm.get(), channel.c_str(), bytes.data, static_cast<unsigned int>(bytes.size));
+  require(failed == 0, "{}: {} bytes could not be published on {}", state_->url, bytes.size, channel);
+}
+
+void LcmBus::close() {
+  if (state_->output_log) state_->output_log->close();
+}
+
+bool LcmBus::is_log() const {
+  return state_->input_log.has_value();
+}
+
+const std::string& LcmBus::url() const {
+  return state_->url;
+}
+
+}  // namespace houghstream

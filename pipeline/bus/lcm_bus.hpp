@@ -1,0 +1,61 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "pipeline/messages/wire_check.hpp"
+#include "pipeline/messages/wire_reader.hpp"
+
+namespace houghstream {
+
+/// A message as it arrived; the bytes are valid during the handler's call only.
+struct Arrival {
+  const std::string& channel;
+  ByteView bytes;
+  std::chrono::steady_clock::time_point time;
+};
+
+/// Where messages come from and go to: an LCM network, or, for a file:// URL, a log that is read event by event and
+/// never skipped, with results going to another log.
+class LcmBus {
+ public:
+  using Handler = std::function<void(const Arrival&)>;
+
+  /// `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with ttl=0. A udpm URL that does not state it gets a
+  /// recv_buf_size. Logs what is missing where the kernel grants less than needed. `output_log` is for file:// only,
+  /// and may be empty: then nothing can be published. Throws InputError.
+  explicit LcmBus(const std::string& url, const std::string& output_log = "");
+  ~LcmBus();
+
+  /// Calls `handler` for every message of the channel, from within handle(). What the handler throws is logged.
+  /// Throws InputError where the network cannot be used.
+  void subscribe(const std::string& channel, Handler handler);
+
+  /// Network: waits for one message and handles it, or for `timeout`. Log: handles the next event. False at the end
+  /// of a log. Throws InputError where the log is damaged.
+  bool handle(std::chrono::milliseconds timeout);
+
+  /// May be called from any thread. `utime` is the time of the event where the message goes to a log.
+  void publish(const std::string& channel, ByteView bytes, std::int64_t utime);
+
+  template <typename Message>
+  void publish(const std::string& channel, const Message& message) {
+    const std::vector<std::uint8_t> bytes = encode_message(message);
+    publish(channel, {bytes.data(), bytes.size()}, message.utime);
+  }
+
+  /// Ends the output log, if there is one. Throws InputError where it could not be written to the end.
+  void close();
+
+  bool is_log() const;
+  const std::string& url() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,110 @@
+#include "pipeline/bus/status_reporter.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "pipeline/base/host_clock.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/percentiles.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::chrono::seconds kPeriod(1);
+constexpr std::chrono::seconds kLatencyWindow(5);  // at 30 Hz enough frames for a 99th percentile
+
+}  // namespace
+
+StatusReporter::StatusReporter(std::string process) : process_(std::move(process)) {}
+
+void StatusReporter::count_received() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++received_;
+}
+
+void StatusReporter::note_sequence(std::optional<std::int64_t> sequence) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!sequence) return;
+  if (last_sequence_ && *sequence > *last_sequence_) lost_ += *sequence - *last_sequence_ - 1;
+  last_sequence_ = sequence;
+}
+
+void StatusReporter::count_skipped(std::int64_t frames) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  skipped_ += frames;
+}
+
+void StatusReporter::count_processed(Clock::duration latency) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++processed_;
+  const Clock::time_point now = Clock::now();
+  recent_.push_back({now, std::chrono::duration<double, std::milli>(latency).count()});
+  while (recent_.front().time < now - kLatencyWindow) recent_.pop_front();
+}
+
+void StatusReporter::count_refused(const std::string& reason) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++refused_;
+  }
+  note_error(reason);
+}
+
+void StatusReporter::note_error(const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  last_error_ = reason;
+  const Clock::time_point now = Clock::now();
+  if (last_complaint_ && now - *last_complaint_ < kPeriod) return;
+  last_complaint_ = now;
+  log_warning("{} ({} refused so far)", reason, refused_);
+}
+
+void StatusReporter::remember_error(const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  last_error_ = reason;
+}
+
+status_t StatusReporter::message() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  const auto last_second =
+      std::count_if(recent_.begin(), recent_.end(), [&](const Finished& f) { return f.time > now - kPeriod; });
+  std::vector<double> latencies;
+  for (const Finished& finished : recent_) latencies.push_back(finished.latency_ms);
+  const Percentiles latency = percentiles(std::move(latencies));
+  status_t status{};
+  status.utime = utime_now();
+  status.process = process_;
+  status.pid = static_cast<std::int32_t>(getpid());
+  status.rate_hz = static_cast<float>(last_second);
+  status.frames_received = received_;
+  status.frames_processed = processed_;
+  status.frames_skipped = skipped_;
+  status.frames_lost = last_sequence_ ? lost_ : -1;
+  status.frames_refused = refused_;
+  status.latency_p50_ms = static_cast<float>(latency.p50);
+  status.latency_p95_ms = static_cast<float>(latency.p95);
+  status.latency_p99_ms = static_cast<float>(latency.p99);
+  status.last_error = last_error_;
+  return status;
+}
+
+void StatusReporter::publish_if_due(LcmBus& bus) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (Clock::now() - last_published_ < kPeriod) return;
+    last_published_ = Clock::now();
+  }
+  bus.publish(channel::kStatus, message());
+}
+
+std::string StatusReporter::summary() const {
+  const status_t status = message();
+  const std::string lost = status.frames_lost < 0 ? "unknown" : std::to_string(status.frames_lost);
+  return fmt::format("{} received, {} processed, {} skipped, {} lost, {} refused", status.frames_received,
+                     status.frames_processed, status.frames_skipped, lost, status.frames_refused);
+}
+
+}  // namespace houghstream

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <houghstream/status_t.hpp>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "pipeline/bus/lcm_bus.hpp"
+
+namespace houghstream {
+
+/// Keeps a process's account of its frames: received = processed + skipped + refused, and one or two in between.
+/// Every function may be called from any thread.
+class StatusReporter {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// `process` is the executable's name.
+  explicit StatusReporter(std::string process);
+
+  void count_received();
+  /// The source's number of a frame that has arrived. A jump counts as lost frames; a step back is a new run.
+  void note_sequence(std::optional<std::int64_t> sequence);
+  void count_skipped(std::int64_t frames);
+  /// `latency` is from the frame's arrival in this process until its result was published.
+  void count_processed(Clock::duration latency);
+  /// A frame that could not be worked on.
+  void count_refused(const std::string& reason);
+  /// Remembers the last error, and logs it, but no more than one a second.
+  void note_error(const std::string& reason);
+  /// Remembers the last error, which somebody else has logged.
+  void remember_error(const std::string& reason);
+
+  status_t message() const;
+
+  /// Publishes the status when a second has passed since the last time.
+  void publish_if_due(LcmBus& bus);
+
+  /// The account in one line.
+  std::string summary() const;
+
+ private:
+  struct Finished {
+    Clock::time_point time;
+    double latency_ms = 0.0;
+  };
+
+  mutable std::mutex mutex_;
+  std::string process_;
+  std::int64_t received_ = 0;
+  std::int64_t processed_ = 0;
+  std::int64_t skipped_ = 0;
+  std::int64_t lost_ = 0;
+  std::int64_t refused_ = 0;
+  std::optional<std::int64_t> last_sequence_;
+  std::string last_error_;
+  std::deque<Finished> recent_;  // of the last few seconds
+  Clock::time_point last_published_ = Clock::now();
+  std::optional<Clock::time_point> last_complaint_;
+};
+
+}  // namespace houghstream

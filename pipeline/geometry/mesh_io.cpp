@@ -1,0 +1,147 @@
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/mesh_paint.hpp"
+
+namespace houghstream {
+namespace {
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::min(std::max(value, 0.0F), 1.0F) * 255.0F));
+}
+
+void append_vertices(const aiMesh& part, double unit_m, const std::string& file, Mesh& mesh) {
+  for (unsigned i = 0; i < part.mNumVertices; ++i) {
+    const aiVector3D& p = part.mVertices[i];
+    const Eigen::Vector3f vertex = (Eigen::Vector3d(p.x, p.y, p.z) * unit_m).cast<float>();
+    require(vertex.allFinite(), "{}: vertex {} is ({}, {}, {}), expected finite coordinates", file, i, p.x, p.y, p.z);
+    mesh.vertices.push_back(vertex);
+    mesh.normals.emplace_back(part.mNormals[i].x, part.mNormals[i].y, part.mNormals[i].z);
+    if (part.HasVertexColors(0)) {
+      const aiColor4D& c = part.mColors[0][i];
+      mesh.colours.emplace_back(to_byte(c.b), to_byte(c.g), to_byte(c.r));
+    }
+    const aiVector3D uv = part.HasTextureCoords(0) ? part.mTextureCoords[0][i] : aiVector3D();
+    mesh.uvs.emplace_back(uv.x, 1.0F - uv.y);  // files count v upwards
+  }
+}
+
+void append_triangles(const aiMesh& part, std::uint32_t first_vertex, const std::string& file, Mesh& mesh) {
+  for (unsigned i = 0; i < part.mNumFaces; ++i) {
+    const aiFace& face = part.mFaces[i];
+    require(face.mNumIndices == 3, "{}: face {} with {} corners, expected 3", file, i, face.mNumIndices);
+    std::array<std::uint32_t, 3> triangle{};
+    for (unsigned k = 0; k < 3; ++k) {
+      require(face.mIndices[k] < part.mNumVertices, "{}: face {} names vertex {} of {}", file, i, face.mIndices[k],
+              part.mNumVertices);
+      triangle[k] = first_vertex + face.mIndices[k];
+    }
+    mesh.triangles.push_back(triangle);
+  }
+}
+
+/// What the material of a part says about its looks.
+MeshPart describe_part(const aiMesh& part, const aiMaterial& material, std::size_t first_vertex,
+                       const std::filesystem::path& file) {
+  MeshPart out;
+  out.first_vertex = first_vertex;
+  out.vertices = part.mNumVertices;
+  out.has_uvs = part.HasTextureCoords(0);
+  aiString texture;
+  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) {
+    std::string name = texture.C_Str();
+    std::replace(name.begin(), name.end(), '\\', '/');  // of files that were made on Windows
+    out.texture = file.parent_path() / name;
+  }
+  aiColor3D c;
+  // Where the file names no material, the library makes up a grey one of this name.
+  out.has_colour = std::string(material.GetName().C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
+                   material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == aiReturn_SUCCESS;
+  if (out.has_colour) out.colour = cv::Vec3b(to_byte(c.b), to_byte(c.g), to_byte(c.r));
+  return out;
+}
+
+/// Which optional columns a PLY gets.
+struct PlyParts {
+  bool normals, colours, texture;
+};
+
+PlyParts parts_of(const Mesh& mesh) {
+  return {mesh.normals.size() == mesh.vertices.size(), mesh.colours.size() == mesh.vertices.size(),
+          !mesh.texture.empty() && mesh.uvs.size() == mesh.vertices.size()};
+}
+
+std::string ply_header(const Mesh& mesh, const PlyParts& parts, const std::string& texture_name) {
+  std::string text = "ply\nformat ascii 1.0\n";
+  if (parts.texture) text += "comment TextureFile " + texture_name + "\n";
+  text += fmt::format("element vertex {}\n", mesh.vertices.size());
+  text += "property float x\nproperty float y\nproperty float z\n";
+  if (parts.normals) text += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (parts.texture) text += "property float texture_u\nproperty float texture_v\n";
+  if (parts.colours) text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  text += fmt::format("element face {}\n", mesh.triangles.size());
+  return text + "property list uchar int vertex_indices\nend_header\n";
+}
+
+void append_ply_vertices(const Mesh& mesh, const PlyParts& parts, std::string& text) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Eigen::Vector3f vertex_mm = mesh.vertices[i] * 1e3F;
+    text += fmt::format("{} {} {}", vertex_mm.x(), vertex_mm.y(), vertex_mm.z());
+    if (parts.normals) text += fmt::format(" {} {} {}", mesh.normals[i].x(), mesh.normals[i].y(), mesh.normals[i].z());
+    if (parts.texture) text += fmt::format(" {} {}", mesh.uvs[i].x(), 1.0F - mesh.uvs[i].y());
+    if (parts.colours) text += fmt::format(" {} {} {}", mesh.colours[i][2], mesh.colours[i][1], mesh.colours[i][0]);
+    text += '\n';
+  }
+}
+
+}  // namespace
+
+Mesh load_mesh(const std::filesystem::path& file, double unit_m) {
+  require(std::filesystem::is_regular_file(file), "{}: no such file, expected a PLY or OBJ mesh", file.string());
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene =
+      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
+                                           aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices);
+  require(scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U,
+          "{}: {}, expected a PLY or OBJ mesh with triangles", file.string(), importer.GetErrorString());
+  Mesh mesh;
+  std::vector<MeshPart> parts;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+    const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());
+    const aiMesh& part = *scene->mMeshes[i];
+    parts.push_back(describe_part(part, *scene->mMaterials[part.mMaterialIndex], first_vertex, file));
+    append_vertices(part, unit_m, file.string(), mesh);
+    append_triangles(part, first_vertex, file.string(), mesh);
+  }
+  require(!mesh.triangles.empty(), "{}: no triangles, expected a surface", file.string());
+  paint(parts, file, mesh);
+  return mesh;
+}
+
+void save_ply(const Mesh& mesh, const std::filesystem::path& file) {
+  const PlyParts parts = parts_of(mesh);
+  const std::filesystem::path texture_file = std::filesystem::path(file).replace_extension(".png");
+  std::string text = ply_header(mesh, parts, texture_file.filename().string());
+  append_ply_vertices(mesh, parts, text);
+  for (const auto& t : mesh.triangles) text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  require(out.good(), "{}: cannot be written", file.string());
+  if (parts.texture) {
+    require(cv::imwrite(texture_file.string(), mesh.texture), "{}: cannot be written", texture_file.string());
+  }
+}
+
+}  // namespace houghstream

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/types/camera.hpp"
+
+namespace houghstream {
+
+/// One mesh placed in front of the camera. `id` is what the id image shows where it is seen (1..65535).
+struct RenderItem {
+  const Mesh* mesh = nullptr;
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+  int id = 1;
+};
+
+/// Per pixel: what is nearest. Shading is left to the caller.
+struct RenderedGeometry {
+  cv::Mat depth;     ///< CV_32FC1, metres along the optical axis, NaN = nothing
+  cv::Mat id;        ///< CV_16UC1, RenderItem::id, 0 = nothing
+  cv::Mat triangle;  ///< CV_32SC1, index of the triangle in its mesh, -1 = nothing
+  cv::Mat bary;      ///< CV_32FC2, perspective-correct weights of the triangle's 2nd and 3rd vertex
+};
+
+/// Z-buffer rasterisation, pixel centres at integer coordinates, near plane at 0.05 m (triangles that
+/// cross it are clipped). Same input, same output, bit for bit.
+RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Camera& camera);
+
+/// Depth only, inside `region_px` of the image (pose verification's fast path). Returns an image of the
+/// region's size, NaN = nothing.
+cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
+                     const cv::Rect& region_px);
+
+}  // namespace houghstream

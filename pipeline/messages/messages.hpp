@@ -1,0 +1,63 @@
+#pragma once
+
+#include <houghstream/detections_t.hpp>
+#include <houghstream/images_t.hpp>
+#include <houghstream/object_poses_t.hpp>
+#include <houghstream/rigid_transform_t.hpp>
+#include <optional>
+#include <string>
+
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/object_pose.hpp"
+
+// Plain structs to LCM messages and back. Everything that comes off the wire is checked here, once:
+// functions that read throw InputError and never return a made-up value.
+
+namespace houghstream {
+
+/// How images travel.
+struct WireFormat {
+  bool jpeg = true;       ///< colour as JPEG, else raw RGB
+  int jpeg_quality = 94;  ///< 1 to 100
+  bool zip_depth = true;  ///< depth as DEPTH_MM_ZIPPED, else DEPTH_MM
+  int zip_level = 1;      ///< zlib 1 to 9
+};
+
+/// `sequence` counts the source's frames from 0, so that receivers can tell lost ones.
+houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence);
+
+/// For frames that came without: the camera, and the source's frame counter from 0. Throws InputError where the message
+/// has no image to carry them or the camera is absurd.
+void add_camera(houghstream::images_t& message, const Camera& camera);
+void add_sequence(houghstream::images_t& message, std::int64_t sequence);
+
+/// Finds colour (LEFT: RGB, BGR, RGBA, BGRA, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them
+/// and checks sizes. The camera comes from the metadata, else from `fallback_camera`, else the frame is refused.
+RgbdFrame frame_from_message(const houghstream::images_t& message, const std::optional<Camera>& fallback_camera);
+
+/// Colour and depth of a frame as they travel; equal sizes.
+struct ImagePair {
+  cv::Mat colour;    ///< CV_8UC3, BGR
+  cv::Mat depth_mm;  ///< CV_16UC1, 0 = none
+};
+
+/// What frame_from_message() finds, of frames without a camera too.
+ImagePair images_from_message(const houghstream::images_t& message);
+
+/// The camera that the message carries, unchecked, if any. Throws InputError where its bytes are none.
+std::optional<Camera> camera_of(const houghstream::images_t& message);
+
+/// The source's frame counter, if the message carries one.
+std::optional<std::int64_t> sequence_of(const houghstream::images_t& message);
+
+/// Keeps the first detection_t::MAX_VOTES rotations of each detection.
+houghstream::detections_t to_message(const Detections& detections);
+Detections detections_from_message(const houghstream::detections_t& message);
+
+houghstream::object_poses_t to_message(const ObjectPoses& poses);
+ObjectPoses poses_from_message(const houghstream::object_poses_t& message);
+
+houghstream::rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object);
+
+}  // namespace houghstream

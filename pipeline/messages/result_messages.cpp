@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <houghstream/stage_time_t.hpp>
+#include <limits>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/messages.hpp"
+
+namespace houghstream {
+namespace {
+
+// A unit quaternion in single precision is this close to length 1.
+constexpr double kUnitTolerance = 1e-3;
+
+bool is_share(float value) {
+  return value >= 0.0F && value <= 1.0F;
+}
+
+template <typename Message>
+void set_stages(Message& message, const std::vector<StageTime>& stages) {
+  for (const StageTime& stage : stages) {
+    stage_time_t entry;
+    entry.stage = stage.stage;
+    entry.duration_us = stage.duration_us;
+    message.stages.push_back(std::move(entry));
+  }
+  message.n_stages = static_cast<std::int32_t>(message.stages.size());
+}
+
+std::vector<StageTime> stages_from(const std::vector<stage_time_t>& stages) {
+  std::vector<StageTime> out;
+  out.reserve(stages.size());
+  for (const stage_time_t& stage : stages) out.push_back({stage.stage, stage.duration_us});
+  return out;
+}
+
+detection_t detection_to_message(const Detection& detection) {
+  detection_t message{};
+  message.class_id = detection.class_id;
+  message.class_name = detection.class_name;
+  message.score = detection.score;
+  message.box_x = detection.box_px.x;
+  message.box_y = detection.box_px.y;
+  message.box_width = detection.box_px.width;
+  message.box_height = detection.box_px.height;
+  std::copy_n(detection.centre_camera.data(), 3, message.centre_camera);
+  message.vote_weight = detection.vote_weight;
+  message.n_votes_total = detection.vote_count;
+  const std::size_t votes = std::min<std::size_t>(detection.rotations.size(), detection_t::MAX_VOTES);
+  for (std::size_t i = 0; i < votes; ++i) {
+    const Eigen::Quaternionf& q = detection.rotations[i].R_camera_object;
+    message.vote_quat.push_back({q.w(), q.x(), q.y(), q.z()});
+    message.vote_quat_weight.push_back(detection.rotations[i].weight);
+  }
+  message.n_votes = static_cast<std::int32_t>(votes);
+  return message;
+}
+
+RotationVote vote_from(const std::vector<float>& wxyz, float weight) {
+  require(wxyz.size() == 4, "a vote's rotation of {} numbers, expected 4", wxyz.size());
+  const Eigen::Quaternionf q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  require(std::abs(q.norm() - 1.0F) < kUnitTolerance, "a vote's quaternion of length {}, expected 1", q.norm());
+  require(std::isfinite(weight) && weight >= 0.0F, "a vote of weight {}, expected 0 or more", weight);
+  return {q, weight};
+}
+
+Detection detection_from_message(const detection_t& message) {
+  require(message.class_id != detection_t::INVALID_CLASS && !message.class_name.empty(),
+          "detection of class {} '{}', expected a class with a name", message.class_id, message.class_name);
+  const cv::Rect2f box(message.box_x, message.box_y, message.box_width, message.box_height);
+  const bool box_ok = std::isfinite(box.x) && std::isfinite(box.y) && std::isfinite(box.width) &&
+                      std::isfinite(box.height) && box.width > 0.0F && box.height > 0.0F;
+  require(box_ok, "{}: box at ({}, {}) of {}x{} pixels, expected finite with positive size", message.class_name, box.x,
+          box.y, box.width, box.height);
+  const Eigen::Vector3f centre(message.centre_camera);
+  require(centre.allFinite() || centre.array().isNaN().all(), "{}: centre ({}, {}, {}), expected metres or NaN",
+          message.class_name, centre.x(), centre.y(), centre.z());
+  require(std::isfinite(message.score) && std::isfinite(message.vote_weight), "{}: score {} and vote weight {}",
+          message.class_name, message.score, message.vote_weight);
+  Detection out;
+  out.class_id = message.class_id;
+  out.class_name = message.class_name;
+  out.score = message.score;
+  out.box_px = box;
+  out.centre_camera = centre;
+  out.vote_weight = message.vote_weight;
+  out.vote_count = message.n_votes_total;
+  for (std::size_t i = 0; i < message.vote_quat.size(); ++i) {
+    out.rotations.push_back(vote_from(message.vote_quat[i], message.vote_quat_weight.at(i)));
+  }
+  return out;
+}
+
+object_pose_t pose_to_message(const ObjectPose& pose) {
+  object_pose_t message{};
+  message.class_id = pose.class_id;
+  message.class_name = pose.class_name;
+  message.detection_score = pose.detection_score;
+  message.detection_index = pose.detection_index;
+  message.status = static_cast<std::int8_t>(pose.status);
+  std::fill_n(message.trans, 3, std::numeric_limits<double>::quiet_NaN());
+  std::fill_n(message.quat, 4, std::numeric_limits<double>::quiet_NaN());
+  if (pose.T_camera_object) {
+    const rigid_transform_t transform = to_message(0, *pose.T_camera_object);
+    std::copy_n(transform.trans, 3, message.trans);
+    std::copy_n(transform.quat, 4, message.quat);
+  }
+  message.converged = pose.converged ? 1 : 0;
+  message.iterations = pose.iterations;
+  message.n_inliers = pose.inliers;
+  message.inlier_fraction = pose.inlier_fraction;
+  message.residual_m = pose.residual;
+  message.visible_fraction = pose.visible_fraction;
+  message.free_space_violation = pose.free_space_violation;
+  message.quality = pose.quality;
+  return message;
+}
+
+Eigen::Isometry3d transform_from(const object_pose_t& message) {
+  const Eigen::Vector3d translation(message.trans);
+  const Eigen::Quaterniond q(message.quat[0], message.quat[1], message.quat[2], message.quat[3]);
+  require(translation.allFinite(), "{}: valid pose at ({}, {}, {}), expected finite metres", message.class_name,
+          translation.x(), translation.y(), translation.z());
+  require(std::abs(q.norm() - 1.0) < kUnitTolerance, "{}: valid pose with a quaternion of length {}, expected 1",
+          message.class_name, q.norm());
+  return Eigen::Translation3d(translation) * q.normalized();
+}
+
+ObjectPose pose_from_message(const object_pose_t& message) {
+  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::REJECTED_BY_COLOUR,
+          "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
+          object_pose_t::REJECTED_BY_COLOUR);
+  const bool are_shares = is_share(message.inlier_fraction) && is_share(message.visible_fraction) &&
+                          is_share(message.free_space_violation) && is_share(message.quality);
+  require(are_shares, "{}: shares {}, {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,
+          message.visible_fraction, message.free_space_violation, message.quality);
+  ObjectPose out;
+  out.class_id = message.class_id;
+  out.class_name = message.class_name;
+  out.detection_score = message.detection_score;
+  out.detection_index = message.detection_index;
+  out.status = static_cast<PoseStatus>(message.status);
+  if (out.status == PoseStatus::kValid) out.T_camera_object = transform_from(message);
+  out.converged = message.converged != 0;
+  out.iterations = message.iterations;
+  out.inliers = message.n_inliers;
+  out.inlier_fraction = message.inlier_fraction;
+  out.residual = message.residual_m;
+  out.visible_fraction = message.visible_fraction;
+  out.free_space_violation = message.free_space_violation;
+  out.quality = message.quality;
+  return out;
+}
+
+}  // namespace
+
+detections_t to_message(const Detections& detections) {
+  detections_t message{};
+  message.utime = detections.utime;
+  message.source_channel = detections.source_channel;
+  for (const Detection& detection : detections.detections) {
+    message.detections.push_back(detection_to_message(detection));
+  }
+  message.n_detections = static_cast<std::int32_t>(message.detections.size());
+  set_stages(message, detections.stages);
+  return message;
+}
+
+Detections detections_from_message(const detections_t& message) {
+  try {
+    Detections out;
+    out.utime = message.utime;
+    out.source_channel = message.source_channel;
+    for (const detection_t& detection : message.detections) out.detections.push_back(detection_from_message(detection));
+    out.stages = stages_from(message.stages);
+    return out;
+  } catch (const InputError& error) {
+    fail("detections of frame {}: {}", message.utime, error.what());
+  }
+}
+
+object_poses_t to_message(const ObjectPoses& poses) {
+  object_poses_t message{};
+  message.utime = poses.utime;
+  message.source_channel = poses.source_channel;
+  for (const ObjectPose& pose : poses.poses) message.poses.push_back(pose_to_message(pose));
+  message.n_poses = static_cast<std::int32_t>(message.poses.size());
+  set_stages(message, poses.stages);
+  return message;
+}
+
+ObjectPoses poses_from_message(const object_poses_t& message) {
+  try {
+    ObjectPoses out;
+    out.utime = message.utime;
+    out.source_channel = message.source_channel;
+    for (const object_pose_t& pose : message.poses) out.poses.push_back(pose_from_message(pose));
+    out.stages = stages_from(message.stages);
+    return out;
+  } catch (const InputError& error) {
+    fail("poses of frame {}: {}", message.utime, error.what());
+  }
+}
+
+rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object) {
+  rigid_transform_t message{};
+  message.utime = utime;
+  const Eigen::Quaterniond q(T_camera_object.linear());
+  std::copy_n(T_camera_object.translation().data(), 3, message.trans);
+  const double wxyz[4] = {q.w(), q.x(), q.y(), q.z()};
+  std::copy_n(wxyz, 4, message.quat);
+  return message;
+}
+
+}  // namespace houghstream

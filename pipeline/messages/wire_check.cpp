@@ -1,0 +1,139 @@
+#include "pipeline/messages/wire_check.hpp"
+
+#include <charconv>
+#include <houghstream/detections_t.hpp>
+#include <houghstream/images_t.hpp>
+#include <houghstream/object_poses_t.hpp>
+#include <houghstream/rigid_transform_t.hpp>
+#include <houghstream/status_t.hpp>
+
+#include "pipeline/bus/channels.hpp"
+
+namespace houghstream {
+namespace {
+
+// LCM refuses larger messages itself (1 << 28).
+constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 28U;
+
+// Fewest bytes that an entry of a list can take on the wire: its numbers, and 5 bytes for an empty string.
+constexpr std::size_t kLeastMetadata = 5 + 4;
+constexpr std::size_t kLeastImage = 8 + 5 * 4 + 4;
+constexpr std::size_t kLeastStage = 5 + 8;
+constexpr std::size_t kVote = 4 * 4 + 4;
+constexpr std::size_t kDetectionNumbers = 5 * 4 + 3 * 4 + 4 + 4;  // score to n_votes_total
+constexpr std::size_t kPoseNumbers = 4 + 4 + 1 + 3 * 8 + 4 * 8 + 1 + 4 + 4 + 5 * 4;
+constexpr std::size_t kStatusNumbers = 4 + 4 + 5 * 8 + 3 * 4;
+
+void walk_image(WireReader& reader, std::optional<std::int64_t>& sequence) {
+  reader.skip(8 + 4 * 4);  // utime, width, height, row_stride, pixelformat
+  reader.skip(reader.read_count(1));
+  for (std::size_t left = reader.read_count(kLeastMetadata); left > 0; --left) {
+    const std::string key = reader.read_string();
+    const ByteView value = reader.read_bytes(reader.read_count(1));
+    if (key == metadata::kSequence) sequence = parse_sequence(value);
+  }
+}
+
+FrameHeader walk_images(WireReader& reader) {
+  FrameHeader header;
+  header.utime = reader.read_int64();
+  const std::size_t images = reader.read_count(2 + kLeastImage);
+  reader.skip(2 * images);
+  for (std::size_t i = 0; i < images; ++i) walk_image(reader, header.sequence);
+  return header;
+}
+
+void walk_stages(WireReader& reader) {
+  for (std::size_t left = reader.read_count(kLeastStage); left > 0; --left) {
+    reader.read_string();
+    reader.skip(8);
+  }
+}
+
+void walk_detections(WireReader& reader) {
+  reader.skip(8);
+  reader.read_string();
+  for (std::size_t left = reader.read_count(4 + 5 + kDetectionNumbers + 4); left > 0; --left) {
+    reader.skip(4);
+    reader.read_string();
+    reader.skip(kDetectionNumbers);
+    reader.skip(kVote * reader.read_count(kVote));
+  }
+  walk_stages(reader);
+}
+
+void walk_poses(WireReader& reader) {
+  reader.skip(8);
+  reader.read_string();
+  for (std::size_t left = reader.read_count(4 + 5 + kPoseNumbers); left > 0; --left) {
+    reader.skip(4);
+    reader.read_string();
+    reader.skip(kPoseNumbers);
+  }
+  walk_stages(reader);
+}
+
+void walk_status(WireReader& reader) {
+  reader.skip(8);
+  reader.read_string();
+  reader.skip(kStatusNumbers);
+  reader.read_string();
+}
+
+WireReader open_message(ByteView bytes, std::int64_t fingerprint, const std::string& type) {
+  require(bytes.size <= kMaxMessageBytes, "{}: {} bytes, expected at most {}", type, bytes.size, kMaxMessageBytes);
+  WireReader reader(bytes, type);
+  const std::int64_t found = reader.read_int64();
+  require(found == fingerprint, "message of fingerprint {:016x}, expected {} ({:016x})",
+          static_cast<std::uint64_t>(found), type, static_cast<std::uint64_t>(fingerprint));
+  return reader;
+}
+
+void require_end(const WireReader& reader) {
+  require(reader.left() == 0, "{}: {} bytes after its end", reader.source(), reader.left());
+}
+
+}  // namespace
+
+FrameHeader read_frame_header(ByteView bytes) {
+  WireReader reader = open_message(bytes, images_t::getHash(), images_t::getTypeName());
+  const FrameHeader header = walk_images(reader);
+  require_end(reader);
+  return header;
+}
+
+std::int64_t read_utime(ByteView bytes, const std::string& source) {
+  WireReader reader(bytes, source);
+  reader.skip(8);
+  return reader.read_int64();
+}
+
+std::int64_t parse_sequence(ByteView text) {
+  const std::string shown(reinterpret_cast<const char*>(text.data), std::min<std::size_t>(text.size, 24));
+  std::int64_t sequence = -1;
+  const char* end = shown.data() + shown.size();
+  const auto [stop, error] = std::from_chars(shown.data(), end, sequence);
+  require(error == std::errc() && stop == end && sequence >= 0 && text.size == shown.size(),
+          "images_t: frame counter '{}', expected a decimal number from 0", shown);
+  return sequence;
+}
+
+void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type) {
+  WireReader reader = open_message(bytes, fingerprint, type);
+  if (fingerprint == images_t::getHash()) {
+    walk_images(reader);
+  } else if (fingerprint == detections_t::getHash()) {
+    walk_detections(reader);
+  } else if (fingerprint == object_poses_t::getHash()) {
+    walk_poses(reader);
+  } else if (fingerprint == status_t::getHash()) {
+    walk_status(reader);
+  } else if (fingerprint == rigid_transform_t::getHash()) {
+    reader.skip(8 + 3 * 8 + 4 * 8);
+  } else {
+    throw std::logic_error("check_wire does not know " + type);
+  }
+  require_end(reader);
+}
+
+}  // namespace houghstream

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/wire_reader.hpp"
+
+// What lcm-gen's decoders do not check: they believe every count, and a damaged one makes them ask for gigabytes.
+
+namespace houghstream {
+
+/// What names a frame, read without decoding its images.
+struct FrameHeader {
+  std::int64_t utime = 0;
+  std::optional<std::int64_t> sequence;  ///< the source's frame counter, if the message carries one
+};
+
+/// Walks through a whole encoded images_t. Throws InputError where its counts and sizes do not add up.
+FrameHeader read_frame_header(ByteView bytes);
+
+/// utime of any encoded message of this project that names a frame by it: it stands right after the fingerprint.
+std::int64_t read_utime(ByteView bytes, const std::string& source);
+
+/// A frame counter as it stands in the metadata, decimal text. Throws InputError.
+std::int64_t parse_sequence(ByteView text);
+
+/// Throws InputError unless the bytes are one whole message of the type with this fingerprint. Types known here:
+/// images_t, detections_t, object_poses_t, status_t, rigid_transform_t.
+void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type);
+
+/// Decodes one whole message. Throws InputError.
+template <typename Message>
+Message decode_message(ByteView bytes) {
+  check_wire(bytes, Message::getHash(), Message::getTypeName());
+  Message message{};
+  const int used = message.decode(bytes.data, 0, static_cast<int>(bytes.size));
+  require(used == static_cast<int>(bytes.size), "{}: {} of {} bytes decoded", Message::getTypeName(), used, bytes.size);
+  return message;
+}
+
+template <typename Message>
+std::vector<std::uint8_t> encode_message(const Message& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  const int used = message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  require(used == static_cast<int>(bytes.size()), "{}: {} of {} bytes encoded", Message::getTypeName(), used,
+          bytes.size());
+  return bytes;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,91 @@
+#include "pipeline/process/process_loop.hpp"
+
+#include <atomic>
+#include <exception>
+#include <thread>
+
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channels.hpp"
+
+namespace houghstream {
+namespace {
+
+using std::chrono::milliseconds;
+
+// How long a stop signal may go unnoticed.
+constexpr milliseconds kPatience(100);
+
+void play_log(LcmBus& bus, const WorkStep& work) {
+  while (!stop_requested() && bus.handle(kPatience)) {
+    while (work(milliseconds(0))) {
+    }
+  }
+}
+
+/// Receives and reports in a thread of its own while it lives.
+class Receiver {
+ public:
+  Receiver(LcmBus& bus, StatusReporter& status) : bus_(bus), status_(status) {
+    const BlockStopSignals block;
+    thread_ = std::thread([this] { receive(); });
+  }
+  ~Receiver() { join(); }
+  Receiver(const Receiver&) = delete;
+  Receiver& operator=(const Receiver&) = delete;
+
+  bool running() const { return running_; }
+
+  /// Ends the thread and rethrows what stopped it.
+  void finish() {
+    join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void join() {
+    running_ = false;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  void receive() noexcept {
+    try {
+      while (running_) {
+        bus_.handle(kPatience);
+        status_.publish_if_due(bus_);
+      }
+    } catch (...) {
+      failure_ = std::current_exception();
+      running_ = false;
+    }
+  }
+
+  LcmBus& bus_;
+  StatusReporter& status_;
+  std::atomic<bool> running_{true};
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work) {
+  if (bus.is_log()) {
+    play_log(bus, work);
+  } else {
+    Receiver receiver(bus, status);
+    while (!stop_requested() && receiver.running()) work(kPatience);
+    receiver.finish();
+  }
+}
+
+void end_process(LcmBus& bus, const StatusReporter& status) {
+  if (bus.is_log()) {
+    bus.close();
+  } else {
+    bus.publish(channel::kStatus, status.message());
+  }
+  log_info("ends: {}", status.summary());
+}
+
+}  // namespace houghstream

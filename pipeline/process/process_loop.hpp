@@ -1,0 +1,23 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/bus/status_reporter.hpp"
+
+namespace houghstream {
+
+/// Works on the next item that has come in, waiting for one up to the given time; false where there was none.
+using WorkStep = std::function<bool(std::chrono::milliseconds)>;
+
+/// Runs a process until SIGINT or SIGTERM, or to the end of a log. On a network one thread receives, so that
+/// nothing waits in LCM, and reports the status once a second, while the calling thread works. A log is read by the
+/// calling thread, and every event is worked on before the next is read.
+/// Throws InputError where the log is damaged or the network fails.
+void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work);
+
+/// Says the last word: publishes the final status for whoever adds up, or ends the output log, and logs the account.
+void end_process(LcmBus& bus, const StatusReporter& status);
+
+}  // namespace houghstream

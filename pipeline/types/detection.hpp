@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/stage_time.hpp"
+
+namespace houghstream {
+
+/// A rotation that a supporting vote remembers from its training view, turned to the ray it was seen along.
+struct RotationVote {
+  Eigen::Quaternionf R_camera_object = Eigen::Quaternionf::Identity();
+  float weight = 0.0F;
+};
+
+/// One object found in a frame.
+struct Detection {
+  int class_id = 0;  ///< from 1; 0 is no class
+  std::string class_name;
+  float score = 0.0F;                                       ///< probability that the object is there, 0 to 1
+  cv::Rect2f box_px;                                        ///< visible box, pixels of the full-size frame
+  Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< origin of the object frame, metres; NaN where unknown
+  float vote_weight = 0.0F;                                 ///< sum of the supporting votes' weights
+  int vote_count = 0;                                       ///< supporting votes before the list was capped
+  std::vector<RotationVote> rotations;                      ///< heaviest first, capped
+};
+
+/// All detections of one frame, strongest first.
+struct Detections {
+  std::int64_t utime = 0;  ///< of the source frame
+  std::string source_channel;
+  std::vector<Detection> detections;
+  std::vector<StageTime> stages;
+};
+
+/// Intersection over union of two boxes; 0 where either is empty.
+float box_iou(const cv::Rect2f& a, const cv::Rect2f& b);
+
+}  // namespace houghstream

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/camera.hpp"
+#include "pipeline/types/stage_time.hpp"
+
+namespace houghstream {
+
+/// An RGB-D image pair, depth registered to colour.
+struct RgbdFrame {
+  std::int64_t utime = 0;         ///< capture time, microseconds since the epoch; names the frame in every result
+  cv::Mat colour;                 ///< CV_8UC3, BGR
+  cv::Mat depth;                  ///< CV_32FC1, metres along the optical axis, NaN = none; same size as colour
+  Camera camera;                  ///< of both images
+  std::vector<StageTime> stages;  ///< what was done to it so far
+};
+
+/// Wire millimetres (CV_16UC1, 0 = none) to metres (CV_32FC1, NaN = none).
+cv::Mat depth_from_millimetres(const cv::Mat& depth_mm);
+
+/// Metres (CV_32FC1, NaN = none) to wire millimetres (CV_16UC1, 0 = none); beyond 65.535 m is none.
+cv::Mat depth_to_millimetres(const cv::Mat& depth);
+
+/// Throws InputError naming `source` unless types and sizes are as RgbdFrame states and agree with the camera.
+void check_frame(const RgbdFrame& frame, const std::string& source);
+
+}  // namespace houghstream

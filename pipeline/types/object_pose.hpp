@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/stage_time.hpp"
+
+namespace houghstream {
+
+/// Whether a detection has a pose, and if not, why. Values are those of object_pose_t.
+enum class PoseStatus : std::int8_t {
+  kInvalid = 0,
+  kValid = 1,
+  kNoModel = 2,            ///< the class has no 3-D model
+  kTooFewPoints = 3,       ///< hardly any depth inside the box
+  kNoInitialPose = 4,      ///< the votes carry no rotation
+  kNotConverged = 5,       ///< no candidate registered
+  kRejectedByDepth = 6,    ///< the rendered model contradicts the measured depth
+  kLowScore = 7,           ///< hardly an object: its pose was not looked for, or is not believed
+  kRejectedByOutline = 8,  ///< the measured surface goes on where the model ends
+  kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
+};
+
+/// One line per status for logs and reports.
+const char* to_string(PoseStatus status);
+
+/// The pose of one detection with its evidence, or the reason why there is none.
+struct ObjectPose {
+  int class_id = 0;
+  std::string class_name;
+  float detection_score = 0.0F;
+  int detection_index = -1;  ///< in the Detections of the same utime
+  PoseStatus status = PoseStatus::kInvalid;
+  std::optional<Eigen::Isometry3d> T_camera_object;  ///< present exactly when status is kValid
+  bool converged = false;
+  int iterations = 0;
+  int inliers = 0;
+  float inlier_fraction = 0.0F;
+  float residual = 0.0F;              ///< root mean square distance of inliers to the model, metres; NaN if none
+  float visible_fraction = 0.0F;      ///< rendered pixels that agree with the measured depth, 0 to 1
+  float quality = 0.0F;               ///< probability that the pose is right, 0 to 1; 0 where none was found
+  float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
+};
+
+/// All poses of one frame, in the order of its detections.
+struct ObjectPoses {
+  std::int64_t utime = 0;  ///< of the source frame
+  std::string source_channel;
+  std::vector<ObjectPose> poses;
+  std::vector<StageTime> stages;
+};
+
+}  // namespace houghstream

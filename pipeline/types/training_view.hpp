@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "pipeline/types/frame.hpp"
+
+namespace houghstream {
+
+/// One picture of one object to be taught, or of a room without the objects: what a training folder gives
+/// and the trainer takes.
+struct TrainingView {
+  RgbdFrame frame;         ///< whole image or a crop of it (then frame.camera is the crop's)
+  cv::Mat mask;            ///< CV_8UC1, 255 on the object, size of the frame; empty in a background frame
+  int class_id = 0;        ///< from 1; 0 = background
+  std::string class_name;  ///< empty in a background frame
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres; meaningless in a background frame
+  std::string source;                                                 ///< file it came from, for messages
+  std::string object_frame;  ///< views of one class whose T_camera_object mean the same frame have equal names here
+};
+
+}  // namespace houghstream

@@ -1,0 +1,57 @@
+#include <algorithm>
+
+#include "pose/model/pixel_rays.hpp"
+#include "pose/registration/pair_block.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Of point `k`, which lies in the image at pixel (u,v).
+void find_one(const RgbdFrame& frame, const PairSearch& search, int u, int v, int stride, std::size_t k,
+              PairBlock& block) {
+  const PixelRays rays(frame);
+  for (int j = -search.steps; j <= search.steps; ++j) {
+    const int y = v + j * stride;
+    for (int i = -search.steps; i <= search.steps; ++i) {
+      const int x = u + i * stride;
+      if (x < 0 || y < 0 || x >= rays.columns || y >= rays.rows) continue;
+      const float z = frame.depth.ptr<float>(y)[x];  // NaN fails the comparison below
+      const Eigen::Vector3f here(z * (rays.first.x() + rays.step.x() * static_cast<float>(x)) - block.x[k],
+                                 z * (rays.first.y() + rays.step.y() * static_cast<float>(y)) - block.y[k],
+                                 z - block.z[k]);
+      const float distance_sq = here.squaredNorm();
+      if (!(distance_sq < block.distance_sq[k])) continue;
+      block.distance_sq[k] = distance_sq;
+      block.gap_x[k] = here.x();
+      block.gap_y[k] = here.y();
+      block.gap_z[k] = here.z();
+    }
+  }
+}
+
+}  // namespace
+
+void find_gaps_readably(const RgbdFrame& frame, const PairSearch& search, PairBlock& block) {
+  const PixelRays rays(frame);
+  for (std::size_t k = 0; k < block.count; ++k) {
+    block.distance_sq[k] = search.distance_m * search.distance_m;
+    block.gap_x[k] = block.gap_y[k] = block.gap_z[k] = 0.0F;
+    const Eigen::Vector3f point(block.x[k], block.y[k], block.z[k]);
+    const Eigen::Vector2f pixel = frame.camera.project_single(point) + Eigen::Vector2f::Constant(0.5F);
+    const bool inside = pixel.x() >= 0.5F && pixel.y() >= 0.5F && pixel.x() < static_cast<float>(rays.columns) &&
+                        pixel.y() < static_cast<float>(rays.rows);
+    if (!inside) continue;
+    const float stride = search.distance_m / (rays.step.x() * point.z() * static_cast<float>(search.steps));
+    find_one(frame, search, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()),
+             std::max(1, static_cast<int>(std::min(stride, PixelRays::kWidest))), k, block);
+  }
+}
+
+void add_products_readably(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Map<const Eigen::Matrix<float, 8, 1>> row(rows[i].values.data());
+    sums += (weights[i] * row) * row.transpose();
+  }
+}
+
+}  // namespace houghstream

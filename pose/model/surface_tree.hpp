@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+
+namespace houghstream {
+
+/// The point of a surface that is nearest to another point.
+struct SurfaceHit {
+  float distance = 0.0F;  ///< metres
+  std::uint32_t triangle = 0;
+  std::array<float, 3> weights = {1.0F, 0.0F, 0.0F};  ///< barycentric, of the triangle's vertices
+};
+
+/// Exact distances to a mesh: its triangles in a tree of boxes, each halved at the median of its longest side.
+class SurfaceTree {
+ public:
+  /// Keeps a reference to `mesh`. Throws InputError for a mesh without triangles.
+  explicit SurfaceTree(const Mesh& mesh);
+
+  SurfaceHit nearest(const Eigen::Vector3f& point) const;
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3f box;
+    std::uint32_t first = 0;  ///< in order_
+    std::uint32_t count = 0;  ///< triangles of a leaf; 0 for an inner node, whose children are below and `right`
+    std::uint32_t right = 0;
+  };
+  std::uint32_t build(std::uint32_t first, std::uint32_t count);
+  void search(std::uint32_t node, const Eigen::Vector3f& point, SurfaceHit& best) const;
+
+  const Mesh& mesh_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace houghstream

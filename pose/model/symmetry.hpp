@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "pipeline/geometry/symmetry.hpp"
+
+namespace houghstream {
+
+/// All symmetries as single motions of the object frame (metres), the identity first. A continuous one becomes turns by
+/// equal steps, so many that no point of the object moves by more than about `largest_step` diameters from one to the
+/// next; each is combined with each discrete one. Follows get_symmetry_transformations() of bop_toolkit (Hodan et al.
+/// 2020): 315 turns for its 0.01; of several axes each is turned about by itself, which for a ball is less than the
+/// whole group. Throws InputError unless `largest_step` is above 0.
+std::vector<Eigen::Isometry3d> expand_symmetries(const Symmetries& symmetries, double largest_step = 0.01);
+
+/// The symmetry S for which R_camera_object * S is nearest to the reference, by the angle between them. Exact: nothing
+/// is discretised, and two or more continuous axes mean a ball, which can be turned to any reference. Ties go to the
+/// identity, then to the first listed.
+Eigen::Isometry3d symmetry_towards(const Eigen::Quaterniond& R_camera_object, const Eigen::Quaterniond& R_reference,
+                                   const Symmetries& symmetries);
+
+/// Of the rotations that look the same, the one nearest to the reference: votes must be brought together like this
+/// before they are averaged, errors before they are measured.
+Eigen::Quaterniond nearest_equivalent(const Eigen::Quaterniond& R_camera_object, const Eigen::Quaterniond& R_reference,
+                                      const Symmetries& symmetries);
+
+/// The same for poses; the rotation decides.
+Eigen::Isometry3d nearest_equivalent(const Eigen::Isometry3d& T_camera_object, const Eigen::Isometry3d& T_reference,
+                                     const Symmetries& symmetries);
+
+}  // namespace houghstream

@@ -1,0 +1,52 @@
+#include "pose/registration/region.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace houghstream {
+namespace {
+
+/// Whole pixels of the box, enlarged and cut to the image. A box with absurd numbers gives an empty one.
+cv::Rect enlarged(const cv::Rect2f& box, double by, const cv::Size& image) {
+  const auto clip = [](double v, int limit) { return v > 0.0 ? static_cast<int>(std::min<double>(v, limit)) : 0; };
+  const int left = clip(std::floor(box.x - by * box.width), image.width);
+  const int top = clip(std::floor(box.y - by * box.height), image.height);
+  const int right = clip(std::ceil(box.x + (1.0 + by) * box.width), image.width);
+  const int bottom = clip(std::ceil(box.y + (1.0 + by) * box.height), image.height);
+  return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
+}
+
+bool in_range(const DepthRegion& region, float z) {
+  return z >= region.nearest && z <= region.farthest;  // false for NaN
+}
+
+}  // namespace
+
+DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
+                        const RegionSettings& settings) {
+  DepthRegion region;
+  region.box_px = enlarged(detection.box_px, settings.enlarge, frame.depth.size());
+  // The model's farthest point from the origin of its frame, which is what the detection locates.
+  const float reach = model.centre.norm() + model.radius + static_cast<float>(settings.gate_margin_m);
+  region.nearest = std::max(0.0F, detection.centre_camera.z() - reach);
+  region.farthest = detection.centre_camera.z() + reach;
+  for (int y = region.box_px.y; y < region.box_px.br().y; ++y) {
+    const float* depth = frame.depth.ptr<float>(y);
+    for (int x = region.box_px.x; x < region.box_px.br().x; ++x) region.points += in_range(region, depth[x]) ? 1 : 0;
+  }
+  return region;
+}
+
+std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int most) {
+  std::vector<Eigen::Vector3f> points;
+  const int stride = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(region.points) / most))));
+  for (int y = region.box_px.y; y < region.box_px.br().y; y += stride) {
+    const float* depth = frame.depth.ptr<float>(y);
+    for (int x = region.box_px.x; x < region.box_px.br().x; x += stride) {
+      if (in_range(region, depth[x])) points.push_back(frame.camera.backproject(x, y, depth[x]).cast<float>());
+    }
+  }
+  return points;
+}
+
+}  // namespace houghstream

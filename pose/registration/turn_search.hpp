@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "pose/verification/colour_score.hpp"
+
+namespace houghstream {
+
+/// A pose and how depth and colour speak for it (joint_score).
+struct ScoredPose {
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+  float score = 0.0F;
+};
+
+ScoredPose judge_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
+                      const Eigen::Isometry3d& T_camera_object, int points, const DepthTolerance& tolerance);
+
+/// Which turns are tried, and how many of them are wanted.
+struct TurnRange {
+  double step_rad = 0.0;
+  double reach_rad = 0.0;  ///< to each side
+  std::size_t most = 1;
+  int points = 0;  ///< of a view
+};
+
+/// The pose turned about the object's z axis, through the middle of its surface; those turns that are better than their
+/// neighbours, best first. Views of a standing object are most easily confused that way, and of a round one only its
+/// print tells them apart.
+std::vector<ScoredPose> best_turns(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
+                                   const Eigen::Isometry3d& T_camera_object, const TurnRange& range,
+                                   const DepthTolerance& tolerance);
+
+/// Small steps: turns about the object's z axis and shifts along its axes.
+struct Climb {
+  double step_rad = 0.0;
+  double step_m = 0.0;
+  int rounds = 0;  ///< of one step each way; halved after a round without a better pose
+  int points = 0;  ///< of a view
+};
+
+/// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
+/// round thing stands along its axis.
+ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
+                      const Eigen::Isometry3d& T_camera_object, const Climb& climb, const DepthTolerance& tolerance);
+
+}  // namespace houghstream

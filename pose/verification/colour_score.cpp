@@ -1,0 +1,112 @@
+#include "pose/verification/colour_score.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "pose/verification/colour_sums.hpp"
+
+namespace houghstream {
+namespace {
+
+// What exposure and haze make of a remembered contrast.
+constexpr double kLeastGain = 0.4;
+constexpr double kMostGain = 2.5;
+
+/// About grey.
+template <typename Lab>
+Eigen::Array4f about_grey(const Lab& lab) {
+  constexpr float kGrey = 128.0F;
+  return {static_cast<float>(lab[0]) - kGrey, static_cast<float>(lab[1]) - kGrey, static_cast<float>(lab[2]) - kGrey,
+          1.0F};
+}
+
+double seen_variance(const ColourProducts& products, Eigen::Index seen) {
+  return products(seen, seen) - products(seen, kOne) * products(seen, kOne);
+}
+
+/// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
+double chroma_left_over(const ColourProducts& products, Eigen::Index remembered, Eigen::Index seen) {
+  const double mean = products(remembered, kOne);
+  const double variance = products(remembered, remembered) - mean * mean;
+  const double covariance = products(remembered, seen) - mean * products(seen, kOne);
+  const double gain = std::clamp(covariance / std::max(variance, 1e-3), kLeastGain, kMostGain);
+  return std::max(0.0, seen_variance(products, seen) - gain * (2.0 * covariance - gain * variance));
+}
+
+/// The same for lightness on the remembered one and the surface's normal.
+double lightness_left_over(const ColourProducts& products) {
+  constexpr double kDamping = 1e-4;  // terms that do not vary are left alone
+  constexpr int kTerms = kOne + 1;   // remembered value, normal (3), 1
+  constexpr int kOthers = kTerms - 1;
+  using Terms = Eigen::Matrix<double, kTerms, 1>;
+  Eigen::Matrix<double, kTerms, kTerms> curvature = products.topLeftCorner<kTerms, kTerms>();
+  curvature.diagonal().array() += kDamping;
+  const Terms with_seen = products.block<kTerms, 1>(0, kSeenLightness);
+  Terms weights = curvature.ldlt().solve(with_seen);
+  const double gain = std::clamp(weights[0], kLeastGain, kMostGain);
+  if (gain != weights[0]) {
+    const Eigen::Matrix<double, kOthers, 1> rest = with_seen.tail<kOthers>() - gain * curvature.block<kOthers, 1>(1, 0);
+    weights << gain, curvature.bottomRightCorner<kOthers, kOthers>().ldlt().solve(rest);
+  }
+  const double seen_sq = products(kSeenLightness, kSeenLightness);
+  return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
+}
+
+ColourComparison compare(const ColourProducts& products, int count) {
+  constexpr double kNoise = 15.0;           // variance of the three channels on a plain surface in even light
+  constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
+  const double seen = kNoise + kLightnessWeight * seen_variance(products, kSeenLightness) +
+                      seen_variance(products, kSeenA) + seen_variance(products, kSeenB);
+  const double left = kLightnessWeight * lightness_left_over(products) + chroma_left_over(products, kA, kSeenA) +
+                      chroma_left_over(products, kB, kSeenB);
+  const double shift =
+      std::hypot(products(kSeenA, kOne) - products(kA, kOne), products(kSeenB, kOne) - products(kB, kOne));
+  return {count, static_cast<float>(1.0 - left / seen), static_cast<float>(std::sqrt(left)), static_cast<float>(shift)};
+}
+
+}  // namespace
+
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px) {
+  LabRegion region{{}, part_px.tl()};
+  cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
+  cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);
+  return region;
+}
+
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
+                                                const DepthTolerance& tolerance) {
+  constexpr int kFewest = 30;
+  constexpr float kNormalUnits = 100.0F;  // brings normals to the size of the other terms
+  if (seen.view.colours.empty()) return std::nullopt;
+  const auto width = static_cast<float>(tolerance.at(seen.T.translation().z()));
+  const cv::Rect part(cv::Point(), colours.lab.size());
+  ColourSums sums;
+  std::array<ComparedPoint, 64> points;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < seen.looks.size(); ++i) {
+    const Look& look = seen.looks[i];
+    const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
+    if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
+    const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
+    points[count++] = {about_grey(seen.view.colours[i]),
+                       about_grey(colours.lab.at<cv::Vec3b>(inside)),
+                       {normal.x(), normal.y(), normal.z(), 1.0F}};
+    if (count < points.size()) continue;
+    sums.add(points, count);
+    count = 0;
+  }
+  sums.add(points, count);
+  if (sums.count() < kFewest) return std::nullopt;
+  return compare(sums.means(), sums.count());
+}
+
+float joint_score(float depth_value, const std::optional<ColourComparison>& colour) {
+  constexpr float kUnknown = 0.5F;
+  const float kept = 0.1F + 0.9F * std::clamp(colour ? colour->agreement : kUnknown, 0.0F, 1.0F);
+  return depth_value > 0.0F ? kept * std::sqrt(depth_value) : depth_value;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,68 @@
+#include "pose/verification/depth_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+/// `width` is the tolerance at the object's depth.
+DepthScore score_of(const ViewLook& seen, float shift, float width) {
+  DepthScore score;
+  for (const Look& look : seen.looks) {
+    const float ratio = (look.beyond - shift) / width;
+    // Without branches, as the case changes from point to point: NaN is not above 0 and adds nothing.
+    score.agreeing += std::max(0.0F, 1.0F - ratio * ratio);
+    score.violating += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
+  }
+  score.agreeing /= static_cast<float>(seen.looks.size());
+  score.violating /= static_cast<float>(seen.looks.size());
+  score.value = (score.agreeing - score.violating) * seen.view.area;
+  return score;
+}
+
+/// Mean of the fullest window of `width` among the sorted values; 0 without values.
+float densest_mean(const std::vector<float>& sorted, float width) {
+  std::size_t best_first = 0;
+  std::size_t best_count = 0;
+  std::size_t last = 0;
+  for (std::size_t first = 0; first < sorted.size(); ++first) {
+    while (last < sorted.size() && sorted[last] <= sorted[first] + width) ++last;
+    if (last - first > best_count) {
+      best_count = last - first;
+      best_first = first;
+    }
+  }
+  float sum = 0.0F;
+  for (std::size_t i = best_first; i < best_first + best_count; ++i) sum += sorted[i];
+  return best_count == 0 ? 0.0F : sum / static_cast<float>(best_count);
+}
+
+}  // namespace
+
+DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance) {
+  return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.T.translation().z())));
+}
+
+DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points, const DepthTolerance& tolerance) {
+  return score_look(look_at_view(frame, model, T_camera_object, points), tolerance);
+}
+
+DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                            int points, double reach, const DepthTolerance& tolerance) {
+  const ViewLook seen = look_at_view(frame, model, T_camera_object, points);
+  const auto width = static_cast<float>(tolerance.at(T_camera_object.translation().z()));
+  std::vector<float> within;
+  within.reserve(seen.looks.size());
+  for (const Look& look : seen.looks) {
+    if (std::abs(look.beyond) <= reach) within.push_back(look.beyond);  // false for NaN
+  }
+  std::sort(within.begin(), within.end());
+  const float shift = densest_mean(within, width);
+  return {shift, score_of(seen, shift, width)};
+}
+
+}  // namespace houghstream

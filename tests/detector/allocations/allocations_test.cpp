@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
+
+#include "detector/detector.hpp"
+#include "detector/training/forest_trainer.hpp"
+#include "tests/detector/toy_data.hpp"
+
+// What the whole process asks the C library for, OpenCV's pictures and operator new among it: glibc lets a program
+// bring its own of these, and has the same ones under other names.
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): its names
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+}
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
+
+namespace {
+
+constexpr std::size_t kLarge = 16 << 10;  // bytes
+// The lists of maxima, hypotheses and candidates, of which the last ones' rotations are handed to the caller, some
+// lists of the levels and their planes, and what OpenCV's filters need for themselves: none grows with the picture.
+constexpr std::size_t kFew = 150;
+std::atomic<std::size_t> small_ones{0};
+std::atomic<std::size_t> large_ones{0};
+
+void count_allocation(std::size_t size) {
+  ++(size < kLarge ? small_ones : large_ones);
+}
+
+}  // namespace
+
+extern "C" {
+void* malloc(std::size_t size) noexcept {
+  count_allocation(size);
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  count_allocation(count * size);
+  return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) noexcept {
+  count_allocation(size);
+  return __libc_realloc(memory, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  count_allocation(size);
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  return memalign(alignment, size);
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+  *memory = memalign(alignment, size);
+  return *memory != nullptr ? 0 : ENOMEM;
+}
+}
+
+namespace houghstream {
+namespace {
+
+struct Allocations {
+  std::size_t small = 0;
+  std::size_t large = 0;
+};
+
+/// Of one frame.
+Allocations allocations_of(const Detector& detector, const RgbdFrame& frame) {
+  const Allocations before{small_ones, large_ones};
+  const Detections found = detector.detect(frame);
+  EXPECT_FALSE(found.detections.empty());
+  return {small_ones - before.small, large_ones - before.large};
+}
+
+TEST(Allocations, AreCounted) {
+  const Allocations before{small_ones, large_ones};
+  const cv::Mat picture(256, 256, CV_8UC1);
+  const std::vector<int> numbers(10);
+  EXPECT_GE(large_ones, before.large + 1);
+  EXPECT_GE(small_ones, before.small + 1);
+}
+
+TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
+  const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  RgbdFrame frame = toy::room(5);
+  toy::put_tile(0, 90, 120, 0.8, frame);
+  toy::put_tile(1, 230, 120, 0.9, frame);
+  for (const int threads : {1, 2}) {
+    DetectionSettings settings = toy::quick_profile().detection;
+    settings.threads = threads;
+    const Detector detector(forest, settings);
+    for (int warm_up = 1; warm_up < 5; ++warm_up) allocations_of(detector, frame);
+    for (int number = 5; number <= 10; ++number) {
+      const Allocations seen = allocations_of(detector, frame);
+      EXPECT_LE(seen.small, kFew) << "frame " << number << ", " << threads << " threads";
+      EXPECT_EQ(seen.large, 0U) << "frame " << number << ", " << threads << " threads";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

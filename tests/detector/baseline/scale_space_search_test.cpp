@@ -1,0 +1,174 @@
+#include "detector/baseline/scale_space_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "detector/detector.hpp"
+#include "detector/training/forest_trainer.hpp"
+#include "tests/detector/toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Three of the five sizes are enough for the distances below.
+const Forest& toy_forest() {
+  static const Forest forest = [] {
+    Profile profile = make_profile("gall");
+    const TrainingSettings quick = toy::quick_profile().training;
+    profile.training.trees = quick.trees;
+    profile.training.max_depth = quick.max_depth;
+    profile.training.tests_per_node = quick.tests_per_node;
+    profile.training.patches_per_view = quick.patches_per_view;
+    profile.features.scales = {0.66F, 1.0F, 1.66F};
+    return train_forest(toy::training_views(), profile, [](const auto&) {});
+  }();
+  return forest;
+}
+
+DetectionSettings quick_settings() {
+  DetectionSettings settings = detection_settings(toy_forest());
+  settings.stride = 2;
+  return settings;
+}
+
+struct Scene {
+  RgbdFrame frame = toy::room(77);
+  cv::Rect2f box_px;
+};
+
+Scene tile_at(int kind, double u_px, double v_px, double distance) {
+  Scene scene;
+  scene.box_px = cv::Rect2f(cv::boundingRect(toy::put_tile(kind, u_px, v_px, distance, scene.frame)));
+  return scene;
+}
+
+std::vector<Candidate> search(const RgbdFrame& frame, const DetectionSettings& settings) {
+  StageClock clock;
+  return search_scale_space(toy_forest(), frame, settings, clock);
+}
+
+const Candidate& strongest(const std::vector<Candidate>& candidates) {
+  return *std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.detection.score < b.detection.score;
+  });
+}
+
+void expect_same(const std::vector<Candidate>& a, const std::vector<Candidate>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  ASSERT_FALSE(a.empty());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].detection.class_id, b[i].detection.class_id);
+    EXPECT_EQ(a[i].detection.score, b[i].detection.score);
+    EXPECT_EQ(a[i].detection.box_px, b[i].detection.box_px);
+    EXPECT_EQ(a[i].detection.vote_weight, b[i].detection.vote_weight);
+    EXPECT_EQ(a[i].detection.vote_count, b[i].detection.vote_count);
+    EXPECT_EQ(a[i].evidence.mass_share, b[i].evidence.mass_share);
+  }
+}
+
+TEST(ScaleSpaceSearch, FindsTheTaughtObjectsInEverySize) {
+  for (const double distance : {0.46, 0.7, 1.1}) {
+    for (const int kind : {0, 1}) {
+      const Scene scene = tile_at(kind, 120, 110, distance);
+      const std::vector<Candidate> found = search(scene.frame, quick_settings());
+      ASSERT_FALSE(found.empty()) << distance;
+      const Candidate& best = strongest(found);
+      EXPECT_EQ(best.detection.class_id, kind + 1) << distance;
+      EXPECT_EQ(best.detection.class_name, kind == 0 ? "stripes" : "rings");
+      EXPECT_GT(best.detection.score, quick_settings().threshold) << distance;
+      EXPECT_GT(box_iou(best.detection.box_px, scene.box_px), 0.75F) << distance << " m, kind " << kind;
+      EXPECT_GT(best.detection.vote_count, 0);
+      EXPECT_EQ(best.detection.score, vote_score(best.evidence.mass_share));
+    }
+  }
+}
+
+TEST(ScaleSpaceSearch, KnowsNoDepth) {
+  Scene scene = tile_at(0, 120, 110, 0.7);
+  const std::vector<Candidate> with_depth = search(scene.frame, quick_settings());
+  scene.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  expect_same(with_depth, search(scene.frame, quick_settings()));
+  for (const Candidate& candidate : with_depth) {
+    EXPECT_TRUE(candidate.detection.centre_camera.array().isNaN().all());
+    EXPECT_TRUE(candidate.detection.rotations.empty());
+  }
+}
+
+TEST(ScaleSpaceSearch, AnyNumberOfThreadsGivesTheSameCandidates) {
+  Scene scene = tile_at(0, 90, 100, 0.7);
+  toy::put_tile(1, 230, 120, 1.1, scene.frame);
+  DetectionSettings settings = quick_settings();
+  settings.threads = 1;
+  const std::vector<Candidate> serial = search(scene.frame, settings);
+  for (const int threads : {2, 3}) {
+    settings.threads = threads;
+    expect_same(serial, search(scene.frame, settings));
+  }
+}
+
+TEST(ScaleSpaceSearch, TheReadableEngineFindsTheSameCandidates) {
+  const Scene scene = tile_at(1, 150, 120, 0.7);
+  DetectionSettings settings = quick_settings();
+  const std::vector<Candidate> fast = search(scene.frame, settings);
+  settings.readable = true;
+  expect_same(fast, search(scene.frame, settings));
+}
+
+TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
+  const Scene scene = tile_at(0, 120, 110, 0.7 * 1.66);
+  const std::vector<cv::Mat> images = scale_space_hough_images(toy_forest(), 0, scene.frame, quick_settings());
+  constexpr std::array<float, 3> kSizes = {0.66F, 1.0F, 1.66F};
+  ASSERT_EQ(images.size(), kSizes.size());
+  std::array<double, 3> peaks{};
+  cv::Point at;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    ASSERT_EQ(images[i].type(), CV_32FC1);
+    EXPECT_NEAR(images[i].cols, 320 * kSizes[i], 1);
+    cv::minMaxLoc(images[i], nullptr, &peaks[i], nullptr, &at);
+  }
+  EXPECT_GT(peaks[2], peaks[1]);
+  EXPECT_GT(peaks[2], peaks[0]);
+  EXPECT_NEAR(at.x, (120 + 0.5) * 1.66, 4);
+  EXPECT_NEAR(at.y, (110 + 0.5) * 1.66, 4);
+  EXPECT_FLOAT_EQ(static_cast<float>(peaks[2]), strongest(search(scene.frame, quick_settings())).evidence.mass_share);
+}
+
+TEST(ScaleSpaceSearch, AnObjectBetweenTwoSizesIsOneCandidate) {
+  const Scene scene = tile_at(1, 120, 110, 0.7 * std::sqrt(1.66));
+  const std::vector<Candidate> found = search(scene.frame, quick_settings());
+  const float best = strongest(found).detection.score;
+  const auto is_the_object = [&](const Candidate& candidate) {
+    return candidate.detection.box_px.contains(cv::Point2f(120, 110)) && candidate.detection.score > 0.5F * best;
+  };
+  EXPECT_EQ(std::count_if(found.begin(), found.end(), is_the_object), 1);
+}
+
+TEST(ScaleSpaceSearch, TheDetectorReportsTheStrongestOfAllSizes) {
+  const Scene scene = tile_at(0, 120, 110, 0.7);
+  const Detections found = Detector(toy_forest(), quick_settings()).detect(scene.frame);
+  ASSERT_FALSE(found.detections.empty());
+  EXPECT_EQ(found.detections[0].score, strongest(search(scene.frame, quick_settings())).detection.score);
+  for (std::size_t i = 1; i < found.detections.size(); ++i) {
+    if (found.detections[i].class_id != found.detections[0].class_id) continue;
+    EXPECT_LE(box_iou(found.detections[i].box_px, found.detections[0].box_px), 0.5F);
+  }
+  std::vector<std::string> names;
+  for (const StageTime& time : found.stages) names.push_back(time.stage);
+  EXPECT_EQ(names, (std::vector<std::string>{"detect.resize", "detect.features", "detect.forest", "detect.voting",
+                                             "detect.hypotheses"}));
+}
+
+TEST(ScaleSpaceSearch, AnEmptyRoomOffersLittle) {
+  const float found = strongest(search(tile_at(0, 120, 110, 0.7).frame, quick_settings())).detection.score;
+  for (const Candidate& candidate : search(toy::room(78), quick_settings())) {
+    EXPECT_LT(candidate.detection.score, 0.5F * found);
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

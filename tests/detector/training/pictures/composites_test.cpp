@@ -1,0 +1,161 @@
+#include "detector/training/pictures/composites.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "tests/detector/toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+TrainingSettings plain() {
+  TrainingSettings settings;
+  settings.light_variation = 0.0;
+  settings.occluded_share = 0.0;
+  settings.cleared_share = 0.0;
+  settings.sharpened_share = 0.0;
+  return settings;
+}
+
+/// Stripes, 0.7 m away in the middle of the picture; a relief of 15 mm behind the tile's middle.
+TrainingView tile_view() {
+  return toy::training_views().front();
+}
+
+std::optional<Composite> compose(const TrainingView& view, double distance, std::uint64_t seed,
+                                 const TrainingSettings& settings) {
+  Random random(seed);
+  return make_composite(view, toy::room(5), distance, settings, random);
+}
+
+bool same_values(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0.0;
+}
+
+TEST(Composites, SizeAndDepthChangeButReliefStaysInMetres) {
+  const TrainingView view = tile_view();
+  for (const double distance : {0.5, 1.4}) {
+    const auto composite = compose(view, distance, 3, plain());
+    ASSERT_TRUE(composite);
+    EXPECT_DOUBLE_EQ(composite->scale, 0.7 / distance);
+    EXPECT_NEAR(composite->depth_shift, distance - 0.7, 1e-6);
+    const cv::Rect box = cv::boundingRect(composite->mask);
+    EXPECT_NEAR(box.width, cv::boundingRect(view.mask).width * 0.7 / distance, 1.0) << distance;
+    const cv::Mat tile = composite->frame.depth(box);
+    const double middle = cv::mean(tile.col(box.width / 2))[0];
+    const double side = cv::mean(tile.col(0))[0];
+    EXPECT_NEAR(middle, distance + 0.015, 0.002) << distance;
+    EXPECT_NEAR(middle - side, 0.0145, 0.002) << distance;
+  }
+}
+
+TEST(Composites, TheOriginLeadsBackToTheView) {
+  const auto composite = compose(tile_view(), 1.0, 3, plain());
+  ASSERT_TRUE(composite);
+  const cv::Rect box = cv::boundingRect(composite->mask);
+  const cv::Point2d middle(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
+  const cv::Point2d in_view = (middle - composite->origin_px) / composite->scale;
+  EXPECT_NEAR(in_view.x, 159.5, 1.0);
+  EXPECT_NEAR(in_view.y, 119.5, 1.0);
+}
+
+TEST(Composites, AtTheViewsDistanceTheObjectIsPastedAsItIs) {
+  TrainingView view = tile_view();
+  view.frame.depth.at<float>(120, 160) = std::numeric_limits<float>::quiet_NaN();
+  const auto composite = compose(view, 0.7, 3, plain());
+  ASSERT_TRUE(composite);
+  const cv::Rect from = cv::boundingRect(view.mask);
+  const cv::Rect to = cv::boundingRect(composite->mask);
+  EXPECT_TRUE(same_values(view.frame.colour(from), composite->frame.colour(to)));
+  EXPECT_TRUE(std::isnan(composite->frame.depth(to).at<float>(120 - from.y, 160 - from.x)));
+}
+
+TEST(Composites, AroundTheObjectTheRoomIsUntouched) {
+  const auto composite = compose(tile_view(), 1.0, 3, plain());
+  ASSERT_TRUE(composite);
+  const RgbdFrame room = toy::room(5);
+  const cv::Rect place(static_cast<int>(std::lround(room.camera.cx - composite->frame.camera.cx)),
+                       static_cast<int>(std::lround(room.camera.cy - composite->frame.camera.cy)), composite->mask.cols,
+                       composite->mask.rows);
+  cv::Mat depth = room.depth(place).clone();
+  composite->frame.depth.copyTo(depth, composite->mask);
+  EXPECT_TRUE(same_values(depth, composite->frame.depth));
+  cv::Mat colour = room.colour(place).clone();
+  composite->frame.colour.copyTo(colour, composite->mask);
+  EXPECT_TRUE(same_values(colour, composite->frame.colour));
+}
+
+TEST(Composites, TheRoomBehindTheObjectIsNotInFrontOfIt) {
+  const TrainingView view = tile_view();
+  RgbdFrame room = toy::room(5);
+  room.depth.colRange(0, room.depth.cols / 4).setTo(0.4F);  // too near to stand behind
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Random random(seed);
+    const auto composite = make_composite(view, room, 1.2, plain(), random);
+    ASSERT_TRUE(composite);
+    EXPECT_LE(cv::countNonZero(composite->frame.depth < 0.5F), composite->mask.total() / 15) << "seed " << seed;
+  }
+}
+
+TEST(Composites, WhatDoesNotFitGivesNothing) {
+  EXPECT_FALSE(compose(tile_view(), 0.15, 3, plain()));
+}
+
+TEST(Composites, TheSameSeedGivesTheSamePicture) {
+  const TrainingView view = tile_view();
+  const auto first = compose(view, 1.2, 8, {});
+  const auto again = compose(view, 1.2, 8, {});
+  const auto other = compose(view, 1.2, 9, {});
+  ASSERT_TRUE(first && again && other);
+  EXPECT_TRUE(same_values(first->frame.colour, again->frame.colour));
+  EXPECT_TRUE(same_values(first->frame.depth, again->frame.depth));
+  EXPECT_FALSE(same_values(first->frame.colour, other->frame.colour));
+}
+
+TEST(Composites, SharpenedAreOnlyObjectsAndOnlyIfAsked) {
+  TrainingSettings settings = plain();
+  settings.sharpened_share = 1.0;
+  const TrainingView view = tile_view();
+  const auto as_taught = compose(view, 0.7, 3, plain());
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const auto sharp = compose(view, 0.7, seed, settings);
+    ASSERT_TRUE(sharp && as_taught);
+    const cv::Rect box = cv::boundingRect(sharp->mask);
+    EXPECT_GT(cv::norm(sharp->frame.colour(box), as_taught->frame.colour(box), cv::NORM_INF), 5.0);
+    EXPECT_TRUE(same_values(sharp->mask, as_taught->mask));
+  }
+}
+
+TEST(VaryLight, StrengthZeroChangesNothing) {
+  cv::Mat ramp(1, 256, CV_8UC3);
+  for (int v = 0; v < 256; ++v) ramp.at<cv::Vec3b>(0, v) = cv::Vec3b::all(static_cast<std::uint8_t>(v));
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    cv::Mat lit = ramp.clone();
+    vary_light(lit, 0.0, -3.0, 3.0, random);
+    ASSERT_TRUE(same_values(lit, ramp));
+  }
+}
+
+TEST(VaryLight, StopsAreDoublings) {
+  const cv::Mat grey(40, 40, CV_8UC3, cv::Scalar(100, 100, 100));
+  const auto mean_at = [&](double stops) {
+    double sum = 0.0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      Random random(seed);
+      cv::Mat lit = grey.clone();
+      vary_light(lit, 1.0, stops, stops, random);
+      sum += cv::mean(lit)[1] / 40.0;
+    }
+    return sum;
+  };
+  EXPECT_NEAR(mean_at(-2.0), 25.0, 8.0);  // haze adds some
+  EXPECT_NEAR(mean_at(0.0), 100.0, 8.0);
+  EXPECT_NEAR(mean_at(1.0), 200.0, 12.0);
+}
+
+}  // namespace
+}  // namespace houghstream

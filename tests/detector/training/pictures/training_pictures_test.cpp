@@ -1,0 +1,246 @@
+#include "detector/training/pictures/training_pictures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "tests/detector/toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr double kFocal = 262.5;
+constexpr double kTaught = 0.7;  // metres
+constexpr int kMargin = 48;      // frame pixels around the object in a composite
+constexpr int kRadius = 22;      // of the mask, frame pixels
+
+/// A round part of a flat tile.
+TrainingView round_view() {
+  TrainingView view = toy::training_views().front();
+  view.mask.setTo(0);
+  cv::circle(view.mask, cv::Point(160, 120), kRadius, cv::Scalar(255), cv::FILLED);
+  view.frame.depth.setTo(static_cast<float>(kTaught), view.mask);
+  return view;
+}
+
+Profile open_profile(const std::string& name) {
+  Profile profile = make_profile(name);
+  profile.training.occluded_share = 0.0;
+  profile.training.light_variation = 0.0;
+  profile.training.patches_per_view = 120;
+  profile.training.composites_per_view = 1;
+  return profile;
+}
+
+TrainingPicture picture_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
+  Random random(seed);
+  return object_picture(view, 2, 5, toy::room(3), profile, random);
+}
+
+/// How much larger the picture shows the object than the view does, `image_scale` aside.
+double size_of(const TrainingPicture& picture, double image_scale) {
+  return (picture.features.width() / image_scale - 2 * kMargin) / (2 * kRadius + 1);
+}
+
+TEST(TrainingPictures, OffsetsOfAScaleSpaceLeadToTheCentresPixel) {
+  const TrainingView view = round_view();
+  for (const float image_scale : {1.0F, 0.5F}) {
+    Profile profile = open_profile("gall");
+    profile.features.image_scale = image_scale;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+      const TrainingPicture picture = picture_of(view, profile, seed);
+      const double size = size_of(picture, image_scale);
+      // the mask's middle is the picture's; the object's centre lies half a pixel of the view beside it
+      const double x = 0.5 * (picture.features.width() - 1) - 0.5 * size * image_scale;
+      const double y = 0.5 * (picture.features.height() - 1) - 0.5 * size * image_scale;
+      for (const TrainingSample& sample : picture.samples) {
+        if (sample.label == 0) continue;
+        ASSERT_NEAR(sample.x + sample.offset.x() * kFocal * image_scale, x, 0.6) << "size " << size;
+        ASSERT_NEAR(sample.y + sample.offset.y() * kFocal * image_scale, y, 0.6) << "size " << size;
+        ASSERT_EQ(sample.offset.z(), 0.0F);
+        ASSERT_EQ(sample.scale, 256);
+      }
+    }
+  }
+}
+
+TEST(TrainingPictures, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
+  const TrainingView view = round_view();
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const TrainingPicture picture = picture_of(view, open_profile("gall"), seed);
+    const double radius = kRadius * size_of(picture, 1.0);
+    int on_object = 0;
+    int beside = 0;
+    for (const TrainingSample& sample : picture.samples) {
+      const double distance =
+          std::hypot(sample.x - 0.5 * (picture.features.width() - 1), sample.y - 0.5 * (picture.features.height() - 1));
+      if (sample.label == 0) {
+        ASSERT_GT(distance, radius - 2.0);
+        ++beside;
+      } else {
+        ASSERT_LT(distance, radius + 2.0);
+        ASSERT_EQ(sample.label, 2);
+        ASSERT_EQ(sample.view, 5U);
+        ++on_object;
+      }
+    }
+    EXPECT_EQ(on_object, 120);
+    EXPECT_EQ(beside, 30);
+    EXPECT_TRUE(picture.spare_background.empty());
+  }
+}
+
+/// How steep the middle of the object seems, 0 to 127; the derivatives are the first planes.
+double slope(const TrainingPicture& picture) {
+  constexpr int kReach = 8;  // pixels
+  double sum = 0.0;
+  for (int y = -kReach; y <= kReach; ++y) {
+    for (int x = -kReach; x <= kReach; ++x) {
+      sum +=
+          std::abs(picture.features.at(picture.features.width() / 2 + x, picture.features.height() / 2 + y)[0] - 128);
+    }
+  }
+  return sum / ((2 * kReach + 1) * (2 * kReach + 1));
+}
+
+TEST(TrainingPictures, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
+  Profile five = open_profile("gall");
+  five.features.families = kDepthDerivatives;
+  Profile single = five;
+  set_scale_handling(single, "single");
+  double smooth = 0.0;
+  double rough = 0.0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    smooth += slope(picture_of(round_view(), single, seed));
+    rough += slope(picture_of(round_view(), five, seed));
+  }
+  EXPECT_GT(rough, 2.0 * smooth);
+}
+
+/// Whether a picture holds all that its patches look at, and how much more it could hold.
+void expect_held(const TrainingPicture& picture, const PatchSettings& patch) {
+  const cv::Rect held = picture.features.held();
+  for (const auto* list : {&picture.samples, &picture.spare_background}) {
+    for (const TrainingSample& sample : *list) {
+      const int reach = farthest_offset(patch, sample.scale);
+      const cv::Rect seen(sample.x - reach, sample.y - reach, 2 * reach + 1, 2 * reach + 1);
+      ASSERT_EQ(seen & held, seen) << sample.x << " " << sample.y;
+    }
+  }
+  EXPECT_LT(held.width, picture.features.width() + 2 * FeatureImage::kPad);
+  EXPECT_LT(held.height, picture.features.height() + 2 * FeatureImage::kPad);
+}
+
+TEST(TrainingPictures, PicturesHoldWhatTheirPatchesLookAtOnly) {
+  const Profile profile = open_profile("realtime");
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    expect_held(picture_of(round_view(), profile, seed), profile.patch);
+    Random random(seed);
+    for (const FeatureLevel& level : feature_levels(profile.features)) {
+      expect_held(background_picture(toy::room(3), level, profile, random), profile.patch);
+    }
+  }
+}
+
+TEST(TrainingPictures, NoPixelIsDrawnTwice) {
+  const TrainingPicture picture = picture_of(round_view(), open_profile("gall"), 4);
+  std::vector<std::pair<int, int>> places;
+  for (const TrainingSample& sample : picture.samples) places.emplace_back(sample.x, sample.y);
+  std::sort(places.begin(), places.end());
+  EXPECT_EQ(std::adjacent_find(places.begin(), places.end()), places.end());
+}
+
+TEST(TrainingPictures, AScaleSpaceIsTaughtTheSizesBetweenThoseThatAreSearched) {
+  const TrainingView view = round_view();
+  std::vector<double> sizes;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const TrainingPicture picture = picture_of(view, open_profile("gall"), seed);
+    sizes.push_back(size_of(picture, 1.0));
+    const double area = M_PI * kRadius * kRadius * sizes.back() * sizes.back() / kFocal / kFocal;  // as at 1 m
+    EXPECT_NEAR(picture.whole_area, area, 0.06 * area);
+  }
+  const auto [smallest, largest] = std::minmax_element(sizes.begin(), sizes.end());
+  EXPECT_NEAR(*smallest, 1.0 / 1.25, 0.05);
+  EXPECT_NEAR(*largest, 1.25, 0.05);
+}
+
+TEST(TrainingPictures, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
+  const TrainingView view = round_view();
+  const double area = M_PI * kRadius * kRadius * kTaught * kTaught / kFocal / kFocal;
+  Profile profile = open_profile("realtime");
+  for (const float distance : {0.5F, 0.7F, 1.1F}) {
+    profile.training.min_distance = distance;
+    profile.training.max_distance = distance;
+    const TrainingPicture picture = picture_of(view, profile, 1);
+    EXPECT_NEAR(picture.whole_area, area, 0.08 * area) << distance;
+    for (const TrainingSample& sample : picture.samples) {
+      if (sample.label == 0) continue;
+      ASSERT_NEAR(sample.scale, patch_scale(profile.patch, 0.5 * kFocal, distance), 3) << distance;
+    }
+  }
+}
+
+TEST(TrainingPictures, OnlyWithoutScaleSpaceMustDepthBeKnown) {
+  TrainingView view = round_view();
+  view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  const auto objects = [&](const std::string& name) {
+    const TrainingPicture picture = picture_of(view, open_profile(name), 1);
+    return std::count_if(picture.samples.begin(), picture.samples.end(),
+                         [](const TrainingSample& sample) { return sample.label != 0; });
+  };
+  EXPECT_EQ(objects("gall"), 120);
+  EXPECT_EQ(objects("realtime"), 0);
+}
+
+TEST(TrainingPictures, ATooSmallBackgroundGivesNothing) {
+  RgbdFrame corner = toy::room(3);
+  corner.colour = corner.colour(cv::Rect(0, 0, 120, 120)).clone();
+  corner.depth = corner.depth(cv::Rect(0, 0, 120, 120)).clone();
+  corner.camera = corner.camera.cropped(0, 0, 120, 120);
+  Random random(1);
+  const TrainingPicture picture = object_picture(round_view(), 1, 0, corner, open_profile("gall"), random);
+  EXPECT_TRUE(picture.samples.empty());
+  EXPECT_EQ(picture.whole_area, 0.0F);
+}
+
+TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
+  RgbdFrame room = toy::room(3);
+  room.depth.setTo(0.8F);
+  room.depth.colRange(0, 160).setTo(2.0F);
+  Profile profile = open_profile("realtime");
+  const std::vector<FeatureLevel> levels = feature_levels(profile.features);
+  ASSERT_EQ(levels.size(), 2U);
+  for (const FeatureLevel& level : levels) {
+    const float seen = level.min_distance > 0.0F ? 2.0F : 0.8F;
+    Random random(7);
+    const TrainingPicture picture = background_picture(room, level, profile, random);
+    const auto drawn = static_cast<std::size_t>(profile.training.patches_per_view / kBackgroundPictures);
+    EXPECT_EQ(picture.samples.size(), drawn);
+    EXPECT_EQ(picture.spare_background.size(), drawn * static_cast<std::size_t>(profile.training.spare_background));
+    for (const auto* list : {&picture.samples, &picture.spare_background}) {
+      for (const TrainingSample& sample : *list) {
+        ASSERT_EQ(sample.label, 0);
+        ASSERT_EQ(sample.scale, patch_scale(profile.patch, kFocal * level.scale, seen));
+      }
+    }
+  }
+}
+
+TEST(TrainingPictures, ABackgroundOfAScaleSpaceNeedsNoDepth) {
+  RgbdFrame room = toy::room(3);
+  room.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  const Profile profile = open_profile("gall");
+  for (const FeatureLevel& level : feature_levels(profile.features)) {
+    Random random(7);
+    const TrainingPicture picture = background_picture(room, level, profile, random);
+    EXPECT_EQ(picture.samples.size(), 30U) << level.size_ratio;
+    EXPECT_TRUE(picture.spare_background.empty());
+    for (const TrainingSample& sample : picture.samples) ASSERT_EQ(sample.scale, 256);
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,88 @@
+#include "detector/training/pictures/validation_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "tests/detector/toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+struct Toys {
+  std::vector<TrainingView> views = toy::training_views();
+  std::vector<const TrainingView*> objects;
+  Toys() {
+    for (const TrainingView& view : views) {
+      if (view.class_id != 0) objects.push_back(&view);
+    }
+  }
+};
+
+constexpr ComposedThings kThings = {4, 2};
+
+ValidationFrame compose(const Toys& toys, std::uint64_t seed, double occluded_share) {
+  TrainingSettings settings = toy::quick_profile().training;
+  settings.occluded_share = occluded_share;
+  Random random(seed);
+  return make_validation_frame(toys.objects, toy::room(9), kThings, settings, random);
+}
+
+TEST(ValidationFrames, NameWhatTheyShowAndWhere) {
+  const Toys toys;
+  const RgbdFrame room = toy::room(9);
+  int objects = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const ValidationFrame validation = compose(toys, seed, 0.0);
+    EXPECT_EQ(validation.frame.colour.size(), room.colour.size());
+    for (const ValidationFrame::Object& object : validation.objects) {
+      ++objects;
+      EXPECT_EQ(object.class_id, toys.objects.at(object.view)->class_id);
+      EXPECT_GT(object.visible_fraction, 0.0);
+      EXPECT_LE(object.visible_fraction, 1.0);
+      ASSERT_FALSE(object.box_visible_px.empty());
+      const cv::Point middle = (object.box_visible_px.tl() + object.box_visible_px.br()) / 2;
+      if (object.visible_fraction == 1.0) {
+        EXPECT_LT(validation.frame.depth.at<float>(middle), room.depth.at<float>(middle) - 0.05F);
+      }
+    }
+  }
+  EXPECT_GT(objects, 20);
+}
+
+TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
+  const Toys toys;
+  double open = 0.0;
+  double occluded = 0.0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    for (const auto& object : compose(toys, seed, 0.0).objects) open += object.visible_fraction;
+    for (const auto& object : compose(toys, seed, 1.0).objects) occluded += object.visible_fraction;
+  }
+  EXPECT_LT(occluded, 0.85 * open);
+}
+
+TEST(ValidationFrames, AsManyLookAlikesOfEachSortAsAskedForStandThereToo) {
+  const Toys toys;
+  EXPECT_EQ(compose(toys, 1, 0.0).look_alikes.size(), 4U);
+}
+
+TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
+  const Toys toys;
+  const Toys untouched;
+  const RgbdFrame room = toy::room(9);
+  const cv::Mat colour = room.colour.clone();
+  TrainingSettings settings = toy::quick_profile().training;
+  Random random(1);
+  make_validation_frame(toys.objects, room, kThings, settings, random);
+  EXPECT_EQ(cv::norm(colour, room.colour, cv::NORM_INF), 0.0);
+  for (std::size_t v = 0; v < toys.objects.size(); ++v) {
+    const cv::Mat& view = toys.objects[v]->frame.colour;
+    EXPECT_EQ(cv::norm(view, untouched.objects[v]->frame.colour, cv::NORM_INF), 0.0) << "view " << v;
+    const cv::Mat mask = toys.objects[v]->mask;
+    EXPECT_EQ(cv::norm(toys.objects[v]->frame.depth, untouched.objects[v]->frame.depth, cv::NORM_INF, mask), 0.0)
+        << "view " << v;
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,71 @@
+#include "detector/voting/boxes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
+
+/// A supporter per 2-pixel cell of a rectangle of the frame.
+cv::Rect2f box_of(const cv::Rect& supported) {
+  Forest forest;
+  forest.views.resize(1);
+  forest.views[0].box = {-0.1F, -0.05F, 0.1F, 0.05F};
+  Hypothesis hypothesis;
+  hypothesis.centre_camera = {0, 0, 1};
+  hypothesis.views = {{0, 1.0F}};
+  PatchGrid patches;
+  for (int y = supported.y; y < supported.br().y; y += 2) {
+    for (int x = supported.x; x < supported.br().x; x += 2) {
+      hypothesis.patches.emplace_back(static_cast<std::uint32_t>(patches.cell_px.size()), 1.0F);
+      patches.cell_px.emplace_back(x, y, 2, 2);
+    }
+  }
+  return backprojected_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5});
+}
+
+TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
+  // Whole, the object is seen from 270 to 370 and from 215 to 265.
+  const cv::Rect2f whole = box_of({284, 222, 74, 38});
+  EXPECT_NEAR(whole.x, 270, 0.01);
+  EXPECT_NEAR(whole.y, 215, 0.01);
+  EXPECT_NEAR(whole.br().x, 370, 0.01);
+  EXPECT_NEAR(whole.br().y, 265, 0.01);
+  const cv::Rect2f half = box_of({284, 222, 36, 38});  // the right half is hidden
+  EXPECT_NEAR(half.x, 270, 0.01);
+  EXPECT_NEAR(half.br().x, 320, 0.01);
+  EXPECT_NEAR(half.br().y, 265, 0.01);
+}
+
+TEST(Boxes, WithoutSupportThereIsNoBox) {
+  EXPECT_EQ(backprojected_box({}, {}, {}, kCamera), cv::Rect2f());
+}
+
+Detection boxed(float score, float x) {
+  Detection detection;
+  detection.score = score;
+  detection.box_px = {x, 0, 100, 100};
+  return detection;
+}
+
+TEST(Boxes, OfOverlappingBoxesTheStrongerStays) {
+  // 0 and 20 overlap by IoU 0.67, 20 and 40 too, 0 and 40 by 0.43.
+  const std::vector<Detection> kept =
+      suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, DetectionSettings{});
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_EQ(kept[0].score, 0.9F);
+  EXPECT_EQ(kept[1].score, 0.4F);  // only the dropped one overlapped it
+}
+
+TEST(Boxes, AnotherClassMustBeSignificantlyStrongerToSuppress) {
+  Detection other = boxed(0.3F, 10);
+  other.class_id = 2;
+  EXPECT_EQ(suppress_overlaps({boxed(0.55F, 0), other}, DetectionSettings{}).size(), 2U);
+  EXPECT_EQ(suppress_overlaps({boxed(0.7F, 0), other}, DetectionSettings{}).size(), 1U);
+  other.score = 0.1F;  // five times weaker, but than something that nobody would report
+  EXPECT_EQ(suppress_overlaps({boxed(0.45F, 0), other}, DetectionSettings{}).size(), 2U);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,94 @@
+#include "detector/voting/hypotheses.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace houghstream {
+namespace {
+
+const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
+
+/// A forest of one leaf that takes every patch for the centre of the only class.
+Forest centre_forest() {
+  Forest forest;
+  forest.classes.emplace_back();
+  forest.views.resize(2);
+  forest.roots = {-1};
+  forest.leaves = {0, 1};
+  LeafClass entry;
+  entry.probability = 1.0F;
+  entry.vote_count = 1;
+  entry.view_count = 2;
+  forest.leaf_classes.push_back(entry);
+  forest.votes.push_back({Eigen::Vector3f::Zero(), 1.0F});
+  forest.leaf_views = {{0, 0.25F}, {1, 0.75F}};
+  note_leaf_heads(forest);
+  return forest;
+}
+
+/// Patches in a small cross around a point.
+void add_cluster(const Eigen::Vector3f& centre, float area, PatchGrid& patches) {
+  constexpr float kArm = 0.004F;
+  for (const Eigen::Vector3f& d : {Eigen::Vector3f(kArm, 0, 0), Eigen::Vector3f(-kArm, 0, 0),
+                                   Eigen::Vector3f(0, kArm, 0), Eigen::Vector3f(0, -kArm, 0)}) {
+    patches.x.push_back(0);
+    patches.point_camera.emplace_back(centre + d);
+    patches.area.push_back(area);
+  }
+}
+
+std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
+  const Forest forest = centre_forest();
+  const std::vector<std::int32_t> leaves(patches.size(), 0);
+  PatchBeliefs beliefs(forest, 1, 0.0F);
+  std::vector<std::uint32_t> all(patches.size());
+  std::iota(all.begin(), all.end(), 0U);
+  beliefs.note({0, all.size(), all.data(), leaves.data()});
+  HoughSpace space;
+  cast_votes(forest, 0, patches, beliefs, kCamera, {}, space);
+  return find_hypotheses(forest, space, patches, kCamera, least_mass, {});
+}
+
+TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
+  const Eigen::Vector3f left(-0.15F, 0.05F, 1.0F);
+  const Eigen::Vector3f right(0.15F, 0.05F, 1.02F);
+  PatchGrid patches;
+  add_cluster(left, 0.0001F, patches);
+  add_cluster(right, 0.0002F, patches);  // more of it is seen
+  const std::vector<Hypothesis> found = find(patches, 0.0F);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_LT((found[0].centre_camera - right).norm(), 0.001F) << found[0].centre_camera.transpose();
+  EXPECT_LT((found[1].centre_camera - left).norm(), 0.001F) << found[1].centre_camera.transpose();
+  EXPECT_EQ(found[0].vote_count, 4);
+  const float kernel = vote_kernel(0.004F * 0.004F, DetectionSettings{}.vote_sigma);
+  EXPECT_NEAR(found[0].mass, 4 * 0.0002F * kernel, 1e-6F);
+  EXPECT_NEAR(found[0].weight, 4 * kernel, 0.01F);
+  ASSERT_EQ(found[0].patches.size(), 4U);
+  EXPECT_EQ(found[0].patches[0].first, 4U);
+  ASSERT_EQ(found[0].views.size(), 2U);
+  EXPECT_EQ(found[0].views[0].first, 1U);  // the heavier
+  EXPECT_NEAR(found[0].views[0].second, 0.75F * found[0].weight, 1e-4F);
+}
+
+TEST(Hypotheses, CentresBehindEachOtherAreNotMixed) {
+  PatchGrid patches;
+  add_cluster({0, 0, 0.8F}, 0.0001F, patches);
+  add_cluster({0, 0, 0.8F}, 0.0001F, patches);
+  add_cluster({0, 0, 1.1F}, 0.0001F, patches);
+  const std::vector<Hypothesis> found = find(patches, 0.0F);
+  ASSERT_FALSE(found.empty());
+  EXPECT_NEAR(found[0].centre_camera.z(), 0.8F, 0.001F);
+  EXPECT_EQ(found[0].vote_count, 8);
+}
+
+TEST(Hypotheses, WeakOnesAndEmptySpacesGiveNothing) {
+  PatchGrid patches;
+  EXPECT_TRUE(find(patches, 0.0F).empty());
+  add_cluster({0, 0, 1}, 0.0001F, patches);
+  EXPECT_EQ(find(patches, 0.0002F).size(), 1U);
+  EXPECT_TRUE(find(patches, 0.0005F).empty());
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,89 @@
+#include <map>
+
+#include "pipeline/base/checks.hpp"
+#include "tests/drivers/openni/virtual_camera.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::chrono::seconds kPatience(5);
+using Sensor = SensorImage::Sensor;
+
+std::filesystem::path record(const VirtualCamera& camera, int images, bool jpeg) {
+  CameraOptions options;
+  options.mode = {320, 240, 30};
+  options.record = (camera.folder() / "recorded.oni").string();
+  options.record_jpeg = jpeg;
+  const auto device = OpenniDevice::open_camera("houghstream-virtual://1", options);
+  for (int i = 0; i < images; ++i) EXPECT_TRUE(device->wait(kPatience).has_value());
+  return options.record;
+}
+
+/// A recording's images by their times.
+std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesystem::path& file) {
+  const auto device = OpenniDevice::open_file(file.string());
+  std::map<Sensor, std::map<std::int64_t, cv::Mat>> images;
+  while (!device->ended()) {
+    const std::optional<SensorImage> image = device->wait(kPatience);
+    if (image) images[image->sensor][static_cast<std::int64_t>(image->device_us)] = image->image;
+  }
+  return images;
+}
+
+/// The step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
+int picture_of(const cv::Mat& image, const CameraPictures& pattern) {
+  double least = 1e9;
+  int found = -1;
+  for (int k = 0; k < static_cast<int>(pattern.pictures.size()); ++k) {
+    cv::Mat picture = pattern.pictures[k].depth_mm;
+    if (image.type() == CV_8UC3) cv::cvtColor(pattern.pictures[k].colour, picture, cv::COLOR_RGB2BGR);
+    const double difference = cv::norm(image, picture, cv::NORM_L2SQR);
+    if (difference < least) found = k;
+    least = std::min(least, difference);
+  }
+  return found;
+}
+
+/// Each depth image's colour, by the pattern, lies `apart_us` after it in the file.
+void expect_apart(const std::filesystem::path& file, std::int64_t apart_us) {
+  const CameraPictures pattern = make_test_pattern({320, 240, 262.5, 262.5, 159.5, 119.5});
+  auto images = images_of(file);
+  std::map<int, std::int64_t> colour_times;
+  for (const auto& [time, image] : images[Sensor::kColour]) colour_times[picture_of(image, pattern)] = time;
+  int met = 0;
+  for (const auto& [time, image] : images[Sensor::kDepth]) {
+    const auto colour = colour_times.find(picture_of(image, pattern));
+    if (colour == colour_times.end()) continue;
+    EXPECT_NEAR(static_cast<double>(colour->second - time), static_cast<double>(apart_us), 2.0) << met;
+    ++met;
+  }
+  EXPECT_GE(met, 15);
+  EXPECT_EQ(std::min(images[Sensor::kDepth].begin()->first, images[Sensor::kColour].begin()->first), 0);
+}
+
+TEST(OpenniRecording, ColourKeepsItsDistanceFromItsDepthHoweverLateItComes) {
+  for (const bool jpeg : {false, true}) {
+    const VirtualCamera late("recording_late", "size 320x240\ncan_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n");
+    expect_apart(record(late, 50, jpeg), 8000);
+  }
+}
+
+TEST(OpenniRecording, ColourThatComesAtOnceIsAtItsDepthsTime) {
+  const VirtualCamera camera("recording_prompt", "size 320x240\n");
+  expect_apart(record(camera, 50, false), 0);
+}
+
+/// A recorder and a driver that hands over an image must not wait for each other: images come all the time here.
+TEST(OpenniRecording, EndsWhileImagesCome) {
+  const VirtualCamera camera("recording_ends", "size 320x240\nrate_hz 1000\ncan_sync no\n");
+  CameraOptions options;
+  options.mode = {320, 240, 1000};
+  options.record = (camera.folder() / "recorded.oni").string();
+  for (int i = 0; i < 40; ++i) {
+    const auto device = OpenniDevice::open_camera("houghstream-virtual://1", options);
+    for (int k = 0; k < 5 + i % 10; ++k) EXPECT_TRUE(device->wait(kPatience).has_value());
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,61 @@
+#include "pipeline/base/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+TEST(ParallelFor, EveryItemIsDoneOnceForAnyNumberOfThreads) {
+  for (const int threads : {1, 2, 5}) {
+    std::vector<int> done(1000, 0);
+    parallel_for(threads, 1000, [&](int i) { ++done[static_cast<std::size_t>(i)]; });
+    EXPECT_EQ(done, std::vector<int>(1000, 1)) << threads << " threads";
+  }
+}
+
+TEST(ParallelFor, NothingToDoIsFine) {
+  parallel_for(2, 0, [](int) { FAIL() << "called"; });
+}
+
+TEST(ParallelFor, TheFirstErrorComesOut) {
+  const auto work = [](int i) {
+    if (i == 3 || i == 7) throw std::runtime_error("item " + std::to_string(i));
+  };
+  try {
+    parallel_for(2, 10, work);
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "item 3");
+  }
+}
+
+TEST(ParallelFor, MayBeCalledFromWithinAndFromSeveralThreads) {
+  std::atomic<int> done{0};
+  const auto outer = [&] { parallel_for(3, 20, [&](int) { parallel_for(3, 20, [&](int) { ++done; }); }); };
+  std::thread other(outer);
+  outer();
+  other.join();
+  EXPECT_EQ(done, 2 * 20 * 20);
+}
+
+TEST(ParallelFor, KeepsItsThreads) {
+  std::mutex mutex;
+  std::set<std::thread::id> ids;
+  for (int call = 0; call < 200; ++call) {
+    parallel_for(2, 2, [&](int) {
+      const std::lock_guard lock(mutex);
+      ids.insert(std::this_thread::get_id());
+    });
+  }
+  EXPECT_LE(ids.size(), 2U);
+}
+
+}  // namespace
+}  // namespace houghstream

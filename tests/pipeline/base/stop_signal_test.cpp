@@ -1,0 +1,42 @@
+#include "pipeline/base/stop_signal.hpp"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+
+#include <thread>
+
+namespace houghstream {
+namespace {
+
+TEST(StopSignal, BothOnlySetAFlagWhichAFreshStartClears) {
+  for (const int number : {SIGINT, SIGTERM}) {
+    catch_stop_signals();
+    EXPECT_FALSE(stop_requested());
+    std::raise(number);
+    EXPECT_TRUE(stop_requested());
+    EXPECT_TRUE(stop_requested()) << "it stays";
+  }
+  catch_stop_signals();
+  EXPECT_FALSE(stop_requested());
+}
+
+bool takes(int number) {
+  sigset_t blocked;
+  pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+  return sigismember(&blocked, number) == 0;
+}
+
+TEST(BlockStopSignals, ThreadsThatAreStartedMeanwhileNeverGetThem) {
+  bool threads_takes = true;
+  {
+    const BlockStopSignals block;
+    std::thread([&] { threads_takes = takes(SIGINT) || takes(SIGTERM); }).join();
+  }
+  EXPECT_FALSE(threads_takes);
+  EXPECT_TRUE(takes(SIGINT) && takes(SIGTERM)) << "this thread does, as before";
+  std::thread([&] { threads_takes = takes(SIGINT) && takes(SIGTERM); }).join();
+  EXPECT_TRUE(threads_takes);
+}
+
+}  // namespace
+}  // namespace houghstream

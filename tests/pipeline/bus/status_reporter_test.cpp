@@ -1,0 +1,65 @@
+#include "pipeline/bus/status_reporter.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <thread>
+
+#include "pipeline/bus/channels.hpp"
+
+namespace houghstream {
+namespace {
+
+TEST(StatusReporter, CountsWhatItIsTold) {
+  StatusReporter status("hs-test");
+  for (int i = 0; i < 10; ++i) status.count_received();
+  status.count_skipped(3);
+  for (int i = 1; i <= 6; ++i) status.count_processed(std::chrono::milliseconds(10 * i));
+  status.count_refused("a broken frame");
+  const status_t message = status.message();
+  EXPECT_EQ(message.process, "hs-test");
+  EXPECT_EQ(message.pid, getpid());
+  EXPECT_GT(message.utime, 1600000000000000);
+  EXPECT_EQ(message.frames_received, 10);
+  EXPECT_EQ(message.frames_processed, 6);
+  EXPECT_EQ(message.frames_skipped, 3);
+  EXPECT_EQ(message.frames_refused, 1);
+  EXPECT_EQ(message.rate_hz, 6.0F);
+  EXPECT_FLOAT_EQ(message.latency_p50_ms, 30.0F);
+  EXPECT_FLOAT_EQ(message.latency_p99_ms, 60.0F);
+  EXPECT_EQ(message.last_error, "a broken frame");
+}
+
+TEST(StatusReporter, GapsInTheNumberingAreLostFrames) {
+  StatusReporter status("hs-test");
+  EXPECT_EQ(status.message().frames_lost, -1) << "without a number it cannot be told";
+  EXPECT_TRUE(std::isnan(status.message().latency_p50_ms));
+  status.note_sequence(std::nullopt);
+  EXPECT_EQ(status.message().frames_lost, -1);
+  for (const std::int64_t sequence : {5, 6, 9, 10}) status.note_sequence(sequence);
+  EXPECT_EQ(status.message().frames_lost, 2);
+  for (const std::int64_t sequence : {0, 1, 3}) status.note_sequence(sequence);
+  EXPECT_EQ(status.message().frames_lost, 3) << "a new run starts at 0 and loses nothing by it";
+}
+
+TEST(StatusReporter, IsPublishedOnceASecond) {
+  LcmBus bus("memq://");
+  int seen = 0;
+  bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
+    EXPECT_EQ(decode_message<status_t>(arrival.bytes).process, "hs-test");
+    ++seen;
+  });
+  StatusReporter status("hs-test");
+  for (int i = 0; i < 12; ++i) {
+    status.publish_if_due(bus);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  status.publish_if_due(bus);
+  bus.handle(std::chrono::milliseconds(10));
+  bus.handle(std::chrono::milliseconds(10));
+  EXPECT_EQ(seen, 1);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,113 @@
+#include "pipeline/messages/wire_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/messages/messages.hpp"
+#include "tests/pipeline/test_frame.hpp"
+
+namespace houghstream {
+namespace {
+
+std::vector<std::uint8_t> encoded_frame() {
+  return encode_message(to_message(make_test_frame(1234567), WireFormat{}, 41));
+}
+
+ByteView view(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.data(), bytes.size()};
+}
+
+void put_int32(std::vector<std::uint8_t>& bytes, std::size_t position, std::int32_t value) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    bytes[position + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> (24 - 8 * i));
+  }
+}
+
+// Where counts stand in an images_t: fingerprint, utime, n_images, 2 types, then the first image_t.
+constexpr std::size_t kImageCount = 16;
+constexpr std::size_t kFirstImageSize = kImageCount + 4 + 2 * 2 + 8 + 4 * 4;
+
+TEST(WireCheck, FingerprintsAreThoseOfBotCore) {
+  EXPECT_EQ(static_cast<std::uint64_t>(images_t::getHash()), 0x20ba4f05e8f5e33aULL);
+  EXPECT_EQ(static_cast<std::uint64_t>(image_t::getHash()), 0x14739ffe13d5f5f0ULL);
+}
+
+TEST(WireCheck, HeaderIsReadWithoutDecoding) {
+  const std::vector<std::uint8_t> bytes = encoded_frame();
+  const FrameHeader header = read_frame_header(view(bytes));
+  EXPECT_EQ(header.utime, 1234567);
+  EXPECT_EQ(header.sequence, 41);
+  EXPECT_EQ(read_utime(view(bytes), "test"), 1234567);
+}
+
+TEST(WireCheck, AFrameWithoutCounterHasNone) {
+  images_t message = to_message(make_test_frame(5), WireFormat{}, 41);
+  message.images[0].metadata.clear();
+  message.images[0].nmetadata = 0;
+  EXPECT_FALSE(read_frame_header(view(encode_message(message))).sequence.has_value());
+}
+
+TEST(WireCheck, AnUnreadableCounterIsRefused) {
+  images_t message = to_message(make_test_frame(5), WireFormat{}, 41);
+  message.images[0].metadata[2].value = {'4', 'x'};
+  EXPECT_THROW(read_frame_header(view(encode_message(message))), InputError);
+}
+
+TEST(WireCheck, EveryCutIsRefused) {
+  std::vector<std::uint8_t> bytes = encoded_frame();
+  EXPECT_NO_THROW(decode_message<images_t>(view(bytes)));
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    EXPECT_THROW(decode_message<images_t>({bytes.data(), size}), InputError) << size;
+    EXPECT_THROW(read_frame_header({bytes.data(), size}), InputError) << size;
+  }
+  bytes.push_back(0);
+  EXPECT_THROW(decode_message<images_t>(view(bytes)), InputError);
+  EXPECT_THROW(read_frame_header(view(bytes)), InputError);
+}
+
+TEST(WireCheck, NegativeAndAbsurdCountsAreRefused) {
+  for (const std::size_t position : {kImageCount, kFirstImageSize}) {
+    for (const std::int32_t count : {-1, -2147483647 - 1, 2147483647, 100000000}) {
+      std::vector<std::uint8_t> bytes = encoded_frame();
+      put_int32(bytes, position, count);
+      EXPECT_THROW(decode_message<images_t>(view(bytes)), InputError) << position << " " << count;
+      EXPECT_THROW(read_frame_header(view(bytes)), InputError) << position << " " << count;
+    }
+  }
+}
+
+TEST(WireCheck, AnotherTypeIsRefusedByName) {
+  const std::vector<std::uint8_t> bytes = encoded_frame();
+  try {
+    decode_message<detections_t>(view(bytes));
+    FAIL() << "images_t passed as detections_t";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("20ba4f05e8f5e33a"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("detections_t"), std::string::npos) << error.what();
+  }
+}
+
+TEST(WireCheck, DamagedResultsNeverCrash) {
+  Detections detections;
+  detections.utime = 7;
+  detections.source_channel = "OPENNI_FRAME";
+  Detection detection;
+  detection.class_id = 1;
+  detection.class_name = "bowl";
+  detection.rotations.resize(3);
+  detections.detections = {detection};
+  detections.stages = {{"detect.forest", 3}};
+  const std::vector<std::uint8_t> whole = encode_message(to_message(detections));
+  EXPECT_EQ(decode_message<detections_t>(view(whole)).n_detections, 1);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    std::vector<std::uint8_t> bytes = whole;
+    bytes[i] ^= 0xFFU;
+    try {
+      detections_from_message(decode_message<detections_t>(view(bytes)));
+    } catch (const InputError&) {
+      continue;  // refusing is right; anything else thrown, or a crash, is not
+    }
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,166 @@
+#include "pipeline/process/detect_process.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <houghstream/status_t.hpp>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "tests/pipeline/process_test.hpp"
+
+namespace houghstream {
+namespace {
+
+using std::chrono::milliseconds;
+
+Detections find_nothing(const RgbdFrame& frame) {
+  Detections none;
+  none.utime = frame.utime;
+  none.stages = frame.stages;
+  return none;
+}
+
+images_t frame_message(std::int64_t utime, std::int64_t sequence) {
+  return to_message(make_test_frame(utime), WireFormat{}, sequence);
+}
+
+std::function<void(LcmBus&)> process_with(std::function<Detections(const RgbdFrame&)> detect) {
+  return [detect](LcmBus& bus) { run_detect_process(bus, DetectProcessOptions{}, detect); };
+}
+
+TEST(DetectProcess, PublishesEmptyResultsToo) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  test.start(process_with(find_nothing));
+  test.bus.publish(channel::kFrame, frame_message(1000, 0));
+  ASSERT_TRUE(test.wait_for(channel::kDetections, 1));
+  const auto detections = test.at<detections_t>(channel::kDetections, 0);
+  EXPECT_EQ(detections.utime, 1000);
+  EXPECT_EQ(detections.n_detections, 0);
+  EXPECT_EQ(detections.source_channel, "OPENNI_FRAME");
+  ASSERT_EQ(detections.n_stages, 2);
+  EXPECT_EQ(detections.stages[1].stage, "detect.decode");
+  EXPECT_LT(test.stop(), 1000.0);
+  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_processed, 1);
+}
+
+TEST(DetectProcess, TakesTheNewestAndAccountsForTheRest) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  test.start(process_with([](const RgbdFrame& frame) {
+    std::this_thread::sleep_for(milliseconds(60));
+    return find_nothing(frame);
+  }));
+  constexpr std::int64_t kFrames = 30;
+  for (std::int64_t i = 0; i < kFrames; ++i) {
+    if (i != 7) test.bus.publish(channel::kFrame, frame_message(1000 + i, i));
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  const auto newest = [&] { return test.last<detections_t>(channel::kDetections).utime; };
+  ASSERT_TRUE(test.wait_for(channel::kDetections, 1));
+  for (int i = 0; i < 200 && newest() != 1000 + kFrames - 1; ++i) std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_EQ(newest(), 1000 + kFrames - 1) << "the last frame has to be worked on";
+  test.stop();
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_received, kFrames - 1);
+  EXPECT_EQ(status.frames_lost, 1);
+  EXPECT_GT(status.frames_skipped, 10);
+  EXPECT_EQ(status.frames_processed + status.frames_skipped, status.frames_received);
+  EXPECT_EQ(static_cast<std::int64_t>(test.count(channel::kDetections)), status.frames_processed);
+}
+
+TEST(DetectProcess, BadFramesAreCountedReportedAndDropped) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  test.start(process_with([](const RgbdFrame& frame) {
+    if (frame.utime == 4) fail("the detector refuses frame 4");
+    return find_nothing(frame);
+  }));
+  const auto send = [&](const images_t& message) {
+    test.bus.publish(channel::kFrame, message);
+    std::this_thread::sleep_for(milliseconds(150));
+  };
+  images_t truncated = frame_message(1, 0);
+  truncated.images[0].data.resize(100);
+  truncated.images[0].size = 100;
+  send(truncated);
+  images_t no_camera = frame_message(2, 1);
+  no_camera.images[0].metadata.clear();
+  no_camera.images[0].nmetadata = 0;
+  send(no_camera);
+  const std::vector<std::uint8_t> noise(50, 0x5A);
+  test.bus.publish(channel::kFrame, {noise.data(), noise.size()}, 0);
+  std::this_thread::sleep_for(milliseconds(150));
+  send(frame_message(4, 3));
+  send(frame_message(5, 4));
+  ASSERT_TRUE(test.wait_for(channel::kDetections, 1));
+  test.stop();
+  EXPECT_EQ(test.count(channel::kDetections), 1U);
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_received, 5);
+  EXPECT_EQ(status.frames_refused, 4);
+  EXPECT_EQ(status.frames_processed, 1);
+  EXPECT_EQ(status.last_error, "the detector refuses frame 4");
+}
+
+// As openni2-camera-lcm and the bot_core drivers send them: no metadata, no frame counter.
+TEST(DetectProcess, FramesOfOtherDriversAreWorkedOnWithTheCameraOption) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  DetectProcessOptions options;
+  options.camera = make_test_frame(1).camera;
+  Camera seen;
+  test.start([&](LcmBus& bus) {
+    run_detect_process(bus, options, [&](const RgbdFrame& frame) {
+      seen = frame.camera;
+      return find_nothing(frame);
+    });
+  });
+  images_t message = frame_message(7, 0);
+  for (image_t& image : message.images) {
+    image.metadata.clear();
+    image.nmetadata = 0;
+  }
+  message.images[1].row_stride = 2 * message.images[1].width;  // those drivers state it for zipped depth too
+  test.bus.publish(channel::kFrame, message);
+  ASSERT_TRUE(test.wait_for(channel::kDetections, 1));
+  test.stop();
+  EXPECT_EQ(seen, *options.camera);
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_processed, 1);
+  EXPECT_EQ(status.frames_refused, 0);
+}
+
+TEST(DetectProcess, ALogIsWorkedOnWithoutSkipping) {
+  catch_stop_signals();
+  const auto folder = std::filesystem::temp_directory_path();
+  const auto input = folder / ("detect_process_in." + std::to_string(getpid()));
+  const auto output = folder / ("detect_process_out." + std::to_string(getpid()));
+  LogWriter writer(input);
+  for (std::int64_t i = 0; i < 20; ++i) {
+    const std::vector<std::uint8_t> bytes = encode_message(frame_message(i, i));
+    writer.write(i, channel::kFrame, {bytes.data(), bytes.size()});
+  }
+  writer.close();
+  {
+    LcmBus bus("file://" + input.string(), output.string());
+    process_with([](const RgbdFrame& frame) {
+      std::this_thread::sleep_for(milliseconds(2));
+      return find_nothing(frame);
+    })(bus);
+  }
+  LogReader results(output);
+  for (std::int64_t i = 0; i < 20; ++i) {
+    const std::optional<LogEvent> event = results.next();
+    ASSERT_TRUE(event.has_value());
+    EXPECT_EQ(event->channel, channel::kDetections);
+    EXPECT_EQ(read_utime({event->data.data(), event->data.size()}, "test"), i);
+  }
+  EXPECT_FALSE(results.next().has_value());
+
+  std::filesystem::resize_file(input, std::filesystem::file_size(input) - 10);
+  LcmBus cut("file://" + input.string(), output.string());
+  EXPECT_THROW(process_with(find_nothing)(cut), InputError);
+  std::filesystem::remove(input);
+  std::filesystem::remove(output);
+}
+
+}  // namespace
+}  // namespace houghstream

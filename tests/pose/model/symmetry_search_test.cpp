@@ -1,0 +1,144 @@
+#include "pose/model/symmetry_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "pipeline/base/checks.hpp"
+#include "tools/render/world/objects/mesh_parts.hpp"
+#include "tools/render/world/objects/objects.hpp"
+
+namespace houghstream {
+namespace {
+
+const cv::Mat kGrey(8, 8, CV_8UC3, cv::Scalar(128, 128, 128));
+
+Mesh grey_box(double x, double y, double z) {
+  return box(Eigen::Vector3d(x, y, z), kGrey);
+}
+
+Mesh solid_of_revolution(double radius, double top_radius, double height, int segments) {
+  return lathe(with_arc_length({{0, 0, 0}, {radius, 0, 0}, {top_radius, height, 0}, {0, height, 0}}), kGrey, segments);
+}
+
+Mesh moved(Mesh mesh, const Eigen::Isometry3d& T) {
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex = T.cast<float>() * vertex;
+  return mesh;
+}
+
+Mesh taught(const std::string& name) {
+  return make_taught_object(taught_object_id(name)).thing->mesh;
+}
+
+constexpr bool kShape = false;
+constexpr bool kColour = true;
+
+Symmetries find(const Mesh& mesh, bool compare_colours = kShape) {
+  SymmetrySearch settings;
+  settings.compare_colours = compare_colours;
+  return find_symmetries(mesh, settings);
+}
+
+/// Whole degrees of the turns, in order.
+std::multiset<int> angles(const Symmetries& symmetries) {
+  std::multiset<int> out;
+  for (const Eigen::Isometry3d& turn : symmetries.discrete)
+    out.insert(static_cast<int>(std::lround(Eigen::AngleAxisd(turn.linear()).angle() * 180.0 / M_PI)));
+  return out;
+}
+
+TEST(SymmetrySearch, ABoxHasThreeHalfTurns) {
+  const Symmetries found = find(grey_box(0.1, 0.2, 0.3));
+  EXPECT_TRUE(found.continuous.empty());
+  EXPECT_EQ(angles(found), (std::multiset<int>{180, 180, 180}));
+}
+
+TEST(SymmetrySearch, ASquareBoxHasQuarterTurnsAboutOneAxis) {
+  EXPECT_EQ(angles(find(grey_box(0.1, 0.1, 0.3))), (std::multiset<int>{90, 90, 180, 180, 180, 180, 180}));
+  EXPECT_EQ(find(grey_box(0.1, 0.11, 0.3)).discrete.size(), 3U) << "sides that differ by more than the tolerance";
+}
+
+TEST(SymmetrySearch, ACubeHasTheTwentyThreeTurnsOfItsGroup) {
+  const std::multiset<int> turns = angles(find(grey_box(0.1, 0.1, 0.1)));
+  EXPECT_EQ(turns.size(), 23U);
+  EXPECT_EQ(turns.count(90), 6U);
+  EXPECT_EQ(turns.count(120), 8U);
+  EXPECT_EQ(turns.count(180), 9U);
+}
+
+TEST(SymmetrySearch, ACylinderTurnsFreelyAndUpsideDownAConeOnlyFreely) {
+  const Symmetries cylinder = find(solid_of_revolution(0.04, 0.04, 0.1, 48));
+  ASSERT_EQ(cylinder.continuous.size(), 1U);
+  EXPECT_NEAR(std::abs(cylinder.continuous[0].axis.z()), 1.0, 1e-9);
+  EXPECT_NEAR(cylinder.continuous[0].offset.head<2>().norm(), 0.0, 1e-6);
+  ASSERT_EQ(cylinder.discrete.size(), 1U);
+  EXPECT_NEAR((cylinder.discrete[0] * Eigen::Vector3d(0, 0, 0.1)).z(), 0.0, 1e-6) << "top to bottom";
+  const Symmetries cone = find(solid_of_revolution(0.04, 0.02, 0.1, 48));
+  EXPECT_EQ(cone.continuous.size(), 1U);
+  EXPECT_TRUE(cone.discrete.empty());
+}
+
+TEST(SymmetrySearch, AHexagonalFrustumHasSixFoldTurns) {
+  EXPECT_EQ(angles(find(solid_of_revolution(0.04, 0.02, 0.06, 6))), (std::multiset<int>{60, 60, 120, 120, 180}));
+}
+
+TEST(SymmetrySearch, WhereTheMeshLiesDoesNotMatter) {
+  Eigen::Isometry3d T(Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.5, -0.3, 0.8).normalized()));
+  T.pretranslate(Eigen::Vector3d(0.3, -0.1, 0.2));
+  EXPECT_EQ(angles(find(moved(grey_box(0.1, 0.2, 0.3), T))), (std::multiset<int>{180, 180, 180}));
+  const Symmetries cone = find(moved(solid_of_revolution(0.04, 0.02, 0.1, 48), T));
+  ASSERT_EQ(cone.continuous.size(), 1U);
+  EXPECT_NEAR(std::abs(cone.continuous[0].axis.dot(T.linear().col(2))), 1.0, 1e-6);
+  const Eigen::Vector3d from_axis = T.inverse() * cone.continuous[0].offset;
+  EXPECT_NEAR(from_axis.head<2>().norm(), 0.0, 1e-6);
+}
+
+TEST(SymmetrySearch, ABallHasTwoFreeAxes) {
+  std::vector<ProfilePoint> profile;
+  for (int i = 0; i <= 24; ++i) profile.push_back({0.05 * std::sin(M_PI * i / 24), -0.05 * std::cos(M_PI * i / 24), 0});
+  profile.front().radius = profile.back().radius = 0.0;
+  EXPECT_EQ(find(lathe(with_arc_length(profile), kGrey)).continuous.size(), 2U);
+}
+
+TEST(SymmetrySearch, ABowlIsFreeAboutItsAxisInShapeAndColour) {
+  for (const bool compare : {kShape, kColour}) {
+    const Symmetries bowl = find(taught("bowl"), compare);
+    ASSERT_EQ(bowl.continuous.size(), 1U);
+    EXPECT_NEAR(bowl.continuous[0].axis.z(), 1.0, 1e-9);
+    EXPECT_TRUE(bowl.discrete.empty()) << "a bowl upside down is another";
+  }
+}
+
+TEST(SymmetrySearch, ALabelBreaksTheSymmetryOfACan) {
+  EXPECT_EQ(find(taught("soda_can")).continuous.size(), 1U);
+  EXPECT_TRUE(find(taught("soda_can"), kColour).continuous.empty());
+}
+
+TEST(SymmetrySearch, APrintBreaksTheSymmetriesOfACarton) {
+  EXPECT_EQ(angles(find(taught("cereal_box"))), (std::multiset<int>{180, 180, 180}));
+  EXPECT_TRUE(find(taught("cereal_box"), kColour).empty());
+}
+
+TEST(SymmetrySearch, AHandleLeavesAMugNone) {
+  EXPECT_TRUE(find(taught("coffee_mug")).empty());
+}
+
+TEST(SymmetrySearch, VertexColoursCountWhereThereIsNoTexture) {
+  Mesh mesh = grey_box(0.1, 0.2, 0.3);
+  mesh.texture.release();
+  mesh.uvs.clear();
+  EXPECT_EQ(find(mesh, kColour).discrete.size(), 3U) << "nothing to compare";
+  // Red at the top, blue at the bottom: only half a turn about z is left.
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    mesh.colours.push_back(vertex.z() > 0.0F ? cv::Vec3b(0, 0, 255) : cv::Vec3b(255, 0, 0));
+  const Symmetries found = find(mesh, kColour);
+  ASSERT_EQ(found.discrete.size(), 1U);
+  EXPECT_NEAR(found.discrete[0].linear()(2, 2), 1.0, 1e-9);
+}
+
+TEST(SymmetrySearch, RefusesAMeshWithoutSurface) {
+  EXPECT_THROW(find(Mesh()), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,67 @@
+#include "pose/verification/depth_score.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/pose/test_scene.hpp"
+
+namespace houghstream {
+namespace {
+
+using namespace test_scene;
+
+const DepthTolerance kTolerance{0.008, DepthNoise()};
+
+struct MugOnTable {
+  Mesh object = mug();
+  Mesh ground = table();
+  Eigen::Isometry3d truth = standing(60.0, 30.0, 0.9);
+  RgbdFrame frame = noisy_frame({{&object, truth, 1}, {&ground, truth* Eigen::Translation3d(0, 0, -0.05), 2}}, 1);
+  ObjectModel model = make_object_model("mug", object, ModelSettings());
+};
+
+TEST(DepthScore, TruthScoresHighestAndMovesLowerIt) {
+  const MugOnTable scene;
+  const DepthScore truth = score_pose(scene.frame, scene.model, scene.truth, 400, kTolerance);
+  EXPECT_GT(truth.agreeing, 0.7F);
+  EXPECT_LT(truth.violating, 0.05F);
+  Random random(2);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Isometry3d moved = perturbed(scene.truth, 10.0, 0.02, random);
+    EXPECT_LT(score_pose(scene.frame, scene.model, moved, 400, kTolerance).value, truth.value);
+  }
+}
+
+TEST(DepthScore, InFrontViolatesBehindAndUnknownAreNeutral) {
+  const MugOnTable scene;
+  Eigen::Isometry3d nearer = scene.truth;
+  nearer.translation() *= 0.8;
+  EXPECT_GT(score_pose(scene.frame, scene.model, nearer, 400, kTolerance).violating, 0.9F);
+  Eigen::Isometry3d farther = scene.truth;
+  farther.translation() *= 1.2;
+  const DepthScore behind = score_pose(scene.frame, scene.model, farther, 400, kTolerance);
+  EXPECT_LT(behind.violating, 0.1F);
+  EXPECT_LT(behind.agreeing, 0.1F);
+  RgbdFrame blind = scene.frame;
+  blind.depth.setTo(std::nanf(""));
+  EXPECT_EQ(score_pose(blind, scene.model, scene.truth, 400, kTolerance).value, 0.0F);
+  Eigen::Isometry3d outside = scene.truth;
+  outside.translation() = Eigen::Vector3d(0, 0, -1);
+  EXPECT_EQ(score_pose(scene.frame, scene.model, outside, 400, kTolerance).value, 0.0F);
+}
+
+TEST(DepthScore, ShiftAlongTheRayIsFound) {
+  const MugOnTable scene;
+  for (const double off : {-0.04, 0.0, 0.03}) {
+    Eigen::Isometry3d moved = scene.truth;
+    moved.translation() *= (moved.translation().z() + off) / moved.translation().z();
+    const DepthShift found = best_depth_shift(scene.frame, scene.model, moved, 200, 0.06, kTolerance);
+    EXPECT_NEAR(found.shift_m, -off, 0.006);
+    EXPECT_GT(found.score.agreeing, 0.6F);
+  }
+  RgbdFrame blind = scene.frame;
+  blind.depth.setTo(std::nanf(""));
+  EXPECT_EQ(best_depth_shift(blind, scene.model, scene.truth, 200, 0.06, kTolerance).shift_m, 0.0);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,73 @@
+#include "pose/verification/quality.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+/// A pose about which nothing is wrong.
+PoseEvidence good() {
+  PoseEvidence evidence;
+  evidence.detection_score = 0.9F;
+  evidence.depth.rendered = 2000;
+  evidence.depth.agreeing = 1800;
+  evidence.depth.violating = 20;
+  evidence.depth.outline_ends = 150;
+  evidence.depth.outline_continues = 15;
+  evidence.colour = ColourComparison{400, 0.8F, 14.0F, 5.0F};
+  return evidence;
+}
+
+float quality(const PoseEvidence& evidence) {
+  return pose_quality(quality_terms(evidence, {}), {});
+}
+
+PoseStatus reason(const PoseEvidence& evidence) {
+  return reason_against(quality_terms(evidence, {}), {});
+}
+
+TEST(PoseQuality, IsAProbabilityThatIsHighWhereNothingIsWrong) {
+  EXPECT_GT(quality(good()), 0.95F);
+  EXPECT_LE(quality(good()), 1.0F);
+  PoseEvidence nothing;
+  EXPECT_GE(quality(nothing), 0.0F);
+  EXPECT_LT(quality(nothing), 0.05F);
+}
+
+TEST(PoseQuality, WhatWasSeenThroughSpeaksAgainstAPose) {
+  PoseEvidence evidence = good();
+  evidence.depth.violating = 900;
+  evidence.depth.agreeing = 900;
+  EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
+  EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByDepth);
+}
+
+TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
+  PoseEvidence evidence = good();
+  std::swap(evidence.depth.outline_ends, evidence.depth.outline_continues);
+  EXPECT_LT(quality(evidence), quality(good()));
+  EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByOutline);
+}
+
+TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
+  PoseEvidence evidence = good();
+  evidence.colour->left_over = 40.0F;
+  EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
+  EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
+}
+
+TEST(PoseQuality, AWeakDetectionSpeaksAgainstAPose) {
+  PoseEvidence evidence = good();
+  evidence.detection_score = 0.0F;  // no infinite odds
+  EXPECT_LT(quality(evidence), quality(good()));
+  EXPECT_EQ(reason(evidence), PoseStatus::kLowScore);
+}
+
+TEST(PoseQuality, AModelWithoutColoursIsJudgedByTheRest) {
+  PoseEvidence evidence = good();
+  evidence.colour.reset();
+  EXPECT_GT(quality(evidence), 0.9F);
+}
+
+}  // namespace
+}  // namespace houghstream

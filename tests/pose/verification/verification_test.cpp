@@ -1,0 +1,75 @@
+#include "pose/verification/verification.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/pose/test_scene.hpp"
+
+namespace houghstream {
+namespace {
+
+using namespace test_scene;
+
+const DepthTolerance kTolerance{0.008, DepthNoise()};
+
+struct BoxOnTable {
+  Mesh object = cereal_box();
+  Mesh ground = table();
+  Eigen::Isometry3d truth = standing(30.0, 30.0, 1.0);
+  RgbdFrame frame = noisy_frame({{&object, truth, 1}, {&ground, truth* Eigen::Translation3d(0, 0, -0.13), 2}}, 1);
+};
+
+TEST(Verification, TruePoseAgreesAlmostEverywhere) {
+  const BoxOnTable scene;
+  const Verification found = verify_pose(scene.frame, scene.object, scene.truth, kTolerance);
+  EXPECT_GT(found.rendered, 5000);
+  EXPECT_GT(found.visible_fraction(), 0.95F);  // 2 % of the depth is lost
+  EXPECT_LT(found.free_space_violation(), 0.01F);
+  EXPECT_EQ(found.occluded, 0);
+  EXPECT_GT(found.outline_ends, found.outline_continues);
+}
+
+TEST(Verification, ModelInFrontOfWhatWasSeenViolatesFreeSpace) {
+  const BoxOnTable scene;
+  Eigen::Isometry3d nearer = scene.truth;
+  nearer.translation() *= 0.9;
+  const Verification found = verify_pose(scene.frame, scene.object, nearer, kTolerance);
+  EXPECT_GT(found.free_space_violation(), 0.9F);
+}
+
+TEST(Verification, ModelBehindWhatWasSeenIsOccludedNotContradicted) {
+  const BoxOnTable scene;
+  Eigen::Isometry3d farther = scene.truth;
+  farther.translation() *= 1.1;
+  const Verification found = verify_pose(scene.frame, scene.object, farther, kTolerance);
+  EXPECT_GT(found.occluded, 0.8 * found.rendered);
+  EXPECT_LT(found.free_space_violation(), 0.1F);
+}
+
+TEST(Verification, FaceSunkIntoTheTableAgreesButHasNoOutline) {
+  const BoxOnTable scene;
+  Eigen::Isometry3d sunk =
+      scene.truth * Eigen::Translation3d(-0.3, 0.2, -0.13 - 0.03);  // its large face in the table's
+  sunk.rotate(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX()));
+  const Verification found = verify_pose(scene.frame, scene.object, sunk, kTolerance);
+  EXPECT_GT(found.visible_fraction(), 0.4F);
+  EXPECT_LT(found.free_space_violation(), 0.01F);
+  EXPECT_GT(found.outline_continues, 20 * found.outline_ends);
+}
+
+TEST(Verification, OutsideTheImageNothingIsRendered) {
+  const BoxOnTable scene;
+  for (const Eigen::Vector3d& place : {Eigen::Vector3d(5, 0, 1), Eigen::Vector3d(0, 0, -1)}) {
+    Eigen::Isometry3d outside = scene.truth;
+    outside.translation() = place;
+    const Verification found = verify_pose(scene.frame, scene.object, outside, kTolerance);
+    EXPECT_EQ(found.rendered, 0);
+    EXPECT_EQ(found.visible_fraction(), 0.0F);
+    EXPECT_EQ(found.free_space_violation(), 0.0F);
+  }
+  Eigen::Isometry3d half = scene.truth;
+  half.translation().x() = -0.62;  // cut by the left border
+  EXPECT_GT(verify_pose(scene.frame, scene.object, half, kTolerance).rendered, 100);
+}
+
+}  // namespace
+}  // namespace houghstream

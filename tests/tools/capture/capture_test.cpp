@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/wire_check.hpp"
+#include "tests/pipeline/test_frame.hpp"
+#include "tools/capture/publish_frames.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Frames at 1000, 2000, ...
+class FakeSource : public FrameSource {
+ public:
+  explicit FakeSource(int frames) : left_(frames) {}
+  std::optional<RgbdFrame> next() override {
+    if (left_ == 0) return std::nullopt;
+    --left_;
+    return make_test_frame(1000 + 1000 * count_++);
+  }
+  double rate_hz() const override { return 1e3; }
+
+ private:
+  int left_;
+  int count_ = 0;
+};
+
+class CaptureLog : public testing::Test {
+ protected:
+  CaptureLog() : file(std::filesystem::temp_directory_path() / ("capture_test." + std::to_string(getpid()))) {
+    catch_stop_signals();
+  }
+  ~CaptureLog() override { std::filesystem::remove(file); }
+
+  /// Timestamps, frame times and frame counters of what was written.
+  struct Line {
+    std::int64_t timestamp = 0;
+    std::int64_t utime = 0;
+    std::int64_t sequence = 0;
+  };
+  std::vector<Line> capture(int frames_in_source, const CaptureSettings& settings) const {
+    capture_to_log([&](const CameraListener&) { return std::make_unique<FakeSource>(frames_in_source); }, settings,
+                   file.string());
+    std::vector<Line> lines;
+    LogReader reader(file);
+    while (const std::optional<LogEvent> event = reader.next()) {
+      const FrameHeader header = read_frame_header({event->data.data(), event->data.size()});
+      EXPECT_EQ(event->channel, settings.channel);
+      lines.push_back({event->timestamp, header.utime, header.sequence.value_or(-1)});
+    }
+    return lines;
+  }
+
+  const std::filesystem::path file;
+};
+
+TEST_F(CaptureLog, HoldsTheSourcesFrames) {
+  const std::vector<Line> lines = capture(4, CaptureSettings{});
+  ASSERT_EQ(lines.size(), 4U);
+  for (std::int64_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(lines[i].utime, 1000 + 1000 * i);
+    EXPECT_EQ(lines[i].timestamp, 1000 + 1000 * i);
+    EXPECT_EQ(lines[i].sequence, i);
+  }
+}
+
+TEST_F(CaptureLog, IsStampedAtTheRateAskedFor) {
+  CaptureSettings settings;
+  settings.rate_hz = 10.0;
+  const std::vector<Line> lines = capture(3, settings);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[2].timestamp, 1000 + 200000);
+  EXPECT_EQ(lines[2].utime, 3000) << "a frame keeps its name";
+}
+
+TEST_F(CaptureLog, LoopsWithoutRepeatingATime) {
+  CaptureSettings settings;
+  settings.loop = true;
+  settings.frames = 8;
+  const std::vector<Line> lines = capture(3, settings);
+  ASSERT_EQ(lines.size(), 8U);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].utime, 1000 + 1000 * static_cast<std::int64_t>(i));
+    EXPECT_EQ(lines[i].sequence, static_cast<std::int64_t>(i));
+  }
+}
+
+TEST_F(CaptureLog, RefusesWhatMakesNoSense) {
+  EXPECT_THROW(capture(0, CaptureSettings{}), InputError);
+  CaptureSettings settings;
+  settings.loop = true;
+  EXPECT_THROW(capture(0, settings), InputError);
+  settings = CaptureSettings{};
+  settings.rate_hz = 0.0;
+  EXPECT_THROW(capture(3, settings), InputError);
+  settings = CaptureSettings{};
+  settings.format.jpeg_quality = 1000;
+  EXPECT_THROW(capture(3, settings), InputError);
+}
+
+TEST(Capture, KeepsTheRateOnTheNetwork) {
+  catch_stop_signals();
+  CaptureSettings settings;
+  settings.rate_hz = 50.0;
+  const CaptureResult result =
+      capture_to_network([](const CameraListener&) { return std::make_unique<FakeSource>(11); }, settings, "memq://");
+  EXPECT_EQ(result.frames, 11);
+  EXPECT_GE(result.seconds, 0.19);
+  EXPECT_GT(result.bytes, 11 * 1000);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
+#include "tests/drivers/test_files.hpp"
+#include "tools/evaluate/report.hpp"
+#include "tools/evaluate/result_log.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+const cv::Rect kBox(10, 10, 50, 50);
+
+Detection detect(const std::string& name, const cv::Rect& box, float score) {
+  Detection out;
+  out.class_id = 1;
+  out.class_name = name;
+  out.box_px = box;
+  out.score = score;
+  return out;
+}
+
+/// Two frames with a mug in each: found with a good pose beside a wrong bottle, and skipped.
+std::vector<EvaluatedFrame> two_frames() {
+  std::vector<EvaluatedFrame> frames(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    frames[i].utime = static_cast<std::int64_t>(i);
+    NamedObject mug;
+    mug.class_name = "mug";
+    mug.truth.box_visible_px = kBox;
+    frames[i].objects = {mug};
+  }
+  frames[0].detections =
+      Detections{0, "", {detect("mug", kBox, 0.9F), detect("bottle", kBox, 0.4F)}, {{"detect.forest", 4000}}};
+  ObjectPose pose;
+  pose.detection_index = 0;
+  pose.status = PoseStatus::kValid;
+  pose.T_camera_object = Eigen::Isometry3d::Identity();
+  frames[0].poses = ObjectPoses{0, "", {pose}, {{"detect.forest", 4000}, {"pose.icp", 2000}}};
+  return frames;
+}
+
+const std::map<std::string, PoseModel> kModels = {{"mug", {{{0.0F, 0.0F, 0.1F}}, 0.2, false}}};
+
+TEST(EvaluationReport, SummaryHoldsTheFigures) {
+  const EvaluationRules rules;
+  const Evaluation evaluation = evaluate(two_frames(), {"mug", "can"}, kModels, rules);
+  Latencies latencies;
+  latencies.detect_ms = {5.0};
+  const OrderedJson json = summary_json(evaluation, rules, latencies);
+  EXPECT_EQ(json["frames"], 2);
+  EXPECT_EQ(json["frames_processed"], 1);
+  EXPECT_EQ(json["auc"]["mug"], 0.5);
+  EXPECT_TRUE(json["auc"]["can"].is_null());
+  EXPECT_EQ(json["auc"]["mean"], 0.5);
+  EXPECT_EQ(json["precision"]["mug"], 1.0);
+  EXPECT_EQ(json["recall"]["mug"], 0.5);
+  EXPECT_EQ(json["false_detections"], 1) << "the bottle, though it is not listed";
+  EXPECT_EQ(json["false_per_frame"], 1.0);
+  EXPECT_EQ(json["pose_recall_add_s_10"]["mug"], 1.0);
+  EXPECT_EQ(json["latency_ms"]["detect"]["p50"], 5.0);
+  EXPECT_TRUE(json["latency_ms"]["pose"]["p50"].is_null());
+  EXPECT_EQ(json["stage_ms_median"]["pose.icp"], 2.0);
+}
+
+TEST(EvaluationReport, AverageRecallsStandInTheSummaryWhereTheyWereMeasured) {
+  const EvaluationRules rules;
+  Evaluation evaluation = evaluate(two_frames(), {"mug"}, kModels, rules);
+  EXPECT_FALSE(summary_json(evaluation, rules, std::nullopt).contains("bop19"));
+  EXPECT_EQ(summary_json(evaluation, rules, std::nullopt)["pose_recall_add_or_add_s_10"]["mean"], 1.0);
+  evaluation.localisation = LocalisationScores{{{"mug", {2, 0.3, 0.5, 0.4, 0.4}}}, {2, 0.3, 0.5, 0.4, 0.4}};
+  const OrderedJson bop = summary_json(evaluation, rules, std::nullopt)["bop19"];
+  EXPECT_EQ(bop["targets"]["mug"], 2);
+  EXPECT_EQ(bop["ar_vsd"]["mug"], 0.3);
+  EXPECT_EQ(bop["ar_mssd"]["all"], 0.5);
+  EXPECT_EQ(bop["ar_mspd"]["all"], 0.4);
+  EXPECT_EQ(bop["ar"]["all"], 0.4);
+  EXPECT_NE(summary_table(evaluation, rules).find("0.400 of 2 targets"), std::string::npos);
+}
+
+TEST(EvaluationReport, TheRulesAreFollowed) {
+  EvaluationRules rules;
+  rules.processed_only = true;
+  rules.operating_score = 0.5F;
+  const Evaluation evaluation = evaluate(two_frames(), {"mug"}, {}, rules);
+  EXPECT_EQ(evaluation.classes[0].auc, 1.0);
+  EXPECT_EQ(evaluation.false_detections, 0);
+  EXPECT_TRUE(evaluation.poses.empty());
+}
+
+TEST(EvaluationReport, FilesAreWrittenAsStated) {
+  const EvaluationRules rules;
+  const Evaluation evaluation = evaluate(two_frames(), {"mug"}, kModels, rules);
+  const fs::path folder = fresh_folder("evaluation_report") / "new";
+  write_report(evaluation, summary_json(evaluation, rules, std::nullopt), folder);
+  EXPECT_EQ(read_text(folder / "curves.csv"), "object,score,precision,recall\nmug,0.9,1.000000,0.500000\n");
+  EXPECT_EQ(read_text(folder / "poses.csv"),
+            "frame,object,add,add_s,visible,status\n0,mug,0.000000,0.000000,1.000,valid\n");
+  EXPECT_EQ(read_json_object(folder / "summary.json")["auc"]["mug"], 0.5);
+  write_text(folder / "file", "");
+  EXPECT_THROW(write_report(evaluation, {}, folder / "file"), InputError);
+}
+
+template <typename Message>
+void append(LogWriter& log, const std::string& name, const Message& message) {
+  const std::vector<std::uint8_t> bytes = encode_message(message);
+  log.write(message.utime, name, {bytes.data(), bytes.size()});
+}
+
+TEST(ResultLog, ResultsAreReadAndOthersPassedOver) {
+  const std::vector<EvaluatedFrame> frames = two_frames();
+  const fs::path file = fresh_folder("result_log") / "results.lcmlog";
+  LogWriter log(file);
+  append(log, channel::kDetections, to_message(*frames[0].detections));
+  append(log, "SOMETHING_ELSE", to_message(*frames[0].detections));
+  append(log, channel::kPoses, to_message(*frames[0].poses));
+  log.close();
+  const PublishedResults results = read_result_log(file);
+  ASSERT_EQ(results.detections.size(), 1U);
+  EXPECT_EQ(results.detections[0].detections[1].class_name, "bottle");
+  ASSERT_EQ(results.poses.size(), 1U);
+  EXPECT_EQ(results.poses[0].poses[0].status, PoseStatus::kValid);
+}
+
+TEST(ResultLog, BadLogsAreRefused) {
+  const fs::path folder = fresh_folder("result_log_bad");
+  EXPECT_THROW(read_result_log(folder / "none.lcmlog"), InputError);
+  const fs::path file = folder / "others.lcmlog";
+  LogWriter log(file);
+  append(log, "SOMETHING_ELSE", to_message(*two_frames()[0].detections));
+  log.close();
+  EXPECT_THROW(read_result_log(file), InputError) << "no results in it";
+  fs::resize_file(file, fs::file_size(file) - 3);
+  EXPECT_THROW(read_result_log(file), InputError) << "cut short";
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,242 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "pipeline/base/checks.hpp"
+#include "tools/evaluate/latency.hpp"
+#include "tools/evaluate/metrics/detection_metrics.hpp"
+#include "tools/evaluate/metrics/pose_metrics.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+const cv::Rect kLeft(0, 0, 100, 100);
+const cv::Rect kRight(200, 0, 100, 100);
+
+NamedObject object(const std::string& name, const cv::Rect& box, double visible = 1.0) {
+  NamedObject out;
+  out.class_name = name;
+  out.truth.box_visible_px = box;
+  out.truth.visible_fraction = visible;
+  return out;
+}
+
+Detection detection(const std::string& name, const cv::Rect& box, float score) {
+  Detection out;
+  out.class_name = name;
+  out.box_px = box;
+  out.score = score;
+  return out;
+}
+
+EvaluatedFrame frame(std::vector<NamedObject> objects, std::vector<Detection> detections, std::int64_t utime = 0) {
+  EvaluatedFrame out;
+  out.utime = utime;
+  out.objects = std::move(objects);
+  out.detections = Detections{utime, "", std::move(detections), {}};
+  return out;
+}
+
+TEST(DetectionMetrics, AucIsTheSumOfPrecisionsAtTruePositivesOverTheTruth) {
+  // Ranking: true, false, true; one of three mugs missed. (1/1 + 2/3) / 3 = 5/9.
+  const std::vector<EvaluatedFrame> frames = {frame({object("mug", kLeft), object("mug", kRight)},
+                                                    {detection("mug", kLeft, 0.9F), detection("mug", kRight, 0.5F)}),
+                                              frame({object("mug", kLeft)}, {detection("mug", kRight, 0.7F)})};
+  const ClassResult result = evaluate_class(frames, "mug", {});
+  EXPECT_EQ(result.required, 3);
+  EXPECT_NEAR(result.auc, 5.0 / 9.0, 1e-12);
+  ASSERT_EQ(result.curve.size(), 3U);
+  EXPECT_NEAR(result.curve[1].precision, 0.5, 1e-12);
+  EXPECT_NEAR(result.curve[1].recall, 1.0 / 3.0, 1e-12);
+  EXPECT_NEAR(result.curve[2].precision, 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(result.curve[2].recall, 2.0 / 3.0, 1e-12);
+  EXPECT_EQ(result.curve[2].score, 0.5F);
+}
+
+TEST(DetectionMetrics, OverlapOfHalfIsEnoughAndLessIsNot) {
+  // Boxes 100 wide shifted by 33 and 34 pixels: 67/133 = 0.504, 66/134 = 0.493.
+  EXPECT_NEAR(
+      evaluate_class({frame({object("mug", kLeft)}, {detection("mug", kLeft + cv::Point(33, 0), 1)})}, "mug", {}).auc,
+      1.0, 1e-12);
+  EXPECT_NEAR(
+      evaluate_class({frame({object("mug", kLeft)}, {detection("mug", kLeft + cv::Point(34, 0), 1)})}, "mug", {}).auc,
+      0.0, 1e-12);
+}
+
+TEST(DetectionMetrics, RepeatedDetectionsAreFalse) {
+  const ClassResult result = evaluate_class(
+      {frame({object("mug", kLeft)}, {detection("mug", kLeft, 0.8F), detection("mug", kLeft, 0.9F)})}, "mug", {});
+  ASSERT_EQ(result.judged.size(), 2U);
+  EXPECT_EQ(result.judged[0].index, 1U) << "strongest first";
+  EXPECT_EQ(result.judged[0].verdict, Verdict::kTrue);
+  EXPECT_EQ(result.judged[1].verdict, Verdict::kFalse);
+  EXPECT_EQ(result.auc, 1.0);
+}
+
+TEST(DetectionMetrics, OtherClassesDoNotCount) {
+  const std::vector<EvaluatedFrame> frames = {frame({object("mug", kLeft)}, {detection("can", kLeft, 0.9F)})};
+  EXPECT_EQ(evaluate_class(frames, "mug", {}).auc, 0.0);
+  const ClassResult can = evaluate_class(frames, "can", {});
+  EXPECT_TRUE(std::isnan(can.auc));
+  EXPECT_EQ(count_verdicts(can, Verdict::kFalse, 0.0F), 1);
+  EXPECT_EQ(count_verdicts(can, Verdict::kFalse, 0.95F), 0);
+}
+
+TEST(DetectionMetrics, HardlyVisibleObjectsAreNeitherRequiredNorFalse) {
+  const std::vector<EvaluatedFrame> frames = {frame({object("mug", kLeft, 0.05), object("mug", kRight)},
+                                                    {detection("mug", kLeft, 0.9F), detection("mug", kRight, 0.8F)})};
+  const ClassResult result = evaluate_class(frames, "mug", {});
+  EXPECT_EQ(result.required, 1);
+  EXPECT_EQ(result.judged[0].verdict, Verdict::kIgnored);
+  EXPECT_EQ(result.auc, 1.0);
+  DetectionRules strict;
+  strict.min_visible = 0.0;
+  EXPECT_EQ(evaluate_class(frames, "mug", strict).required, 2);
+}
+
+TEST(DetectionMetrics, SkippedFramesCountAsMissedUnlessLeftOut) {
+  std::vector<EvaluatedFrame> frames = {frame({object("mug", kLeft)}, {detection("mug", kLeft, 1)}),
+                                        frame({object("mug", kLeft)}, {})};
+  frames[1].detections.reset();
+  EXPECT_EQ(evaluate_class(frames, "mug", {}).auc, 0.5);
+  EXPECT_EQ(evaluate_class(processed_frames(frames), "mug", {}).auc, 1.0);
+}
+
+TEST(DetectionMetrics, OnlyTheStrongestOfAClassInAFrameCount) {
+  std::vector<Detection> many(300, detection("mug", kRight, 0.5F));
+  many.push_back(detection("mug", kLeft, 0.1F));
+  const std::vector<EvaluatedFrame> frames = {frame({object("mug", kLeft)}, many)};
+  EXPECT_EQ(evaluate_class(frames, "mug", {}).judged.size(), 250U);
+  EXPECT_EQ(evaluate_class(frames, "mug", {}).auc, 0.0);
+}
+
+TEST(DetectionMetrics, MeansSkipClassesThatDoNotAppear) {
+  ClassResult often;
+  often.required = 3;
+  often.auc = 1.0;
+  ClassResult once;
+  once.required = 1;
+  once.auc = 0.2;
+  ClassResult never;
+  never.auc = std::nan("");
+  EXPECT_NEAR(mean_auc({often, once, never}), 0.6, 1e-12);
+  EXPECT_NEAR(weighted_auc({often, once, never}), 0.8, 1e-12);
+  EXPECT_TRUE(std::isnan(mean_auc({never})));
+}
+
+TEST(EvaluatedFrames, ResultsFindTheirFrameOrAreRefused) {
+  std::vector<EvaluatedFrame> frames(2);
+  frames[0].utime = 10;
+  frames[1].utime = 20;
+  add_detections(frames, {Detections{20, "", {detection("mug", kLeft, 1)}, {}}}, "test");
+  EXPECT_FALSE(frames[0].detections.has_value());
+  EXPECT_TRUE(frames[1].detections.has_value());
+  EXPECT_THROW(add_detections(frames, {Detections{20, "", {}, {}}}, "test"), InputError) << "a second result";
+  EXPECT_THROW(add_detections(frames, {Detections{30, "", {}, {}}}, "test"), InputError) << "an unknown frame";
+  ObjectPose pose;
+  pose.detection_index = 1;
+  EXPECT_THROW(add_poses(frames, {ObjectPoses{20, "", {pose}, {}}}, "test"), InputError) << "no such detection";
+}
+
+TEST(EvaluatedFrames, EveryNthBeginsWithTheFirst) {
+  std::vector<EvaluatedFrame> frames;
+  for (std::int64_t utime = 0; utime < 7; ++utime) frames.push_back(frame({object("mug", kLeft)}, {}, utime));
+  const auto chosen = [&](int every) {
+    std::vector<std::int64_t> utimes;
+    for (const EvaluatedFrame& kept : every_nth(frames, every)) {
+      EXPECT_EQ(kept.objects.size(), 1U);
+      utimes.push_back(kept.utime);
+    }
+    return utimes;
+  };
+  EXPECT_EQ(chosen(1), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(chosen(3), (std::vector<std::int64_t>{0, 3, 6}));
+  EXPECT_EQ(chosen(7), (std::vector<std::int64_t>{0}));
+  EXPECT_TRUE(every_nth({}, 2).empty());
+}
+
+const Points kCorners = {{0.1F, 0, 0}, {-0.1F, 0, 0}, {0, 0.1F, 0}, {0, -0.1F, 0}};
+
+TEST(PoseMetrics, AShiftIsItsOwnAdd) {
+  const Eigen::Isometry3d shifted(Eigen::Translation3d(0.003, 0.004, 0.0));
+  EXPECT_NEAR(add_error(kCorners, shifted, Eigen::Isometry3d::Identity()), 0.005, 1e-7);
+  EXPECT_NEAR(add_s_error(kCorners, shifted, Eigen::Isometry3d::Identity()), 0.005, 1e-7);
+}
+
+TEST(PoseMetrics, AddSForgivesASymmetryAndAddDoesNot) {
+  const Eigen::Isometry3d quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  EXPECT_NEAR(add_s_error(kCorners, quarter, Eigen::Isometry3d::Identity()), 0.0, 1e-7);
+  EXPECT_NEAR(add_error(kCorners, quarter, Eigen::Isometry3d::Identity()), 0.1 * std::sqrt(2.0), 1e-6);
+}
+
+/// Three frames: a good pose, a bad one, none; each object visible by `visible`.
+std::vector<EvaluatedFrame> posed_frames(double visible) {
+  std::vector<EvaluatedFrame> frames;
+  for (int i = 0; i < 3; ++i) {
+    frames.push_back(frame({object("mug", kLeft, visible)}, {detection("mug", kLeft, 0.5F)}));
+    ObjectPose pose;
+    pose.detection_index = 0;
+    pose.status = i < 2 ? PoseStatus::kValid : PoseStatus::kNotConverged;
+    if (i < 2) pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, i == 0 ? 0.001 : 0.05));
+    frames.back().poses = ObjectPoses{0, "", {pose}, {}};
+  }
+  return frames;
+}
+
+TEST(PoseMetrics, RecallCountsGoodPosesOverTrueDetections) {
+  const PoseModel model{kCorners, 0.2, false};
+  const std::vector<EvaluatedFrame> frames = posed_frames(0.6);
+  const auto judged = judge_poses(frames, evaluate_class(frames, "mug", {}), model);
+  ASSERT_EQ(judged.size(), 3U);
+  EXPECT_NEAR(judged[1].add_s, 0.05, 1e-6);
+  EXPECT_TRUE(std::isnan(judged[2].add));
+  EXPECT_EQ(judged[2].status, PoseStatus::kNotConverged);
+  EXPECT_NEAR(add_s_recall(judged, model.diameter, 0.5), 1.0 / 3.0, 1e-12);
+  EXPECT_TRUE(std::isnan(add_s_recall(judged, model.diameter, 0.7))) << "none visible enough";
+}
+
+TEST(PoseMetrics, ATurnedObjectIsRightByAddOnlyWhereItIsSymmetric) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
+  frames[0].poses->poses[0].T_camera_object = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  const PoseModel plain{kCorners, 0.2, false};
+  const PoseModel symmetric{kCorners, 0.2, true};
+  const auto judged = judge_poses(frames, evaluate_class(frames, "mug", {}), plain);
+  EXPECT_NEAR(add_or_add_s_recall(judged, symmetric, 0.5), 1.0 / 3.0, 1e-12);
+  EXPECT_EQ(add_or_add_s_recall(judged, plain, 0.5), 0.0);
+}
+
+TEST(PoseMetrics, FramesWithoutPublishedPosesAndObjectsWithoutTruePosesAreLeftOut) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
+  frames[1].poses.reset();
+  frames[2].objects[0].truth.has_pose = false;
+  EXPECT_EQ(judge_poses(frames, evaluate_class(frames, "mug", {}), {kCorners, 0.2, false}).size(), 1U);
+}
+
+fs::path write_csv(const std::string& text) {
+  fs::path file = fs::temp_directory_path() / "houghstream_latency_test.csv";
+  std::ofstream(file) << text;
+  return file;
+}
+
+TEST(Latency, ObserverFileGivesDifferencesAndSkipsWhatNeverCame) {
+  const Latencies latencies =
+      read_latencies(write_csv("utime,t_frame,t_detections,t_poses\n1,0.5,0.625,0.875\n2,1,1.25,\n3,2,,\n"));
+  EXPECT_EQ(latencies.frames, 3);
+  EXPECT_EQ(latencies.detect_ms, (std::vector<double>{125.0, 250.0}));
+  EXPECT_EQ(latencies.pose_ms, (std::vector<double>{250.0}));
+  EXPECT_EQ(latencies.total_ms, (std::vector<double>{375.0}));
+}
+
+TEST(Latency, BadObserverFilesAreRefused) {
+  EXPECT_THROW(read_latencies("/no/such/file.csv"), InputError);
+  EXPECT_THROW(read_latencies(write_csv("")), InputError);
+  EXPECT_THROW(read_latencies(write_csv("utime,t_frame\n")), InputError);
+  EXPECT_THROW(read_latencies(write_csv("utime,t_frame,t_detections,t_poses\n1,2,3\n")), InputError);
+  EXPECT_THROW(read_latencies(write_csv("utime,t_frame,t_detections,t_poses\n1,2,x,4\n")), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

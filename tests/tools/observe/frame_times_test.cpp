@@ -1,0 +1,95 @@
+#include "tools/observe/frame_times.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/base/host_clock.hpp"
+
+namespace houghstream {
+namespace {
+
+FrameTimes::Time at_ms(int ms) {
+  return FrameTimes::Time(std::chrono::seconds(1000)) + std::chrono::milliseconds(ms);
+}
+
+// Ten frames 100 ms apart; even ones are detected after 10 ms and have poses 5 ms later.
+FrameTimes ten_frames() {
+  FrameTimes times;
+  for (int i = 0; i < 10; ++i) {
+    times.note_frame(i, at_ms(100 * i));
+    if (i % 2 == 1) continue;
+    times.note_detections(i, at_ms(100 * i + 10));
+    times.note_poses(i, at_ms(100 * i + 15));
+  }
+  return times;
+}
+
+status_t detector_status(std::int64_t received, std::int64_t processed, std::int64_t skipped) {
+  status_t status{};
+  status.process = "hs-detect";
+  status.frames_received = received;
+  status.frames_processed = processed;
+  status.frames_skipped = skipped;
+  status.frames_lost = -1;
+  return status;
+}
+
+TEST(FrameTimes, TheStartIsOnTheClockOfUtimes) {
+  FrameTimes times;
+  EXPECT_TRUE(times.summary(std::nullopt)["start_utime"].is_null());
+  const std::int64_t before = utime_now();
+  times.note_frame(1, FrameTimes::Time::clock::now());
+  const std::int64_t after = utime_now();
+  const std::int64_t start = times.summary(std::nullopt)["start_utime"];
+  EXPECT_GE(start, before - 100000);
+  EXPECT_LE(start, after + 100000);
+}
+
+TEST(FrameTimes, LatencyIsFromMessageToMessage) {
+  const nlohmann::json summary = ten_frames().summary(std::nullopt);
+  EXPECT_EQ(summary["frames_received"], 10);
+  EXPECT_EQ(summary["frames_detected"], 5);
+  EXPECT_EQ(summary["frames_with_poses"], 5);
+  EXPECT_NEAR(summary["latency_ms"]["detect"]["p50"], 10.0, 1e-6);
+  EXPECT_NEAR(summary["latency_ms"]["pose"]["p95"], 5.0, 1e-6);
+  EXPECT_NEAR(summary["latency_ms"]["total"]["p99"], 15.0, 1e-6);
+  EXPECT_NEAR(summary["frame_rate_hz"], 10.0, 1e-6);
+  EXPECT_NEAR(summary["detection_rate_hz"], 5.0, 1e-6);
+  EXPECT_TRUE(summary["frames_sent"].is_null());
+  EXPECT_TRUE(summary["account"].is_null()) << "nobody has given an account";
+}
+
+TEST(FrameTimes, TheAccountAddsUpOrSaysThatItDoesNot) {
+  FrameTimes times = ten_frames();
+  times.note_status(detector_status(3, 1, 1));
+  times.note_status(detector_status(9, 5, 4));
+  nlohmann::json account = times.summary(10)["account"];
+  EXPECT_EQ(account["lost"], 1);
+  EXPECT_EQ(account["detected"], 5);
+  EXPECT_EQ(account["skipped"], 4);
+  EXPECT_TRUE(account["balanced"]);
+  times.note_status(detector_status(9, 5, 2));
+  account = times.summary(10)["account"];
+  EXPECT_EQ(account["unaccounted"], 2);
+  EXPECT_FALSE(account["balanced"]);
+}
+
+TEST(FrameTimes, WithoutMessagesThereAreNoNumbers) {
+  const nlohmann::json summary = FrameTimes().summary(5);
+  EXPECT_EQ(summary["frames_received"], 0);
+  EXPECT_TRUE(summary["latency_ms"]["detect"]["p50"].is_null());
+  EXPECT_TRUE(summary["frame_rate_hz"].is_null());
+  EXPECT_EQ(FrameTimes().csv(), "utime,t_frame,t_detections,t_poses\n");
+}
+
+TEST(FrameTimes, RowsLeaveEmptyWhatHasNotCome) {
+  FrameTimes times;
+  times.note_frame(7, at_ms(0));
+  times.note_frame(7, at_ms(500));
+  times.note_frame(8, at_ms(33));
+  times.note_detections(8, at_ms(50));
+  EXPECT_EQ(times.csv(), "utime,t_frame,t_detections,t_poses\n7,0.000000,,\n8,0.033000,0.050000,\n");
+  EXPECT_EQ(times.frames(), 2U);
+}
+
+}  // namespace
+}  // namespace houghstream

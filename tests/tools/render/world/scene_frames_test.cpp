@@ -1,0 +1,74 @@
+#include "tools/render/world/scene_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "pipeline/base/parallel.hpp"
+
+namespace houghstream {
+namespace {
+
+class SceneFrames : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scene = make_named_scene("table_small_2");
+    lit_world = light_world(scene.world);
+  }
+  static std::array<SceneFrame, 3> render(int threads) {
+    std::array<SceneFrame, 3> frames;
+    parallel_for(threads, 3, [&](int i) {
+      frames[static_cast<std::size_t>(i)] = render_scene_frame(scene, lit_world, i * 100, 300);
+    });
+    return frames;
+  }
+  static inline Scene scene;
+  static inline LitWorld lit_world;
+};
+
+// Equal bytes, NaN included.
+bool identical(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
+}
+
+TEST_F(SceneFrames, AreTheSameForAnyNumberOfThreads) {
+  const auto serial = render(1);
+  const auto parallel = render(2);
+  for (std::size_t i = 0; i < serial.size(); ++i) {
+    EXPECT_TRUE(identical(serial[i].frame.colour, parallel[i].frame.colour));
+    EXPECT_TRUE(identical(serial[i].frame.depth, parallel[i].frame.depth));
+  }
+  EXPECT_FALSE(identical(serial[0].frame.colour, serial[1].frame.colour));
+}
+
+TEST_F(SceneFrames, TruthAgreesWithThePicture) {
+  int seen = 0;
+  for (const SceneFrame& view : render(1)) {
+    check_frame(view.frame, "rendered");
+    ASSERT_EQ(view.objects.size(), view.visible_masks.size());
+    for (std::size_t i = 0; i < view.objects.size(); ++i) {
+      const TrueObject& object = view.objects[i];
+      ++seen;
+      EXPECT_GT(object.visible_fraction, 0.0);
+      EXPECT_LE(object.visible_fraction, 1.0);
+      if (object.visible_fraction < 0.95) continue;
+      const Eigen::Vector2d centre = view.frame.camera.project(object.T_camera_object.translation());
+      EXPECT_TRUE(object.box_visible_px.contains({static_cast<int>(centre.x()), static_cast<int>(centre.y())}));
+      // What is measured on the object lies about where its pose says.
+      const cv::Scalar depth =
+          cv::mean(view.frame.depth, view.visible_masks[i] & (view.frame.depth == view.frame.depth));
+      EXPECT_NEAR(depth[0], object.T_camera_object.translation().z(), 0.12);
+    }
+  }
+  EXPECT_GE(seen, 8);
+}
+
+TEST_F(SceneFrames, DepthHasHolesButNotMany) {
+  const cv::Mat depth = render(1)[0].frame.depth;
+  const double valid = cv::countNonZero(depth == depth) / static_cast<double>(depth.total());
+  EXPECT_GT(valid, 0.5);
+  EXPECT_LT(valid, 0.99);
+}
+
+}  // namespace
+}  // namespace houghstream

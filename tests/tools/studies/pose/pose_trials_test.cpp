@@ -1,0 +1,88 @@
+#include "tools/studies/pose/pose_trials.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tools/studies/pose/pose_makers.hpp"
+
+namespace houghstream {
+namespace {
+
+const cv::Rect kBox(100, 100, 80, 80);
+
+/// A corner of three points, 0.2 m in diameter.
+std::map<std::string, ScoredModel> corner() {
+  ScoredModel model;
+  model.surface.points = {{0.1F, 0.0F, 0.0F}, {0.0F, 0.1F, 0.0F}, {0.0F, 0.0F, 0.1F}};
+  model.surface.diameter = 0.2;
+  return {{"corner", model}};
+}
+
+Detection detection(const cv::Rect& box, float score) {
+  Detection out;
+  out.class_name = "corner";
+  out.box_px = box;
+  out.score = score;
+  return out;
+}
+
+Eigen::Isometry3d at(double x, double z) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = Eigen::Vector3d(x, 0.0, z);
+  return T;
+}
+
+/// One corner at 2 m, detected rightly, and wrongly beside it; both with the pose that `maker` gives.
+PoseRun one_frame(const PoseMaker& maker) {
+  EvaluatedFrame frame;
+  NamedObject object{"corner", {}};
+  object.truth.box_visible_px = kBox;
+  object.truth.visible_fraction = 0.8;
+  object.truth.T_camera_object = at(0.0, 2.0);
+  frame.objects = {object};
+  frame.detections = Detections{0, "", {detection(kBox, 0.9F), detection({300, 100, 80, 80}, 0.4F)}, {}};
+  TimedPoses made = make_poses(maker, RgbdFrame{}, *frame.detections);
+  frame.poses = made.poses;
+  return {"desk", {frame}, {made.ms}};
+}
+
+class FixedRival : public PoseRival {
+ public:
+  explicit FixedRival(std::optional<Eigen::Isometry3d> pose) : pose_(std::move(pose)) {}
+  std::optional<Eigen::Isometry3d> estimate(const RgbdFrame&, const Detection&) const override { return pose_; }
+
+ private:
+  std::optional<Eigen::Isometry3d> pose_;
+};
+
+TEST(PoseTrials, ErrorsAreOfTheTrueObjectOrOfTheNearest) {
+  const std::vector<PoseTrial> trials =
+      judge_run(one_frame(rival_maker(std::make_unique<FixedRival>(at(0.01, 2.0)))), corner());
+  ASSERT_EQ(trials.size(), 2U);
+  EXPECT_EQ(trials[0].verdict, Verdict::kTrue);
+  EXPECT_EQ(trials[0].status, PoseStatus::kValid);
+  EXPECT_NEAR(trials[0].add, 0.05, 1e-6);
+  EXPECT_NEAR(trials[0].shift_m, 0.01, 1e-9);
+  EXPECT_NEAR(trials[0].turn_deg, 0.0, 1e-6);
+  EXPECT_NEAR(trials[0].distance_m, 2.0, 1e-9);
+  EXPECT_TRUE(trials[0].is_right());
+  EXPECT_GE(trials[0].ms, 0.0);
+  EXPECT_EQ(trials[1].verdict, Verdict::kFalse);
+  EXPECT_NEAR(trials[1].add, 0.05, 1e-6);
+  EXPECT_TRUE(std::isnan(trials[1].visible_fraction));
+  EXPECT_FALSE(trials[1].is_right());
+}
+
+TEST(PoseTrials, WithoutAPoseNoErrorIsKnown) {
+  const std::vector<PoseTrial> trials =
+      judge_run(one_frame(rival_maker(std::make_unique<FixedRival>(std::nullopt))), corner());
+  ASSERT_EQ(trials.size(), 2U);
+  EXPECT_EQ(trials[0].status, PoseStatus::kNotConverged);
+  EXPECT_FALSE(trials[0].T_camera_object.has_value());
+  EXPECT_TRUE(std::isnan(trials[0].add_s));
+  EXPECT_FALSE(trials[0].is_right());
+}
+
+}  // namespace
+}  // namespace houghstream

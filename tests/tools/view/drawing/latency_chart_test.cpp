@@ -1,0 +1,54 @@
+#include "tools/view/drawing/latency_chart.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+const cv::Rect kArea(10, 20, 90, 50);
+
+int count(const cv::Mat& image, const cv::Scalar& colour) {
+  cv::Mat same;
+  cv::inRange(image, colour, colour, same);
+  return cv::countNonZero(same);
+}
+
+cv::Mat blank() {
+  return cv::Mat(80, 120, CV_8UC3, cv::Scalar::all(7));
+}
+
+TEST(LatencyChart, NeighbouringStagesLookDifferent) {
+  for (std::size_t i = 0; i + 1 < 12; ++i) EXPECT_GT(cv::norm(stage_colour(i) - stage_colour(i + 1)), 40.0) << i;
+}
+
+TEST(LatencyChart, AFrameIsAsHighAsItsTime) {
+  cv::Mat image = blank();
+  // The scale is 100 ms: 40 ms are 20 rows of 50, 20 ms are 10, two pixels wide.
+  draw_latency_chart(image, kArea, {{{{"a", 40000}, {"b", 20000}}, 90.0}});
+  EXPECT_EQ(count(image, stage_colour(0)), 2 * 20);
+  EXPECT_EQ(count(image, stage_colour(1)), 2 * 10);
+  EXPECT_EQ(image.at<cv::Vec3b>(20 + 5, 10 + 87), cv::Vec3b(255, 255, 255));  // 90 ms
+}
+
+TEST(LatencyChart, NothingLeavesItsArea) {
+  LatencyHistory history(300, {{{"a", 40000}, {"b", -5}}, 1e6});
+  history.push_back({});
+  cv::Mat image = blank();
+  draw_latency_chart(image, kArea, history);
+  cv::Mat outside = image.clone();
+  outside(kArea).setTo(cv::Scalar::all(7));
+  EXPECT_EQ(count(outside, cv::Scalar::all(7)), 80 * 120);
+  draw_latency_chart(image, cv::Rect(200, 200, 10, 10), history);
+  draw_latency_chart(image, kArea, {});
+}
+
+TEST(LatencyChart, StagesAreListedAsFarAsThereIsRoom) {
+  cv::Mat image(60, 320, CV_8UC3, cv::Scalar::all(0));
+  const std::vector<StageTime> stages(9, {"a", 1000});
+  draw_stage_list(image, cv::Rect(0, 0, 304, 60), stages, 3);
+  EXPECT_GT(count(image, stage_colour(5)), 50);  // the second column's last
+  EXPECT_EQ(count(image, stage_colour(6)), 0);
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,129 @@
+#include "tools/view/drawing/overlay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+const Camera kCamera{320, 240, 262.5, 262.5, 159.5, 119.5};
+const cv::Vec3b kGrey(90, 90, 90);
+
+RgbdFrame grey_frame() {
+  RgbdFrame frame;
+  frame.utime = 7;
+  frame.colour = cv::Mat(240, 320, CV_8UC3, cv::Scalar(kGrey[0], kGrey[1], kGrey[2]));
+  frame.depth = cv::Mat(240, 320, CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
+  frame.camera = kCamera;
+  return frame;
+}
+
+Detections one_detection() {
+  Detection detection;
+  detection.class_id = 1;
+  detection.class_name = "box";
+  detection.score = 0.5F;
+  detection.box_px = {100, 80, 120, 90};
+  return Detections{7, "TEST", {detection}, {}};
+}
+
+ObjectPoses one_pose(const Eigen::Isometry3d& T_camera_object) {
+  ObjectPose pose;
+  pose.class_id = 1;
+  pose.class_name = "box";
+  pose.detection_index = 0;
+  pose.status = PoseStatus::kValid;
+  pose.T_camera_object = T_camera_object;
+  return ObjectPoses{7, "TEST", {pose}, {}};
+}
+
+// A square plate of 0.2 m, facing the camera.
+Mesh plate() {
+  Mesh mesh;
+  mesh.vertices = {{-0.1F, -0.1F, 0}, {0.1F, -0.1F, 0}, {0.1F, 0.1F, 0}, {-0.1F, 0.1F, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}};
+  return mesh;
+}
+
+Eigen::Isometry3d one_metre_ahead() {
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+  T_camera_object.translation().z() = 1.0;
+  return T_camera_object;
+}
+
+// Pixels of about this colour within `radius` of (x, y).
+bool shows(const cv::Mat& image, const cv::Scalar& colour, int x, int y, int radius) {
+  const cv::Mat region = image(cv::Rect(x - radius, y - radius, 2 * radius + 1, 2 * radius + 1));
+  cv::Mat close;
+  cv::inRange(region, colour - cv::Scalar::all(40), colour + cv::Scalar::all(40), close);
+  return cv::countNonZero(close) > 0;
+}
+
+TEST(Overlay, NothingFoundLeavesThePictureAsItIs) {
+  const RgbdFrame frame = grey_frame();
+  const cv::Mat image = draw_overlay(frame, Detections{7, "", {}, {}}, std::nullopt, {});
+  EXPECT_EQ(cv::norm(image, frame.colour, cv::NORM_INF), 0.0);
+}
+
+TEST(Overlay, BoxIsDrawnInTheColourOfItsClassAndTheFrameStaysUntouched) {
+  const RgbdFrame frame = grey_frame();
+  const cv::Mat image = draw_overlay(frame, one_detection(), std::nullopt, {});
+  EXPECT_TRUE(shows(image, class_colour(1), 100, 125, 2));
+  EXPECT_TRUE(shows(image, class_colour(1), 160, 169, 2));
+  EXPECT_EQ(image.at<cv::Vec3b>(130, 150), kGrey);
+  EXPECT_EQ(frame.colour.at<cv::Vec3b>(125, 100), kGrey);
+}
+
+TEST(Overlay, OutlineRunsAlongTheProjectedModelAndAxesStartAtItsOrigin) {
+  Detections detections = one_detection();
+  const cv::Mat image = draw_overlay(grey_frame(), detections, one_pose(one_metre_ahead()), {{"box", plate()}});
+  // Half the plate is 0.1 m * 262.5 px at 1 m = 26 px from the principal point.
+  EXPECT_TRUE(shows(image, class_colour(1), 160 - 26, 105, 2));
+  EXPECT_TRUE(shows(image, class_colour(1), 150, 120 - 26, 2));
+  EXPECT_TRUE(shows(image, {60, 60, 255}, 160 + 15, 120, 2));  // x to the right, red
+  EXPECT_TRUE(shows(image, {60, 220, 60}, 160, 120 + 15, 2));  // y down, green
+}
+
+TEST(Overlay, ModelBehindOrBesideTheCameraIsNotDrawn) {
+  Eigen::Isometry3d behind = one_metre_ahead();
+  behind.translation().z() = -1.0;
+  Eigen::Isometry3d beside = one_metre_ahead();
+  beside.translation().x() = 50.0;
+  for (const Eigen::Isometry3d& pose : {behind, beside}) {
+    const cv::Mat image = draw_overlay(grey_frame(), one_detection(), one_pose(pose), {{"box", plate()}});
+    const cv::Mat without = draw_overlay(grey_frame(), one_detection(), std::nullopt, {});
+    EXPECT_EQ(cv::norm(image, without, cv::NORM_INF), 0.0);
+  }
+}
+
+TEST(Overlay, MissingPoseChangesTheLabel) {
+  ObjectPoses poses = one_pose(one_metre_ahead());
+  poses.poses[0].T_camera_object.reset();
+  poses.poses[0].status = PoseStatus::kTooFewPoints;
+  const cv::Mat without = draw_overlay(grey_frame(), one_detection(), std::nullopt, {});
+  const cv::Mat with_reason = draw_overlay(grey_frame(), one_detection(), poses, {});
+  EXPECT_GT(cv::norm(without, with_reason, cv::NORM_INF), 0.0);
+}
+
+TEST(Overlay, ResultsOfAnotherFrameAreRefused) {
+  Detections detections = one_detection();
+  detections.utime = 8;
+  EXPECT_THROW(draw_overlay(grey_frame(), detections, std::nullopt, {}), InputError);
+  ObjectPoses poses = one_pose(one_metre_ahead());
+  poses.utime = 8;
+  EXPECT_THROW(draw_overlay(grey_frame(), one_detection(), poses, {}), InputError);
+  poses.utime = 7;
+  poses.poses[0].detection_index = 1;
+  EXPECT_THROW(draw_overlay(grey_frame(), one_detection(), poses, {}), InputError);
+}
+
+TEST(Overlay, NeighbouringClassesDifferAndNegativeIdsHaveAColour) {
+  for (int id = -3; id < 12; ++id) EXPECT_NE(class_colour(id), class_colour(id + 1));
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,68 @@
+#include "tools/view/drawing/view_panel.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+ViewedFrame with_objects(int count) {
+  ViewedFrame viewed;
+  viewed.detections.detections.resize(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    Detection& detection = viewed.detections.detections[static_cast<std::size_t>(i)];
+    detection.class_id = i + 1;
+    detection.class_name = "object";
+  }
+  return viewed;
+}
+
+bool differs(const cv::Mat& a, const cv::Mat& b, const cv::Rect& where) {
+  return cv::norm(a(where), b(where), cv::NORM_L1) > 0.0;
+}
+
+const cv::Rect kStream(0, 0, 320, 130);
+const cv::Rect kObjects(320, 0, 320, 130);
+const cv::Rect kLatency(960, 0, 320, 130);
+
+TEST(ViewPanel, BlocksStandBesideEachOtherAsFarAsTheyFit) {
+  const int row = draw_panel({}, {}, {}, 1280).rows;
+  EXPECT_EQ(draw_panel({}, {}, {}, 640).rows, 2 * row);
+  EXPECT_EQ(draw_panel({}, {}, {}, 200).rows, 4 * row);
+  EXPECT_EQ(draw_panel({}, {}, {}, 200).cols, 200);
+}
+
+TEST(ViewPanel, ObjectsAreListedInTheirColours) {
+  const cv::Mat panel = draw_panel(with_objects(3), {}, {}, 1280);
+  for (int id = 1; id <= 3; ++id) {
+    cv::Mat same;
+    cv::inRange(panel(kObjects), class_colour(id), class_colour(id), same);
+    EXPECT_GE(cv::countNonZero(same), 100) << id;
+  }
+  EXPECT_FALSE(draw_panel(with_objects(50), {}, {}, 1280).empty());
+}
+
+TEST(ViewPanel, RatesLossesAndLatencyAreShown) {
+  StreamView stream;
+  const cv::Mat plain = draw_panel({}, stream, {}, 1280);
+  stream.frames_lost = 3;
+  EXPECT_TRUE(differs(draw_panel({}, stream, {}, 1280), plain, kStream));
+  stream.frames_lost = 0;
+  stream.state.processes = std::vector<ProcessState>(20, {"hs-detect", 9.8F, 3, 1, 1, 0});
+  EXPECT_TRUE(differs(draw_panel({}, stream, {}, 1280), plain, kStream));
+  stream.history = {{{{"a", 1000}}, 2.0}};
+  EXPECT_TRUE(differs(draw_panel({}, stream, {}, 1280), plain, kLatency));
+}
+
+TEST(ViewPanel, KeysAndPauseAreSaidWhereThereIsAWindow) {
+  FrameViewSettings settings;
+  const cv::Mat without = draw_panel({}, {}, settings, 1280);
+  settings.show_keys = true;
+  const cv::Mat with_keys = draw_panel({}, {}, settings, 1280);
+  ASSERT_GT(with_keys.rows, without.rows);
+  settings.paused = true;
+  const cv::Rect keys(0, without.rows, 1280, with_keys.rows - without.rows);
+  EXPECT_TRUE(differs(draw_panel({}, {}, settings, 1280), with_keys, keys));
+}
+
+}  // namespace
+}  // namespace houghstream

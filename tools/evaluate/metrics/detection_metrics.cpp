@@ -1,0 +1,144 @@
+#include "tools/evaluate/metrics/detection_metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace houghstream {
+namespace {
+
+using ObjectKey = std::pair<std::size_t, std::size_t>;  // frame, object
+
+bool is_required(const NamedObject& object, const DetectionRules& rules) {
+  return object.truth.visible_fraction >= rules.min_visible && !object.truth.box_visible_px.empty();
+}
+
+/// The class's detections over all frames, strongest first.
+std::vector<JudgedDetection> ranked_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+                                               int max_per_class) {
+  const auto stronger = [](const JudgedDetection& a, const JudgedDetection& b) { return a.score > b.score; };
+  std::vector<JudgedDetection> all;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (!frames[f].detections) continue;
+    const std::vector<Detection>& detections = frames[f].detections->detections;
+    std::vector<JudgedDetection> here;
+    for (std::size_t i = 0; i < detections.size(); ++i) {
+      if (detections[i].class_name == class_name) here.push_back({f, i, detections[i].score, Verdict::kFalse, 0});
+    }
+    std::stable_sort(here.begin(), here.end(), stronger);
+    if (here.size() > static_cast<std::size_t>(max_per_class)) here.resize(static_cast<std::size_t>(max_per_class));
+    all.insert(all.end(), here.begin(), here.end());
+  }
+  std::stable_sort(all.begin(), all.end(), stronger);
+  return all;
+}
+
+/// Gives the detection its verdict, and takes the object that it finds.
+void judge(JudgedDetection& detection, const EvaluatedFrame& frame, const DetectionRules& rules,
+           std::set<ObjectKey>& taken) {
+  const Detection& found = frame.detections->detections[detection.index];
+  double best_iou = 0.0;
+  for (std::size_t o = 0; o < frame.objects.size(); ++o) {
+    const NamedObject& object = frame.objects[o];
+    if (object.class_name != found.class_name) continue;
+    const double iou = box_iou(found.box_px, cv::Rect2f(object.truth.box_visible_px));
+    if (iou < rules.min_iou) continue;
+    if (!is_required(object, rules)) {
+      if (detection.verdict == Verdict::kFalse) detection.verdict = Verdict::kIgnored;
+    } else if (iou > best_iou && taken.count({detection.frame, o}) == 0) {
+      detection.verdict = Verdict::kTrue;
+      detection.object = o;
+      best_iou = iou;
+    }
+  }
+  if (detection.verdict == Verdict::kTrue) taken.insert({detection.frame, detection.object});
+}
+
+}  // namespace
+
+std::vector<JudgedDetection> judge_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+                                              const DetectionRules& rules) {
+  std::vector<JudgedDetection> judged = ranked_detections(frames, class_name, rules.max_per_class);
+  std::set<ObjectKey> taken;
+  for (JudgedDetection& detection : judged) judge(detection, frames[detection.frame], rules, taken);
+  return judged;
+}
+
+int count_required(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+                   const DetectionRules& rules) {
+  int required = 0;
+  for (const EvaluatedFrame& frame : frames) {
+    for (const NamedObject& object : frame.objects) {
+      required += object.class_name == class_name && is_required(object, rules) ? 1 : 0;
+    }
+  }
+  return required;
+}
+
+std::vector<CurvePoint> precision_recall_curve(const std::vector<JudgedDetection>& judged, int required) {
+  std::vector<CurvePoint> curve;
+  int true_count = 0;
+  for (const JudgedDetection& detection : judged) {
+    if (detection.verdict == Verdict::kIgnored) continue;
+    true_count += detection.verdict == Verdict::kTrue ? 1 : 0;
+    const double precision = static_cast<double>(true_count) / static_cast<double>(curve.size() + 1);
+    curve.push_back({detection.score, precision, static_cast<double>(true_count) / required});
+  }
+  return curve;
+}
+
+double average_precision(const std::vector<JudgedDetection>& judged, int required) {
+  double sum = 0.0;
+  int true_count = 0;
+  int counted = 0;
+  for (const JudgedDetection& detection : judged) {
+    if (detection.verdict == Verdict::kIgnored) continue;
+    ++counted;
+    if (detection.verdict == Verdict::kTrue) sum += static_cast<double>(++true_count) / counted;
+  }
+  return sum / required;
+}
+
+ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
+                           const DetectionRules& rules) {
+  ClassResult result;
+  result.class_name = class_name;
+  result.required = count_required(frames, class_name, rules);
+  result.judged = judge_detections(frames, class_name, rules);
+  result.auc = std::numeric_limits<double>::quiet_NaN();
+  if (result.required == 0) return result;
+  result.auc = average_precision(result.judged, result.required);
+  result.curve = precision_recall_curve(result.judged, result.required);
+  return result;
+}
+
+double mean_auc(const std::vector<ClassResult>& classes) {
+  double sum = 0.0;
+  int count = 0;
+  for (const ClassResult& result : classes) {
+    if (result.required == 0) continue;
+    sum += result.auc;
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+double weighted_auc(const std::vector<ClassResult>& classes) {
+  double sum = 0.0;
+  int count = 0;
+  for (const ClassResult& result : classes) {
+    if (result.required == 0) continue;
+    sum += result.auc * result.required;
+    count += result.required;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+int count_verdicts(const ClassResult& result, Verdict verdict, float min_score) {
+  return static_cast<int>(std::count_if(result.judged.begin(), result.judged.end(), [&](const JudgedDetection& d) {
+    return d.verdict == verdict && d.score >= min_score;
+  }));
+}
+
+}  // namespace houghstream

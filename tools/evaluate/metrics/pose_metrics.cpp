@@ -1,0 +1,95 @@
+#include "tools/evaluate/metrics/pose_metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace houghstream {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Points transformed(const Points& points, const Eigen::Isometry3d& T) {
+  const Eigen::Isometry3f T_float = T.cast<float>();
+  Points out;
+  out.reserve(points.size());
+  for (const Eigen::Vector3f& point : points) out.emplace_back(T_float * point);
+  return out;
+}
+
+const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_index) {
+  for (const ObjectPose& pose : poses.poses) {
+    if (pose.detection_index == static_cast<int>(detection_index)) return &pose;
+  }
+  return nullptr;
+}
+
+double recall(const std::vector<JudgedPose>& poses, double JudgedPose::*error, double diameter, double min_visible) {
+  int counted = 0;
+  int good = 0;
+  for (const JudgedPose& pose : poses) {
+    if (pose.visible_fraction < min_visible) continue;
+    ++counted;
+    good += pose.*error < kRightBelow * diameter ? 1 : 0;  // false for NaN
+  }
+  return counted > 0 ? static_cast<double>(good) / counted : kNaN;
+}
+
+}  // namespace
+
+double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+  const Points estimated = transformed(model, T_estimated);
+  const Points truth = transformed(model, T_true);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < model.size(); ++i) sum += static_cast<double>((estimated[i] - truth[i]).norm());
+  return sum / static_cast<double>(model.size());
+}
+
+double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true) {
+  const Points estimated = transformed(model, T_estimated);
+  double sum = 0.0;
+  for (const Eigen::Vector3f& point : transformed(model, T_true)) {
+    float nearest_sq = std::numeric_limits<float>::infinity();
+    for (const Eigen::Vector3f& other : estimated) nearest_sq = std::min(nearest_sq, (other - point).squaredNorm());
+    sum += std::sqrt(static_cast<double>(nearest_sq));
+  }
+  return sum / static_cast<double>(model.size());
+}
+
+PoseModel make_pose_model(const Mesh& mesh, bool symmetric) {
+  constexpr int kPoints = 1000;
+  constexpr std::uint64_t kSeed = 1;
+  return {sample_surface(mesh, kPoints, kSeed).points, mesh_diameter(mesh), symmetric};
+}
+
+std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+                                    const PoseModel& model) {
+  std::vector<JudgedPose> judged;
+  for (const JudgedDetection& detection : detections.judged) {
+    const EvaluatedFrame& frame = frames[detection.frame];
+    if (detection.verdict != Verdict::kTrue || !frame.poses) continue;
+    const TrueObject& truth = frame.objects[detection.object].truth;
+    if (!truth.has_pose) continue;
+    JudgedPose row{detection.frame, detections.class_name, truth.visible_fraction, PoseStatus::kInvalid, kNaN, kNaN};
+    const ObjectPose* pose = find_pose(*frame.poses, detection.index);
+    if (pose != nullptr) row.status = pose->status;
+    if (pose != nullptr && pose->T_camera_object) {
+      row.add = add_error(model.points, *pose->T_camera_object, truth.T_camera_object);
+      row.add_s = add_s_error(model.points, *pose->T_camera_object, truth.T_camera_object);
+    }
+    judged.push_back(row);
+  }
+  std::stable_sort(judged.begin(), judged.end(),
+                   [](const JudgedPose& a, const JudgedPose& b) { return a.frame < b.frame; });
+  return judged;
+}
+
+double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible) {
+  return recall(poses, &JudgedPose::add_s, diameter, min_visible);
+}
+
+double add_or_add_s_recall(const std::vector<JudgedPose>& poses, const PoseModel& model, double min_visible) {
+  return recall(poses, model.symmetric ? &JudgedPose::add_s : &JudgedPose::add, model.diameter, min_visible);
+}
+
+}  // namespace houghstream

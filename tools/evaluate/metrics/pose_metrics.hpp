@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "tools/evaluate/metrics/detection_metrics.hpp"
+
+namespace houghstream {
+
+using Points = std::vector<Eigen::Vector3f>;
+
+constexpr double kRightBelow = 0.1;  ///< error of a right pose, diameters (Hinterstoisser et al. 2012)
+
+/// ADD (Hinterstoisser et al. 2012): mean distance in metres of the model's points under the two poses.
+double add_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+
+/// ADD-S (Hinterstoisser et al. 2012): mean distance in metres from each point under the true pose to the nearest point
+/// under the estimated one; blind to symmetries.
+double add_s_error(const Points& model, const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_true);
+
+/// What poses of a class are measured with.
+struct PoseModel {
+  Points points;           ///< on the surface, object frame, metres
+  double diameter = 0.0;   ///< metres
+  bool symmetric = false;  ///< has poses that look the same
+};
+
+/// Evenly spread points instead of the mesh's vertices, which crowd where a mesh is finely cut.
+PoseModel make_pose_model(const Mesh& mesh, bool symmetric);
+
+/// A true detection and the pose that was published for it.
+struct JudgedPose {
+  std::size_t frame = 0;
+  std::string class_name;
+  double visible_fraction = 0.0;
+  PoseStatus status = PoseStatus::kInvalid;
+  double add = 0.0;    ///< metres; NaN without a pose
+  double add_s = 0.0;  ///< metres; NaN without a pose
+};
+
+/// The poses of all true detections of a class, in frames for which poses were published. Objects whose truth has no
+/// pose are left out.
+std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+                                    const PoseModel& model);
+
+/// Share of the true detections of objects at least `min_visible` visible whose ADD-S is below 10 % of the diameter; a
+/// detection without a pose has none. NaN where there is no such detection.
+double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible);
+
+/// The same by the error that Hinterstoisser et al. 2012 use for the object, called ADD(-S): ADD, but ADD-S for one
+/// that is symmetric.
+double add_or_add_s_recall(const std::vector<JudgedPose>& poses, const PoseModel& model, double min_visible);
+
+}  // namespace houghstream

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "pipeline/base/random.hpp"
+
+// The colours by which the four classes are known, so that other things can be given them too.
+
+namespace houghstream {
+
+struct Hsv {
+  double hue_deg = 0.0;
+  double saturation = 0.0;  ///< 0-1
+  double value = 0.0;       ///< 0-1
+};
+
+/// Main colours of a class; those of one without a second colour are the same.
+struct ClassColours {
+  Hsv base;
+  Hsv accent;
+};
+
+/// Of class 1 to 4 (objects.hpp). Throws InputError for another class.
+const ClassColours& class_colours(int class_id);
+
+cv::Scalar bgr(const Hsv& colour);
+
+/// One that a person would call the same: BGR.
+cv::Scalar near_colour(const Hsv& colour, Random& random);
+
+}  // namespace houghstream

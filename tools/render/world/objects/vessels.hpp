@@ -1,0 +1,39 @@
+#pragma once
+
+#include "tools/render/world/objects/mesh_parts.hpp"
+#include "tools/render/world/objects/prints.hpp"
+
+// Meshes of vessels and cartons, finished (origin at the centre of the bounding box). Lengths in metres.
+
+namespace houghstream {
+
+struct BowlShape {
+  double rim_radius = 0.075;
+  double foot_radius = 0.035;
+  double height = 0.06;
+  double wall = 0.004;
+};
+Mesh bowl_mesh(const BowlShape& shape, const cv::Mat& texture);
+
+struct MugShape {
+  double rim_radius = 0.04;
+  double foot_radius = 0.04;
+  double height = 0.095;
+  double wall = 0.004;
+};
+/// With a handle to +x.
+Mesh mug_mesh(const MugShape& shape, const Palette& palette, Random& random);
+
+/// The same without a handle: glasses, cups, pots.
+Mesh cup_mesh(const MugShape& shape, const cv::Mat& texture);
+
+/// Drinks can: label round the side, metal ends with necks.
+Mesh can_mesh(double radius, double height, const Palette& palette, Random& random);
+
+/// Printed carton.
+Mesh carton_mesh(const Eigen::Vector3d& size, const Palette& palette, Random& random);
+
+/// Solid body of revolution through (radius, z) points from bottom to top, ends closed.
+Mesh turned_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture);
+
+}  // namespace houghstream

@@ -1,0 +1,168 @@
+#include "tools/render/world/optics/shading.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tools/render/world/optics/pixel_noise.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::uint64_t kPatternSeed = 77;
+
+// sRGB to linear (IEC 61966-2-1).
+std::array<float, 256> make_linear_table() {
+  std::array<float, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double value = static_cast<double>(i) / 255.0;
+    table[i] = static_cast<float>(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
+  }
+  return table;
+}
+
+Eigen::Vector3f sample_level(const cv::Mat& level, const Eigen::Vector2f& uv) {
+  static const std::array<float, 256> kLinear = make_linear_table();
+  const float x =
+      std::clamp(uv.x() * static_cast<float>(level.cols) - 0.5F, 0.0F, static_cast<float>(level.cols) - 1.001F);
+  const float y =
+      std::clamp(uv.y() * static_cast<float>(level.rows) - 0.5F, 0.0F, static_cast<float>(level.rows) - 1.001F);
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const float fx = x - static_cast<float>(x0);
+  const float fy = y - static_cast<float>(y0);
+  const auto texel = [&level](int row, int column) {
+    const cv::Vec3b& bgr = level.at<cv::Vec3b>(row, column);
+    return Eigen::Vector3f(kLinear[bgr[0]], kLinear[bgr[1]], kLinear[bgr[2]]);
+  };
+  return (1.0F - fy) * ((1.0F - fx) * texel(y0, x0) + fx * texel(y0, x0 + 1)) +
+         fy * ((1.0F - fx) * texel(y0 + 1, x0) + fx * texel(y0 + 1, x0 + 1));
+}
+
+// The level whose texels are about as large as the pixel on the surface.
+const cv::Mat& mip_level(const Thing& thing, int triangle, float pixel_on_surface_m) {
+  const float texels = std::max(1.0F, thing.texels_per_m[static_cast<std::size_t>(triangle)] * pixel_on_surface_m);
+  const int level = std::ilogb(1.23F * texels);  // rounds log2 up from seven tenths
+  return thing.mip_levels[std::min(static_cast<std::size_t>(level), thing.mip_levels.size() - 1)];
+}
+
+struct LightInView {
+  Eigen::Vector3f position_camera;
+  Eigen::Vector3f colour_bgr;
+  ShadowLookup shadow;
+};
+
+struct Point {
+  Eigen::Vector3f position;  // camera frame
+  Eigen::Vector3f normal;
+  Eigen::Vector3f to_eye;
+  Eigen::Vector3f reflectance_bgr;
+  float gloss;
+  float turn;
+};
+
+// Lambert's diffuse and Blinn's (1977) specular term.
+Eigen::Vector3f reflected(const Point& point, const std::vector<LightInView>& lights, const Eigen::Vector3f& ambient) {
+  Eigen::Vector3f sum = ambient.cwiseProduct(point.reflectance_bgr);
+  for (const LightInView& light : lights) {
+    const Eigen::Vector3f to_light = (light.position_camera - point.position).normalized();
+    const float facing = point.normal.dot(to_light);
+    if (facing <= 0.0F) continue;
+    const float lit = light.shadow.lit(point.position + 0.003F * point.normal, point.turn);
+    if (lit <= 0.0F) continue;
+    const float half = std::max(0.0F, point.normal.dot((to_light + point.to_eye).normalized()));
+    const float half_4 = half * half * half * half;
+    const float half_16 = half_4 * half_4 * half_4 * half_4;
+    const float mirror = 1.2F * point.gloss * half_16 * half_16 * half_16;
+    sum += lit * light.colour_bgr.cwiseProduct(facing * point.reflectance_bgr + Eigen::Vector3f::Constant(mirror));
+  }
+  return sum;
+}
+
+class Shader {
+ public:
+  Shader(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world)
+      : world_(lit_world.world),
+        camera_(camera),
+        up_((T_camera_world.linear() * Eigen::Vector3d::UnitZ()).cast<float>()) {
+    for (std::size_t i = 0; i < world_.lights.size(); ++i) {
+      const Light& light = world_.lights[i];
+      lights_.push_back({(T_camera_world * light.position_world).cast<float>(), light.colour_bgr,
+                         ShadowLookup(lit_world.shadows[i], T_camera_world.inverse(), light.penumbra_m)});
+    }
+    for (const Placed& placed : world_.items)
+      R_camera_object_.push_back((T_camera_world * placed.T_world_object).linear().cast<float>());
+  }
+
+  void shade_pixel(int x, int y, ShadedView& view) const {
+    const std::uint16_t id = view.geometry.id.at<std::uint16_t>(y, x);
+    if (id == 0) return;
+    const std::size_t item = id - 1U;
+    const Thing& thing = *world_.items[item].thing;
+    const int triangle = view.geometry.triangle.at<std::int32_t>(y, x);
+    const auto& [a, b, c] = thing.mesh.triangles[static_cast<std::size_t>(triangle)];
+    const cv::Vec2f bary = view.geometry.bary.at<cv::Vec2f>(y, x);
+    const float first = 1.0F - bary[0] - bary[1];
+    const float z = view.geometry.depth.at<float>(y, x);
+
+    Point point;
+    point.position = camera_.backproject(x, y, z).cast<float>();
+    point.to_eye = -point.position.normalized();
+    point.normal = (R_camera_object_[item] *
+                    (first * thing.mesh.normals[a] + bary[0] * thing.mesh.normals[b] + bary[1] * thing.mesh.normals[c]))
+                       .normalized();
+    const float incidence = std::clamp(point.normal.dot(point.to_eye), 0.0F, 1.0F);
+    const Eigen::Vector2f uv = first * thing.mesh.uvs[a] + bary[0] * thing.mesh.uvs[b] + bary[1] * thing.mesh.uvs[c];
+    const float pixel_m = static_cast<float>(camera_.metres_per_px(z)) / std::sqrt(std::max(incidence, 0.05F));
+    point.reflectance_bgr = sample_level(mip_level(thing, triangle, pixel_m), uv);
+    point.gloss = thing.gloss;
+    point.turn = pixel_uniform(kPatternSeed, static_cast<std::uint64_t>(y) * 4096U + static_cast<std::uint64_t>(x));
+
+    // More of the light from everywhere comes from above.
+    const Eigen::Vector3f ambient = world_.ambient_bgr * (0.72F + 0.28F * point.normal.dot(up_));
+    const Eigen::Vector3f light =
+        (1.0F - thing.glow) * reflected(point, lights_, ambient) + thing.glow * point.reflectance_bgr;
+    view.radiance.at<cv::Vec3f>(y, x) = {light.x(), light.y(), light.z()};
+    view.cos_incidence.at<float>(y, x) = incidence;
+    view.reflectance.at<float>(y, x) = point.reflectance_bgr.mean();
+    view.gloss.at<float>(y, x) = thing.gloss;
+  }
+
+ private:
+  const World& world_;
+  const Camera& camera_;
+  Eigen::Vector3f up_;
+  std::vector<LightInView> lights_;
+  std::vector<Eigen::Matrix3f> R_camera_object_;
+};
+
+}  // namespace
+
+LitWorld light_world(World world) {
+  LitWorld lit_world{std::move(world), {}};
+  for (const Light& light : lit_world.world.lights)
+    lit_world.shadows.push_back(make_shadow_map(lit_world.world, light));
+  return lit_world;
+}
+
+ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
+  std::vector<RenderItem> items;
+  for (std::size_t i = 0; i < lit_world.world.items.size(); ++i) {
+    const Placed& placed = lit_world.world.items[i];
+    items.push_back({&placed.thing->mesh, T_camera_world * placed.T_world_object, static_cast<int>(i) + 1});
+  }
+  ShadedView view;
+  view.geometry = render_geometry(items, camera);
+  const cv::Size size(camera.width, camera.height);
+  view.radiance = cv::Mat::zeros(size, CV_32FC3);
+  view.cos_incidence = cv::Mat::zeros(size, CV_32FC1);
+  view.reflectance = cv::Mat::zeros(size, CV_32FC1);
+  view.gloss = cv::Mat::zeros(size, CV_32FC1);
+  const Shader shader(lit_world, camera, T_camera_world);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) shader.shade_pixel(x, y, view);
+  }
+  return view;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/base/random.hpp"
+#include "tools/render/world/rooms/resting.hpp"
+
+namespace houghstream {
+
+/// How an object is put down.
+enum class Attitude : std::uint8_t {
+  kUpright,  ///< z up
+  kTilted,   ///< at a slant, as if held or leaning: its lowest point touches
+  kLying     ///< at rest in another way: on a side or upside down
+};
+
+/// "upright", "tilted" or "lying". Throws InputError listing them for another name.
+Attitude parse_attitude(const std::string& name);
+
+/// How far tilted ones slant, degrees.
+inline constexpr double kLeastTiltDeg = 10.0;
+inline constexpr double kMostTiltDeg = 40.0;
+
+/// The attitudes in which one object is shown.
+class AttitudeChoice {
+ public:
+  /// Works out how the mesh rests. Throws InputError for a mesh without volume, or that rests upright only.
+  explicit AttitudeChoice(const Mesh& mesh);
+
+  /// How many ways of lying are told apart: one of a family of one, two of a larger one.
+  int lying_count() const { return static_cast<int>(turns_.size()); }
+
+  /// Rotation from the object into the table frame (z up). Consecutive indices go through the ways of lying; the
+  /// rest follows `random`.
+  Eigen::Matrix3d R_table_object(Attitude attitude, int index, Random& random) const;
+
+ private:
+  Eigen::Matrix3d lying(int index, Random& random) const;
+
+  std::vector<RestingFamily> turns_;  ///< those without upright, in the order in which they are shown
+};
+
+/// Height of the object frame's origin over a table that the mesh's lowest point touches, metres.
+double height_above_table(const Mesh& mesh, const Eigen::Matrix3d& R_table_object);
+
+}  // namespace houghstream

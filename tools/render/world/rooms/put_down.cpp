@@ -1,0 +1,85 @@
+#include "tools/render/world/rooms/put_down.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/base/checks.hpp"
+#include "tools/render/world/objects/materials.hpp"
+#include "tools/render/world/objects/mesh_parts.hpp"
+#include "tools/render/world/objects/prints.hpp"
+#include "tools/render/world/rooms/attitudes.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr double kLeastSlopeDeg = 12.0;
+constexpr double kMostSlopeDeg = 20.0;
+constexpr double kReserveRad = 0.02;  // by which it stands safer than the slope asks for
+constexpr double kThinEndM = 0.004;
+constexpr double kBesideM = 0.015;  // of the wedge, on each side of what stands on it
+
+double radians(double degrees) {
+  return degrees * M_PI / 180.0;
+}
+
+// An attitude that stays on the slope; first the family, since a can has many sides and two ends.
+RestingAttitude steady_attitude(const Thing& thing, double slope_rad, Random& random) {
+  std::vector<RestingFamily> steady;
+  for (const RestingFamily& family : resting_families(thing.mesh)) {
+    if (family.front().steepest_slope_rad() >= slope_rad + kReserveRad) steady.push_back(family);
+  }
+  require(!steady.empty(), "{}: no attitude that stays on a slope of {:.2f} rad", thing.name, slope_rad);
+  const RestingFamily& family = steady[static_cast<std::size_t>(random.below(static_cast<int>(steady.size())))];
+  return family[static_cast<std::size_t>(random.below(static_cast<int>(family.size())))];
+}
+
+Placed on_plane(const ThingPtr& thing, int object_id, const Eigen::Matrix3d& R_plane_object) {
+  Placed placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
+  placed.T_world_object.translate(Eigen::Vector3d(0, 0, height_above_table(thing->mesh, R_plane_object)));
+  placed.T_world_object.rotate(R_plane_object);
+  return placed;
+}
+
+// Rises towards +x; `half`: what its upper side holds, along the slope and across it.
+ThingPtr make_wedge(const Eigen::Vector2d& half, double slope_rad, Random& random) {
+  const double x = half.x() * std::cos(slope_rad);
+  const double rise = 2.0 * half.x() * std::sin(slope_rad);
+  const cv::Mat cover =
+      plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.1, 0.5), random.uniform(0.3, 0.8)), 0.05, random);
+  const Mesh mesh = prism({{-x, 0}, {x, 0}, {x, kThinEndM + rise}, {-x, kThinEndM}}, 2.0 * half.y(), cover, cover);
+  return make_thing("wedge", finish_object(mesh), 0.1F);
+}
+
+}  // namespace
+
+Group put_lying(const ThingPtr& thing, int object_id, Random& random) {
+  const int index = random.below(1 << 20);
+  return {on_plane(thing, object_id, AttitudeChoice(thing->mesh).R_table_object(Attitude::kLying, index, random))};
+}
+
+Group put_on_wedge(const ThingPtr& thing, int object_id, Random& random) {
+  const double slope_rad = radians(random.uniform(kLeastSlopeDeg, kMostSlopeDeg));
+  const RestingAttitude attitude = steady_attitude(*thing, slope_rad, random);
+  const Eigen::AngleAxisd turn(random.uniform(-M_PI, M_PI), Eigen::Vector3d::UnitZ());
+  Placed placed = on_plane(thing, object_id, turn * attitude.R_table_object);
+  const Eigen::Vector2d half = half_extent({placed}) + Eigen::Vector2d::Constant(kBesideM);
+  Placed wedge{make_wedge(half, slope_rad, random), Eigen::Isometry3d::Identity(), 0, true};
+  const double middle_height = kThinEndM + half.x() * std::sin(slope_rad);
+  wedge.T_world_object.translate(Eigen::Vector3d(0, 0, 0.5 * mesh_bounds(wedge.thing->mesh).sizes().z()));
+  placed.T_world_object = Eigen::Translation3d(0, 0, middle_height) *
+                          Eigen::AngleAxisd(-slope_rad, Eigen::Vector3d::UnitY()) * placed.T_world_object;
+  return {wedge, placed};
+}
+
+Eigen::Vector2d half_extent(const Group& group) {
+  Eigen::Vector2d half = Eigen::Vector2d::Zero();
+  for (const Placed& placed : group) {
+    for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices) {
+      const Eigen::Vector3d point = placed.T_world_object * vertex.cast<double>();
+      half = half.cwiseMax(point.head<2>().cwiseAbs());
+    }
+  }
+  return half;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "pipeline/base/random.hpp"
+#include "tools/render/world/world.hpp"
+
+// Things put down otherwise than upright, alone or on something: groups that belong together. Group frame: z up, z = 0
+// on the table, origin within the group; `T_world_object` of a group's members maps into it.
+
+namespace houghstream {
+
+using Group = std::vector<Placed>;
+
+/// At rest on a side or upside down, which of its attitudes follows `random`. Throws InputError where it has none.
+Group put_lying(const ThingPtr& thing, int object_id, Random& random);
+
+/// On a wedge of 12 to 20 degrees, in a resting attitude (upright included) in which it neither tips over nor rolls
+/// off. Throws InputError where it has none.
+Group put_on_wedge(const ThingPtr& thing, int object_id, Random& random);
+
+/// Half the sides of the rectangle about the group's origin over which its members reach, metres.
+Eigen::Vector2d half_extent(const Group& group);
+
+}  // namespace houghstream

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+
+namespace houghstream {
+
+/// A way in which a thing lies still on a level table. Table frame: z up, z = 0 on its top.
+struct RestingAttitude {
+  Eigen::Matrix3d R_table_object = Eigen::Matrix3d::Identity();
+  double origin_height_m = 0.0;  ///< of the object frame's origin over the table
+  double centre_height_m = 0.0;  ///< of its centre of mass
+  double margin_m = 0.0;         ///< from the centre of mass's foot to the nearest border of what touches the table
+
+  /// Slope on which it tips over or rolls off, whichever way it is turned.
+  double steepest_slope_rad() const;
+};
+
+/// Attitudes that differ by a turn or a reflection only: a can's side is a family, its lid another. Never empty.
+using RestingFamily = std::vector<RestingAttitude>;
+
+/// All families that a thing of even density, dropped in any attitude, is found in; each attitude once. What tips over
+/// on a slope of 1 degree does not rest. Same result on every call. Throws InputError for a mesh without volume.
+std::vector<RestingFamily> resting_families(const Mesh& mesh);
+
+/// Those without the family that stands upright, z up. Throws InputError where nothing is left.
+std::vector<RestingFamily> lying_families(const std::vector<RestingFamily>& families);
+
+}  // namespace houghstream

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+
+namespace houghstream {
+
+/// Something that stands in a rendered world: its surface, and what shading needs to know of it beforehand.
+struct Thing {
+  std::string name;
+  Mesh mesh;
+  float gloss = 0.1F;               ///< strength of the mirror-like part of the reflection, 0 = matt to 1
+  float glow = 0.0F;                ///< share of its texture that it emits by itself (screens, windows), 0 to 1
+  std::vector<cv::Mat> mip_levels;  ///< CV_8UC3: the texture, each level half the size of the one before
+  std::vector<float> texels_per_m;  ///< per triangle, of level 0
+};
+
+/// Prepares a finished mesh (texture, normals and uvs present) for shading.
+std::shared_ptr<const Thing> make_thing(std::string name, Mesh mesh, float gloss, float glow = 0.0F);
+
+using ThingPtr = std::shared_ptr<const Thing>;
+
+}  // namespace houghstream

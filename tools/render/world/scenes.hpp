@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "tools/render/world/optics/light.hpp"
+#include "tools/render/world/rooms/room.hpp"
+#include "tools/render/world/seeds.hpp"
+#include "tools/render/world/trajectory.hpp"
+
+namespace houghstream {
+
+/// A furnished, cluttered world and the camera's way through it.
+struct Scene {
+  std::string name;
+  std::uint64_t seed = 0;  ///< from world_seed()
+  World world;
+  Trajectory trajectory;
+};
+
+/// Which of the sixteen further classes (ids 101-116) stand beside the four.
+enum class FurtherClasses : std::uint8_t { kNone, kOddIds, kEvenIds };
+
+/// What stands on the table.
+struct Clutter {
+  bool taught_objects = false;                     ///< the four classes, once each
+  int look_alikes = 0;                             ///< how many of the second instances (ids 5-8)
+  int other_instances = 0;                         ///< never taught, of the kinds of the four (make_other_instance)
+  int distractors = 10;                            ///< how many things are tried; those that find no place are left out
+  FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each
+  double taught_colours = 0.0;                     ///< share of the distractors' surfaces that have the four's colours
+  bool lying = false;  ///< the four classes twice, once lying and once on a wedge; their like lie too
+};
+
+Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed);
+
+/// The six test scenes, after the six of the paper (Section 6).
+inline constexpr std::array<const char*, 6> kTestScenes = {"table_small_1", "table_small_2",   "desk_1",
+                                                           "desk_2",        "kitchen_small_1", "meeting_small_1"};
+
+/// Scenes to choose settings on, so that the test scenes stay unseen: worlds of training seeds that no training data
+/// use.
+inline constexpr std::array<const char*, 3> kDevelopmentScenes = {"development_table", "development_desk",
+                                                                  "development_kitchen"};
+
+/// As many more of them as a fit needs: this name with a number from 0 to 999.
+inline constexpr const char* kDevelopmentWorld = "development_world_";
+
+/// Test scenes of the twenty classes: each holds the four and eight of the sixteen others, in turn one half of them
+/// and the other: each of the sixteen is seen on three tables.
+inline constexpr std::array<const char*, 6> kTwentyClassScenes = {"objects_20_a", "objects_20_b", "objects_20_c",
+                                                                  "objects_20_d", "objects_20_e", "objects_20_f"};
+
+/// Their like to choose settings on.
+inline constexpr std::array<const char*, 2> kTwentyClassDevelopmentScenes = {"development_objects_20_a",
+                                                                             "development_objects_20_b"};
+
+/// Test scenes in which the four classes lie and tilt among things that lie.
+inline constexpr std::array<const char*, 2> kLyingScenes = {"table_lying", "meeting_lying"};
+
+/// Their like to choose settings on.
+inline constexpr std::array<const char*, 1> kLyingDevelopmentScenes = {"development_lying"};
+
+/// All of them, for people to read.
+std::string scene_names();
+
+/// One of the test or development scenes. Throws InputError listing the known names.
+Scene make_named_scene(const std::string& name);
+
+/// Training room number `index` with clutter of its own and none of the taught objects.
+Scene make_background_scene(int index, std::uint64_t seed);
+
+}  // namespace houghstream

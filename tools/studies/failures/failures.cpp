@@ -1,0 +1,122 @@
+#include "tools/studies/failures/failures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "tools/view/drawing/overlay.hpp"
+#include "tools/view/drawing/tiles.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr int kTileWidth = 240;
+constexpr int kTileHeight = 180;
+constexpr int kCaptionHeight = 20;
+
+std::size_t distance(std::size_t a, std::size_t b) {
+  return a < b ? b - a : a - b;
+}
+
+/// Gravest first; those near a graver one are left out.
+std::vector<Failure> thinned(std::vector<Failure> failures, std::size_t apart) {
+  std::stable_sort(failures.begin(), failures.end(),
+                   [](const Failure& a, const Failure& b) { return a.weight > b.weight; });
+  std::vector<Failure> kept;
+  for (const Failure& failure : failures) {
+    const auto near = [&](const Failure& other) { return distance(other.frame, failure.frame) < apart; };
+    if (std::none_of(kept.begin(), kept.end(), near)) kept.push_back(failure);
+  }
+  return kept;
+}
+
+std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result, float least) {
+  std::vector<Failure> out;
+  for (const JudgedDetection& judged : result.judged) {
+    if (judged.verdict != Verdict::kFalse || judged.score < least) continue;
+    const Detection& detection = frames[judged.frame].detections->detections[judged.index];
+    out.push_back({Failure::Kind::kFalse, result.class_name, judged.frame, detection.box_px, judged.score});
+  }
+  return out;
+}
+
+std::vector<Failure> missed_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result,
+                                 const DetectionRules& rules, float least) {
+  std::vector<Failure> out;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    for (std::size_t o = 0; o < frames[f].objects.size(); ++o) {
+      const NamedObject& object = frames[f].objects[o];
+      if (object.class_name != result.class_name || object.truth.visible_fraction < rules.min_visible) continue;
+      const auto finds = [&](const JudgedDetection& judged) {
+        return judged.verdict == Verdict::kTrue && judged.score >= least && judged.frame == f && judged.object == o;
+      };
+      if (std::any_of(result.judged.begin(), result.judged.end(), finds)) continue;
+      const cv::Rect2f box(object.truth.box_visible_px);
+      out.push_back({Failure::Kind::kMissed, result.class_name, f, box, object.truth.visible_fraction});
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& classes,
+                                     const DetectionRules& rules, float operating_score, std::size_t count,
+                                     std::size_t apart) {
+  std::vector<std::vector<Failure>> groups;
+  for (const std::string& name : classes) {
+    const ClassResult result = evaluate_class(frames, name, rules);
+    groups.push_back(thinned(false_ones(frames, result, operating_score), apart));
+    groups.push_back(thinned(missed_ones(frames, result, rules, operating_score), apart));
+  }
+  std::vector<Failure> chosen;
+  std::size_t longest = 0;
+  for (const auto& group : groups) longest = std::max(longest, group.size());
+  for (std::size_t rank = 0; rank < longest; ++rank) {
+    for (const auto& group : groups) {
+      if (rank < group.size() && chosen.size() < count) chosen.push_back(group[rank]);
+    }
+  }
+  return chosen;
+}
+
+cv::Rect surroundings(const cv::Rect2f& box, const cv::Size& frame) {
+  const float height = std::max({2.2F * box.height, 2.2F * box.width * kTileHeight / kTileWidth, 90.0F});
+  const int rows = std::min(static_cast<int>(height), frame.height);
+  const int columns = std::min(rows * kTileWidth / kTileHeight, frame.width);
+  const cv::Point2f middle = 0.5F * (box.tl() + box.br());
+  const int left = std::clamp(static_cast<int>(middle.x) - columns / 2, 0, frame.width - columns);
+  const int top = std::clamp(static_cast<int>(middle.y) - rows / 2, 0, frame.height - rows);
+  return {left, top, columns, rows};
+}
+
+cv::Mat draw_failure(const Failure& failure, const cv::Mat& colour) {
+  const cv::Rect part = surroundings(failure.box_px, colour.size());
+  const double scale = static_cast<double>(kTileWidth) / part.width;
+  const bool missed = failure.kind == Failure::Kind::kMissed;
+  cv::Mat tile(kCaptionHeight + kTileHeight, kTileWidth, CV_8UC3, cv::Scalar(0, 0, 0));
+  cv::Mat picture = tile.rowRange(kCaptionHeight, tile.rows);
+  cv::resize(colour(part), picture, picture.size(), 0, 0, cv::INTER_LINEAR);
+  const cv::Point2f corner = scale * (failure.box_px.tl() - cv::Point2f(part.tl()));
+  const cv::Rect box(corner, cv::Size2f(static_cast<float>(scale) * failure.box_px.width,
+                                        static_cast<float>(scale) * failure.box_px.height));
+  cv::rectangle(picture, box, cv::Scalar(20, 20, 20), 4);
+  cv::rectangle(picture, box, missed ? cv::Scalar(60, 220, 255) : cv::Scalar(80, 80, 255), 2);
+  const std::string words = missed
+                                ? fmt::format("missed: {}, {:.0f} % visible", failure.class_name, 100 * failure.weight)
+                                : fmt::format("false: {} {:.2f}", failure.class_name, failure.weight);
+  draw_text(tile, words, {4, kCaptionHeight - 6}, 0.4);
+  return tile;
+}
+
+cv::Mat join_tiles(const std::vector<cv::Mat>& tiles, int columns) {
+  if (tiles.empty()) {
+    cv::Mat none(kCaptionHeight + kTileHeight, kTileWidth, CV_8UC3, cv::Scalar(0, 0, 0));
+    draw_text(none, "no failures", {4, kCaptionHeight - 6}, 0.4);
+    return none;
+  }
+  return tiled(tiles, columns);
+}
+
+}  // namespace houghstream

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/evaluate/metrics/detection_metrics.hpp"
+
+namespace houghstream {
+
+/// A false detection, or a true object that was not found.
+struct Failure {
+  enum class Kind { kFalse, kMissed };
+  Kind kind = Kind::kFalse;
+  std::string class_name;
+  std::size_t frame = 0;  ///< in the evaluated frames
+  cv::Rect2f box_px;      ///< of the detection or of what is visible of the object
+  double weight = 0.0;    ///< score of the detection, or how much of the object is visible; 0 to 1
+};
+
+/// Failures of the listed classes from the operating score on, the gravest of each class and kind first, in turn over
+/// classes and kinds; at most `count`. Failures of one class and kind are at least `apart` frames from each other, as
+/// neighbouring frames fail alike.
+std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& classes,
+                                     const DetectionRules& rules, float operating_score, std::size_t count,
+                                     std::size_t apart);
+
+/// A part of the frame, four wide and three high where the frame lets it, with the box in its middle.
+cv::Rect surroundings(const cv::Rect2f& box, const cv::Size& frame);
+
+/// The failure's surroundings with its box, and a line that says what it is. `colour` is the whole frame, CV_8UC3.
+cv::Mat draw_failure(const Failure& failure, const cv::Mat& colour);
+
+/// Tiles of one size side by side, `columns` in a row; without any, a tile that says so.
+cv::Mat join_tiles(const std::vector<cv::Mat>& tiles, int columns);
+
+}  // namespace houghstream

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include "detector/detector.hpp"
+#include "detector/forest/forest_file.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tools/common/search_options.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/studies/failures/failures.hpp"
+
+namespace {
+
+using namespace houghstream;
+
+struct FailureOptions {
+  std::string forest;
+  std::vector<std::string> scenes;
+  std::string out;
+  float operating_score = DetectionSettings{}.threshold;
+  int every = 1;
+  int count = 8;
+  int columns = 4;
+  SearchOptions search;
+};
+
+/// A picture of each of the scene's gravest failures.
+std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& detector, const FailureOptions& options) {
+  const BopScene scene(folder);
+  std::vector<EvaluatedFrame> frames = every_nth(read_truth(scene, find_bop_names(folder)), options.every);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    frames[f].detections = detector.detect(scene.read_frame(f * static_cast<std::size_t>(options.every)));
+  }
+  std::vector<std::string> classes;
+  for (const ObjectClass& known : detector.forest().classes) classes.push_back(known.name);
+  constexpr std::size_t kPartsOfTheWay = 6;
+  const std::vector<Failure> chosen =
+      choose_failures(frames, classes, DetectionRules{}, options.operating_score,
+                      static_cast<std::size_t>(options.count), frames.size() / kPartsOfTheWay);
+  std::vector<cv::Mat> tiles;
+  for (const Failure& failure : chosen) {
+    const RgbdFrame frame = scene.read_frame(failure.frame * static_cast<std::size_t>(options.every));
+    tiles.push_back(draw_failure(failure, frame.colour));
+  }
+  return tiles;
+}
+
+void run(const FailureOptions& options) {
+  Forest forest = load_forest(options.forest);
+  const DetectionSettings settings = options.search.settings_for(forest);
+  const Detector detector(std::move(forest), settings);
+  std::vector<cv::Mat> tiles;
+  for (const std::string& scene : options.scenes) {
+    for (const cv::Mat& tile : failures_in(scene, detector, options)) tiles.push_back(tile);
+  }
+  write_png(join_tiles(tiles, options.columns), options.out);
+  fmt::print("{} failures in {}\n", tiles.size(), options.out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine app("Shows the gravest failures of a forest in scenes: false detections and missed objects",
+                  "hs-failures");
+  FailureOptions options;
+  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
+  app.add_option("--out", options.out, "picture to write, PNG").required();
+  app.add_option("--count", options.count, "failures of each scene").range(1, 100).capture_default_str();
+  app.add_option("--columns", options.columns, "pictures in a row").range(1, 20).capture_default_str();
+  app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
+  app.add_option("--operating-score", options.operating_score, "score from which a detection counts")
+      .capture_default_str();
+  add_search_options(app, options.search);
+  return houghstream::run_tool(app, argc, argv, [&] { run(options); });
+}

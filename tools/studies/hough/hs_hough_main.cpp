@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include "detector/baseline/hough_images.hpp"
+#include "detector/detector.hpp"
+#include "detector/forest/forest_file.hpp"
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tools/common/search_options.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/evaluate/metrics/detection_metrics.hpp"
+#include "tools/studies/hough/hough_panels.hpp"
+#include "tools/view/drawing/overlay.hpp"
+
+namespace {
+
+using namespace houghstream;
+
+struct HoughOptions {
+  std::string forest;
+  std::string scene;
+  std::string out;
+  int frame = 0;
+  SearchOptions search;
+};
+
+/// A class is drawn in one colour, whatever number the scene knows it by; one that was not taught is grey.
+cv::Scalar colour_of(const Forest& forest, const std::string& class_name) {
+  for (const ObjectClass& known : forest.classes) {
+    if (known.name == class_name) return class_colour(known.class_id);
+  }
+  return {170, 170, 170};
+}
+
+/// Those that are visible enough to be required of a detector.
+std::vector<NamedBox> true_boxes(const EvaluatedFrame& frame, const Forest& forest) {
+  std::vector<NamedBox> boxes;
+  for (const NamedObject& object : frame.objects) {
+    if (object.truth.visible_fraction < DetectionRules{}.min_visible) continue;
+    boxes.push_back({object.truth.box_visible_px, object.class_name, colour_of(forest, object.class_name)});
+  }
+  return boxes;
+}
+
+std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings) {
+  const Detections found = Detector(forest, settings).detect(frame);
+  std::vector<HoughPanel> panels;
+  for (std::size_t c = 0; c < forest.classes.size(); ++c) {
+    const ObjectClass& object = forest.classes[c];
+    HoughPanel panel{object.name, hough_image(forest, static_cast<int>(c), frame, settings), {}};
+    for (const Detection& detection : found.detections) {
+      if (detection.class_id != object.class_id) continue;
+      panel.found.push_back({detection.box_px, fmt::format("{:.2f}", detection.score), class_colour(object.class_id)});
+    }
+    panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+void run(const HoughOptions& options) {
+  const BopScene scene(options.scene);
+  const int last = static_cast<int>(scene.images().size()) - 1;
+  require(options.frame >= 0 && options.frame <= last, "{}: --frame {}, expected 0 to {}", options.scene, options.frame,
+          last);
+  const auto index = static_cast<std::size_t>(options.frame);
+  const EvaluatedFrame truth = read_truth(scene, find_bop_names(options.scene))[index];
+  const Forest forest = load_forest(options.forest);
+  const RgbdFrame frame = scene.read_frame(index);
+  const std::vector<HoughPanel> panels = search(forest, frame, options.search.settings_for(forest));
+  write_png(draw_hough_panels(frame.colour, true_boxes(truth, forest), panels), options.out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine app("Draws the votes for each class over a frame of a scene, with what was found and what is true",
+                  "hs-hough");
+  HoughOptions options;
+  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--scene", options.scene, "BOP scene folder with the truth").required();
+  app.add_option("--frame", options.frame, "position in the scene, from 0").required();
+  app.add_option("--out", options.out, "picture to write, PNG").required();
+  add_search_options(app, options.search);
+  return houghstream::run_tool(app, argc, argv, [&] { run(options); });
+}

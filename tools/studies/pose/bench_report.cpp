@@ -1,0 +1,81 @@
+#include "tools/studies/pose/bench_report.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tools/studies/pose/pose_figures.hpp"
+#include "tools/studies/pose/pose_table.hpp"
+#include "tools/studies/pose/worst_poses.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+OrderedJson to_json(const VariantResult& result) {
+  OrderedJson out = to_json(pose_figures(result.trials));
+  const AverageRecall recall = average_recall(result.errors);
+  out["bop_targets"] = recall.targets;
+  out["bop_ar"] = finite_or_null(recall.mean);
+  return out;
+}
+
+OrderedJson to_json(const std::map<std::string, VariantResult>& results) {
+  OrderedJson out = OrderedJson::object();
+  for (const auto& [name, result] : results) out[name] = to_json(result);
+  return out;
+}
+
+fs::path worst_file(const fs::path& folder, std::size_t number) {
+  return folder / fmt::format("worst_{}.png", number);
+}
+
+}  // namespace
+
+void write_bench(const PoseBench& bench, const fs::path& folder) {
+  fs::create_directories(folder);
+  OrderedJson json = {{"frames", bench.frames}, {"rival_frames", bench.rival_frames}};
+  json["variants"] = to_json(bench.each_frame);
+  json["on_rival_frames"] = to_json(bench.on_rival_frames);
+  json["withheld"] = to_json(count_withheld(bench.each_frame.at(kOurs).trials, bench.each_frame.at(kUnchecked).trials));
+  write_json(json, folder / "results.json");
+  const fs::path file = folder / "poses.csv";
+  std::ofstream table(file);
+  table << pose_table_header();
+  for (const auto& [name, result] : bench.each_frame) table << pose_table_rows(name, result.trials);
+  for (const auto& [name, result] : bench.on_rival_frames) {
+    if (bench.each_frame.count(name) == 0) table << pose_table_rows(name, result.trials);
+  }
+  table.close();
+  require(table.good(), "{}: cannot be written", file.string());
+}
+
+void write_worst(const std::vector<PoseTrial>& trials, const std::map<std::string, BopScene>& scenes,
+                 const std::map<std::string, Mesh>& meshes, const fs::path& folder) {
+  constexpr std::size_t kCount = 10;
+  for (std::size_t number = 1; number <= kCount; ++number) fs::remove(worst_file(folder, number));
+  std::size_t number = 0;
+  for (const PoseTrial& trial : worst_poses(trials, kCount)) {
+    const RgbdFrame frame = scenes.at(trial.scene).read_frame(trial.image);
+    write_png(draw_trial(trial, frame, meshes.at(trial.class_name)), worst_file(folder, ++number));
+  }
+}
+
+std::string bench_summary(const PoseBench& bench) {
+  std::string text = fmt::format("{} frames, rivals {}\n{:<24}{:>8}{:>9}{:>9}{:>7}{:>7}{:>7}{:>7}{:>7}\n", bench.frames,
+                                 bench.rival_frames, "", "poses", "ms", "p99", "ADD-S", "ADD", "good", "mm", "AR");
+  const auto add = [&](const std::string& name, const VariantResult& result) {
+    const PoseFigures figures = pose_figures(result.trials);
+    text += fmt::format("{:<24}{:>8}{:>9.2f}{:>9.2f}{:>7.3f}{:>7.3f}{:>7.3f}{:>7.2f}{:>7.3f}\n", name,
+                        figures.published, figures.ms_median, figures.ms_p99, figures.recall.add_s, figures.recall.add,
+                        figures.good_fraction, figures.mm_median, average_recall(result.errors).mean);
+  };
+  for (const auto& [name, result] : bench.each_frame) add(name, result);
+  for (const auto& [name, result] : bench.on_rival_frames) add("rivals' frames: " + name, result);
+  return text;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+#include <pcl/console/print.h>
+
+#include <opencv2/core/utility.hpp>
+#include <set>
+
+#include "detector/detector.hpp"
+#include "detector/forest/forest_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "tools/common/search_options.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/studies/pose/bench_report.hpp"
+
+namespace {
+
+using namespace houghstream;
+
+struct BenchOptions {
+  std::string forest;
+  std::vector<std::string> scenes;
+  std::string models;
+  std::filesystem::path out;
+  int every = 1;
+  int rivals_every = 10;
+  bool no_rivals = false;
+  SearchOptions search;
+};
+
+BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, bool with_rivals) {
+  BenchedMakers makers;
+  PoseSettings settings;
+  makers.each_frame[kOurs] = estimator_maker(meshes, settings);
+  settings.registration.method = Registration::kPcl;
+  makers.each_frame[kPcl] = estimator_maker(meshes, settings);
+  settings = PoseSettings{};
+  settings.quality.least = 0.0F;
+  makers.each_frame[kUnchecked] = estimator_maker(meshes, settings);
+  if (!with_rivals) return makers;
+  makers.rivals[kPrerejective] = rival_maker(make_prerejective_rival(meshes, PoseSettings{}, PrerejectiveSettings{}));
+  makers.rivals[kPpf] = rival_maker(make_ppf_rival(meshes, PoseSettings{}, PpfSettings{}));
+  return makers;
+}
+
+std::filesystem::path models_of(const BopScene& scene, const BenchOptions& options) {
+  if (!options.models.empty()) return options.models;
+  const std::optional<std::filesystem::path> found = find_bop_models(scene.folder());
+  require(found.has_value(), "{}: no folder models/ in it or above, expected one or --models", scene.folder().string());
+  return *found;
+}
+
+std::string name_of(const std::string& scene_folder) {
+  return std::filesystem::absolute(std::filesystem::path(scene_folder) / "").parent_path().filename().string();
+}
+
+DetectedScene detect_scene(const std::string& name, const BopScene& scene, const Detector& detector, int every) {
+  DetectedScene out{name, scene, every_nth(read_truth(scene, find_bop_names(scene.folder())), every)};
+  for (EvaluatedFrame& frame : out.frames) frame.detections = detector.detect(scene.read_frame(frame.image));
+  log_info("{}: {} frames", name, out.frames.size());
+  return out;
+}
+
+void run(const BenchOptions& options) {
+  // PCL prints a line for each start that finds no pairs; such a start is merely not converged.
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  // A thread's CPU time is all of a pose's only where OpenCV starts no threads of its own.
+  cv::setNumThreads(1);
+  Forest forest = load_forest(options.forest);
+  std::set<std::string> classes;
+  for (const ObjectClass& known : forest.classes) classes.insert(known.name);
+  const DetectionSettings settings = options.search.settings_for(forest);
+  const Detector detector(std::move(forest), settings);
+  PoseBench bench;
+  std::map<std::string, BopScene> scenes;
+  std::map<std::string, Mesh> meshes;
+  std::filesystem::path models_folder;
+  SceneModels models;
+  BenchedMakers makers;
+  for (const std::string& folder : options.scenes) {
+    const auto [entry, is_new] = scenes.emplace(name_of(folder), BopScene(folder));
+    require(is_new, "{}: a second scene of this name", folder);
+    const auto& [name, scene] = *entry;
+    if (const std::filesystem::path wanted = models_of(scene, options); wanted != models_folder) {
+      models_folder = wanted;
+      models = load_scene_models(wanted, classes);
+      meshes.insert(models.meshes.begin(), models.meshes.end());
+      makers = make_makers(models.meshes, !options.no_rivals);
+    }
+    const DetectedScene detected = detect_scene(name, scene, detector, options.every);
+    bench_scene(detected, models, makers, options.rivals_every, settings.threads, bench);
+  }
+  write_bench(bench, options.out);
+  write_worst(bench.each_frame.at(kOurs).trials, scenes, meshes, options.out);
+  fmt::print("{}", bench_summary(bench));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine app("Measures poses on rendered scenes: ours, PCL's ICP from the same starts, and two other methods",
+                  "hs-bench-pose");
+  BenchOptions options;
+  options.search.threshold = PoseSettings{}.min_score;
+  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
+  app.add_option("--models", options.models, "models/ of a BOP dataset; default: that of each scene");
+  app.add_option("--out", options.out, "folder for results.json, poses.csv and worst_N.png").required();
+  app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
+  app.add_option("--rivals-every", options.rivals_every, "of those, the rivals look at every Mth; they are slow")
+      .range(1, 100000)
+      .capture_default_str();
+  app.add_flag("--no-rivals", options.no_rivals, "leave the rivals out");
+  add_search_options(app, options.search);
+  app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
+  return run_tool(app, argc, argv, [&] { run(options); });
+}

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/datasets/bop_dataset.hpp"
+#include "tools/studies/pose/pose_makers.hpp"
+#include "tools/studies/pose/pose_trials.hpp"
+
+namespace houghstream {
+
+/// The makers of poses by name; those of `rivals` are slow and try few frames.
+struct BenchedMakers {
+  std::map<std::string, PoseMaker> each_frame;
+  std::map<std::string, PoseMaker> rivals;
+};
+
+/// What each variant made of frames: pooled over scenes by add().
+struct VariantResult {
+  std::vector<PoseTrial> trials;
+  std::vector<FrameErrors> errors;  ///< by BOP's measures, of all classes
+
+  void add(const PoseRun& run, const BopScene& scene, const SceneModels& models, int threads);
+};
+
+/// By variant; `on_rival_frames` holds the rivals, and the others on the rivals' frames only, so that they compare.
+struct PoseBench {
+  int frames = 0;
+  int rival_frames = 0;
+  std::map<std::string, VariantResult> each_frame;
+  std::map<std::string, VariantResult> on_rival_frames;
+};
+
+/// A scene's name and its frames with detections.
+struct DetectedScene {
+  std::string name;
+  const BopScene& scene;
+  std::vector<EvaluatedFrame> frames;
+};
+
+/// Has every maker give poses to all detections, rivals to those of frames 0, M, 2M, ..., M being `rivals_every`, and
+/// adds what came of it.
+void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
+                 int rivals_every, int threads, PoseBench& bench);
+
+}  // namespace houghstream

@@ -1,0 +1,110 @@
+#include "tools/studies/pose/pose_figures.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "pipeline/bus/percentiles.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr double kMinVisible = 0.6;
+constexpr float kStrong = 0.5F;
+
+double ratio(int part, int whole) {
+  return whole > 0 ? static_cast<double>(part) / whole : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score) {
+  PoseRecall out;
+  int by_add_s = 0;
+  int by_add = 0;
+  for (const PoseTrial& trial : trials) {
+    if (trial.verdict != Verdict::kTrue || trial.score < min_score || trial.visible_fraction < kMinVisible) continue;
+    ++out.detections;
+    by_add_s += trial.is_right() ? 1 : 0;
+    by_add += (trial.symmetric ? trial.add_s : trial.add) < kRightBelow ? 1 : 0;  // false for NaN
+  }
+  out.add_s = ratio(by_add_s, out.detections);
+  out.add = ratio(by_add, out.detections);
+  return out;
+}
+
+PoseFigures pose_figures(const std::vector<PoseTrial>& trials) {
+  std::vector<double> ms, mm, mm_per_m_sq, deg;
+  int judged = 0;
+  int right = 0;
+  for (const PoseTrial& trial : trials) {
+    if (!trial.T_camera_object) continue;
+    ms.push_back(trial.ms);
+    judged += trial.verdict == Verdict::kIgnored ? 0 : 1;
+    if (trial.verdict != Verdict::kTrue) continue;
+    right += trial.is_right() ? 1 : 0;
+    mm.push_back(1e3 * trial.shift_m);
+    mm_per_m_sq.push_back(1e3 * trial.shift_m / (trial.distance_m * trial.distance_m));
+    if (!trial.symmetric) deg.push_back(trial.turn_deg);
+  }
+  PoseFigures out;
+  out.detections = static_cast<int>(trials.size());
+  out.published = static_cast<int>(ms.size());
+  const Percentiles times = percentiles(ms);
+  out.ms_median = times.p50;
+  out.ms_p99 = times.p99;
+  out.mm_median = percentiles(mm).p50;
+  out.mm_per_m_sq_median = percentiles(mm_per_m_sq).p50;
+  out.deg_median = percentiles(deg).p50;
+  out.good_fraction = ratio(right, judged);
+  out.recall = pose_recall(trials, 0.0F);
+  out.recall_strong = pose_recall(trials, kStrong);
+  return out;
+}
+
+std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>& trials,
+                                                    const std::vector<PoseTrial>& unchecked) {
+  if (trials.size() != unchecked.size()) throw std::logic_error("withheld poses: other detections than published");
+  std::map<std::string, WithheldPoses> out;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (trials[i].T_camera_object) continue;
+    WithheldPoses& counts = out[to_string(trials[i].status)];
+    switch (trials[i].verdict) {
+      case Verdict::kTrue: ++counts.of_true; break;
+      case Verdict::kFalse: ++counts.of_false; break;
+      case Verdict::kIgnored: ++counts.of_ignored; break;
+    }
+    counts.right += unchecked[i].is_right() ? 1 : 0;
+  }
+  return out;
+}
+
+OrderedJson to_json(const PoseFigures& figures) {
+  const auto recall = [](const PoseRecall& of) {
+    return OrderedJson{
+        {"detections", of.detections}, {"add_s", finite_or_null(of.add_s)}, {"add", finite_or_null(of.add)}};
+  };
+  return {{"detections", figures.detections},
+          {"published", figures.published},
+          {"ms_median", finite_or_null(figures.ms_median)},
+          {"ms_p99", finite_or_null(figures.ms_p99)},
+          {"mm_median", finite_or_null(figures.mm_median)},
+          {"mm_per_m_sq_median", finite_or_null(figures.mm_per_m_sq_median)},
+          {"deg_median", finite_or_null(figures.deg_median)},
+          {"published_good_fraction", finite_or_null(figures.good_fraction)},
+          {"recall", recall(figures.recall)},
+          {"recall_from_0.5", recall(figures.recall_strong)}};
+}
+
+OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld) {
+  OrderedJson out = OrderedJson::object();
+  for (const auto& [reason, counts] : withheld) {
+    out[reason] = {{"true", counts.of_true},
+                   {"false", counts.of_false},
+                   {"ignored", counts.of_ignored},
+                   {"would_have_been_right", counts.right}};
+  }
+  return out;
+}
+
+}  // namespace houghstream

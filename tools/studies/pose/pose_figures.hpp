@@ -1,0 +1,53 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/files/json_file.hpp"
+#include "tools/studies/pose/pose_trial.hpp"
+
+namespace houghstream {
+
+/// Shares of the true detections of objects visible enough; one without a pose has none that is right. NaN where there
+/// is no such detection.
+struct PoseRecall {
+  int detections = 0;
+  double add_s = 0.0;  ///< ADD-S below 10 % of the diameter
+  double add = 0.0;    ///< ADD below it, ADD-S for objects that are symmetric
+};
+PoseRecall pose_recall(const std::vector<PoseTrial>& trials, float min_score);
+
+/// Over all scenes and classes. NaN where nothing was there to measure.
+struct PoseFigures {
+  int detections = 0;
+  int published = 0;       ///< poses
+  double ms_median = 0.0;  ///< of published poses, as all below
+  double ms_p99 = 0.0;
+  double mm_median = 0.0;           ///< translation error of true detections
+  double mm_per_m_sq_median = 0.0;  ///< the same over the square of the distance: as depth's noise would have it at 1 m
+  double deg_median = 0.0;          ///< rotation error of true detections of objects without symmetries
+  double good_fraction = 0.0;       ///< right ones of those of true and false detections; ignored ones are left out
+  PoseRecall recall;                ///< of all detections
+  PoseRecall recall_strong;         ///< of detections from score 0.5 on, which are published by default
+};
+PoseFigures pose_figures(const std::vector<PoseTrial>& trials);
+
+/// Detections that were given no pose for one reason.
+struct WithheldPoses {
+  int of_true = 0;
+  int of_false = 0;
+  int of_ignored = 0;
+  int right = 0;  ///< of `of_true`: the pose would have been right
+};
+
+/// By status in words. `unchecked` holds the same detections in the same order with the poses that a verification that
+/// accepts everything would have published; throws std::logic_error where it does not.
+std::map<std::string, WithheldPoses> count_withheld(const std::vector<PoseTrial>& trials,
+                                                    const std::vector<PoseTrial>& unchecked);
+
+/// What is not finite becomes null (finite_or_null).
+OrderedJson to_json(const PoseFigures& figures);
+OrderedJson to_json(const std::map<std::string, WithheldPoses>& withheld);
+
+}  // namespace houghstream

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "pipeline/geometry/mesh.hpp"
+
+namespace houghstream {
+
+/// Where one mesh lies on another of the same object, and how sure that is.
+struct MeshAlignment {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  /// Root mean square distance from the source's surface to the target's, metres; what is far off (parts that the
+  /// target lacks) counts as 10 mm.
+  double rms_m = 0.0;
+  /// The same where the next best turn, at least 20 degrees from the best, settled; NaN where all turns ended at the
+  /// best. Near `rms_m`, the shape does not tell the two apart.
+  double next_rms_m = 0.0;
+};
+
+/// Registers `source` to `target`, metres, by shape alone and from any turn: point-to-plane steps (Chen & Medioni 1992)
+/// under Tukey's weights from turns spread over all rotations, both middles on each other at first; the best few with
+/// more points to the end. Same meshes, same result. Throws InputError for meshes without triangles.
+MeshAlignment align_meshes(const Mesh& source, const Mesh& target);
+
+}  // namespace houghstream

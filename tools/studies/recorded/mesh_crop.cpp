@@ -1,0 +1,74 @@
+#include "tools/studies/recorded/mesh_crop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
+
+template <typename Attribute>
+void keep(const std::vector<Attribute>& from, const std::vector<std::uint32_t>& new_index, std::size_t kept,
+          std::vector<Attribute>& to) {
+  if (from.empty()) return;
+  to.resize(kept);
+  for (std::size_t v = 0; v < from.size(); ++v) {
+    if (new_index[v] != kDropped) to[new_index[v]] = from[v];
+  }
+}
+
+}  // namespace
+
+Mesh crop_below(const Mesh& mesh, const Eigen::Hyperplane<float, 3>& plane) {
+  const auto is_kept = [&](std::uint32_t vertex) { return plane.signedDistance(mesh.vertices[vertex]) >= 0.0F; };
+  Mesh out;
+  std::vector<std::uint32_t> new_index(mesh.vertices.size(), kDropped);
+  std::uint32_t kept = 0;
+  for (auto triangle : mesh.triangles) {
+    if (!std::all_of(triangle.begin(), triangle.end(), is_kept)) continue;
+    for (std::uint32_t& vertex : triangle) {
+      if (new_index[vertex] == kDropped) new_index[vertex] = kept++;
+      vertex = new_index[vertex];
+    }
+    out.triangles.push_back(triangle);
+  }
+  keep(mesh.vertices, new_index, kept, out.vertices);
+  keep(mesh.normals, new_index, kept, out.normals);
+  keep(mesh.colours, new_index, kept, out.colours);
+  keep(mesh.uvs, new_index, kept, out.uvs);
+  out.texture = mesh.texture;
+  return out;
+}
+
+Mesh welded(const Mesh& mesh) {
+  Mesh out;
+  std::map<std::array<float, 3>, std::uint32_t> index_at;
+  std::vector<std::uint32_t> new_index;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const auto next = static_cast<std::uint32_t>(out.vertices.size());
+    const auto [place, is_new] = index_at.try_emplace({vertex.x(), vertex.y(), vertex.z()}, next);
+    if (is_new) out.vertices.push_back(vertex);
+    new_index.push_back(place->second);
+  }
+  for (const auto& [a, b, c] : mesh.triangles) out.triangles.push_back({new_index[a], new_index[b], new_index[c]});
+  compute_normals(out);
+  return out;
+}
+
+double base_height(const Mesh& mesh) {
+  require(!mesh.vertices.empty(), "mesh without vertices, expected one to stand on a base");
+  constexpr std::size_t kStrayShare = 500;  // one vertex in so many
+  std::vector<float> heights;
+  heights.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices) heights.push_back(vertex.z());
+  const auto base = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / kStrayShare);
+  std::nth_element(heights.begin(), base, heights.end());
+  return *base;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/symmetry.hpp"
+
+namespace houghstream {
+
+/// A pose of one frame by other means, to be compared with.
+struct ReferencePose {
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
+  bool reliable = false;                                              ///< by its author's word
+};
+
+/// By frame name, from {"poses": [{"frame": NAME, "R_m2c": [3][3], "t_m2c_mm": [3], "reliable": BOOL}]}, where
+/// x_camera = R x_object + t. Throws InputError when it is missing or unreadable, or R is no rotation.
+std::map<std::string, ReferencePose> read_reference_poses(const std::filesystem::path& file);
+
+/// How far two poses of one object are apart.
+struct PoseDifference {
+  double shift_m = 0.0;  ///< between the places of the object frame's origin
+  double turn_deg = 0.0;
+};
+
+/// Of the poses equivalent to `T_estimated` by symmetry, the one whose turn is nearest to the reference. The object
+/// frame's origin should lie in the object: far from it, a small turn becomes a large shift.
+PoseDifference compare_poses(const Eigen::Isometry3d& T_estimated, const Eigen::Isometry3d& T_reference,
+                             const Symmetries& symmetries);
+
+/// One frame with a reference.
+struct ComparedFrame {
+  std::string frame;
+  bool reliable = false;
+  std::string outcome;                       ///< "not detected", or the words of a PoseStatus
+  std::optional<PoseDifference> difference;  ///< nothing where there is no pose
+};
+
+/// Over the frames with a reliable reference.
+struct AgreementSummary {
+  int frames = 0;
+  int with_pose = 0;
+  int within_5mm_5deg = 0;
+  std::optional<PoseDifference> median;  ///< of each, over those with a pose; nothing without any
+};
+AgreementSummary summarise(const std::vector<ComparedFrame>& frames);
+
+}  // namespace houghstream

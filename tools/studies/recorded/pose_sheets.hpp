@@ -1,0 +1,31 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/object_pose.hpp"
+#include "tools/view/drawing/overlay.hpp"
+
+namespace houghstream {
+
+/// The thinnest outline of a posed model, holes and all, into a picture of the camera (CV_8UC3, BGR, its size).
+void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
+                  const cv::Scalar& colour);
+
+/// The frame's picture (CV_8UC3, BGR, its size) with each valid pose's model as the thinnest outline, holes and all, so
+/// that what lies under it can be judged; below the title a line for each pose: class, score, outcome. `withheld` are
+/// poses that were found and not believed: their outlines are white.
+cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ObjectPoses& withheld,
+                   const ClassModels& models, const std::string& title);
+
+/// The picture, darkened, with each valid pose's model in its own colours (white where it has none): a wrong turn shows
+/// beside draw_poses' picture.
+cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models);
+
+/// Tiles of one size on sheets of 2 by 2; at least one sheet where there are tiles.
+std::vector<cv::Mat> make_sheets(const std::vector<cv::Mat>& tiles);
+
+}  // namespace houghstream

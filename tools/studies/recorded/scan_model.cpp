@@ -1,0 +1,48 @@
+#include "tools/studies/recorded/scan_model.hpp"
+
+#include "pipeline/base/checks.hpp"
+#include "pose/fusion/grid_surface.hpp"
+#include "pose/model/surface_tree.hpp"
+#include "tools/studies/recorded/mesh_crop.hpp"
+
+namespace houghstream {
+namespace {
+
+Mesh moved(Mesh mesh, const Eigen::Isometry3d& T) {
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex = (T * vertex.cast<double>()).cast<float>();
+  for (Eigen::Vector3f& normal : mesh.normals) normal = (T.linear() * normal.cast<double>()).cast<float>();
+  return mesh;
+}
+
+cv::Vec3b colour_at(const Mesh& mesh, const SurfaceHit& hit) {
+  cv::Vec3f sum(0.0F, 0.0F, 0.0F);
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += hit.weights[k] * cv::Vec3f(mesh.colours[mesh.triangles[hit.triangle][k]]);
+  }
+  return {cv::saturate_cast<std::uint8_t>(sum[0]), cv::saturate_cast<std::uint8_t>(sum[1]),
+          cv::saturate_cast<std::uint8_t>(sum[2])};
+}
+
+void take_colours(const Mesh& from, Mesh& to) {
+  if (from.colours.empty()) return;
+  const SurfaceTree tree(from);
+  for (const Eigen::Vector3f& vertex : to.vertices) to.colours.push_back(colour_at(from, tree.nearest(vertex)));
+}
+
+}  // namespace
+
+ScanModel fit_scan(const Mesh& scan, const Mesh& fused, double base_m) {
+  const MeshAlignment with_disc = align_meshes(scan, fused);
+  Mesh standing = moved(welded(scan), with_disc.T_target_source);
+  const auto ground = static_cast<float>(base_height(standing) + base_m);
+  standing = largest_part(crop_below(standing, Eigen::Hyperplane<float, 3>(Eigen::Vector3f::UnitZ(), -ground)));
+  require(!standing.triangles.empty(), "scan: nothing is left {:.0f} mm above its base", 1e3 * base_m);
+  ScanModel model;
+  model.alignment = align_meshes(standing, fused);
+  model.mesh = moved(std::move(standing), model.alignment.T_target_source);
+  model.alignment.T_target_source = model.alignment.T_target_source * with_disc.T_target_source;
+  take_colours(fused, model.mesh);
+  return model;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,100 @@
+#include "tools/studies/rivals/linemod_templates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
+#include "tools/studies/rivals/linemod_image.hpp"
+#include "tools/studies/rivals/linemod_share.hpp"
+
+namespace houghstream {
+namespace {
+
+std::vector<double> distances(const LinemodTemplateSettings& settings) {
+  std::vector<double> out;
+  const double last = static_cast<double>(settings.max_distance) * std::sqrt(settings.distance_step);
+  for (double d = settings.min_distance; d < last; d *= settings.distance_step) out.push_back(d);
+  return out;
+}
+
+void check_settings(const LinemodTemplateSettings& settings) {
+  require(settings.features >= 4 && settings.features <= 63, "linemod: {} features a template, expected 4 to 63",
+          settings.features);
+  require(
+      settings.min_distance > 0.0F && settings.max_distance >= settings.min_distance && settings.max_distance < 60.0F,
+      "linemod: distances from {} to {} m, expected a range from above 0 to below 60", settings.min_distance,
+      settings.max_distance);
+  require(settings.distance_step >= 1.01F && settings.distance_step <= 10.0F,
+          "linemod: distance step {}, expected a factor from 1.01 to 10", settings.distance_step);
+  require(settings.weak_gradient >= 0.0F && settings.weak_gradient < 1e4F,
+          "linemod: weak gradient {}, expected 0 to 10000", settings.weak_gradient);
+  require(settings.threads >= 1 && settings.threads <= 256, "linemod: {} threads, expected 1 to 256", settings.threads);
+}
+
+void check_view(const TrainingView& view) {
+  check_frame(view.frame, view.source);
+  require(view.mask.type() == CV_8UC1 && view.mask.size() == view.frame.colour.size(),
+          "{}: mask of {}x{} pixels, expected 8 bit and {}x{} as the picture", view.source, view.mask.cols,
+          view.mask.rows, view.frame.colour.cols, view.frame.colour.rows);
+  const double z = view.T_camera_object.translation().z();
+  require(std::isfinite(z) && z > 0.0, "{}: object at distance {} m, expected one in front of the camera", view.source,
+          z);
+}
+
+}  // namespace
+
+LinemodTemplates::LinemodTemplates(const std::vector<TrainingView>& views, const LinemodTemplateSettings& settings) {
+  check_settings(settings);
+  const std::vector<double> taught = distances(settings);
+  std::vector<const TrainingView*> objects;
+  for (const TrainingView& view : views) {
+    if (view.class_id != 0) objects.push_back(&view);
+  }
+  for (int s = 0; s < settings.threads; ++s) shares_.emplace_back(settings);
+  parallel_for(settings.threads, settings.threads, [&](int s) {
+    LinemodShare& share = shares_[static_cast<std::size_t>(s)];
+    for (auto v = static_cast<std::size_t>(s); v < objects.size(); v += shares_.size()) {
+      check_view(*objects[v]);
+      int made = 0;
+      for (std::size_t d = 0; d < taught.size(); ++d) {
+        made += share.add(*objects[v], taught[d], static_cast<int>(v * taught.size() + d)) ? 1 : 0;
+      }
+      if (made == 0) share.count_refused_view();
+    }
+  });
+  for (const LinemodShare& share : shares_) {
+    training_.templates += share.training().templates;
+    training_.refused_templates += share.training().refused_templates;
+    training_.refused_views += share.training().refused_views;
+  }
+  require(training_.templates > 0, "linemod: no template could be made of {} views, expected at least one",
+          objects.size());
+}
+
+LinemodTemplates::~LinemodTemplates() = default;
+LinemodTemplates::LinemodTemplates(LinemodTemplates&&) noexcept = default;
+
+std::vector<LinemodMatch> LinemodTemplates::match(const RgbdFrame& frame, float threshold) const {
+  check_frame(frame, "linemod");
+  cv::Size largest;
+  for (const LinemodShare& share : shares_) {
+    largest = {std::max(largest.width, share.largest().width), std::max(largest.height, share.largest().height)};
+  }
+  const std::vector<cv::Mat> images = linemod_images(frame, largest);
+  std::vector<std::vector<LinemodMatch>> parts(shares_.size());
+  parallel_for(static_cast<int>(shares_.size()), static_cast<int>(shares_.size()), [&](int s) {
+    const auto own = static_cast<std::size_t>(s);
+    parts[own] = shares_[own].match(images, threshold);
+  });
+  std::vector<LinemodMatch> all;
+  for (const std::vector<LinemodMatch>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  std::sort(all.begin(), all.end(), [](const LinemodMatch& a, const LinemodMatch& b) {
+    return std::tuple(-a.similarity, a.shape->rank, a.at_px.y, a.at_px.x) <
+           std::tuple(-b.similarity, b.shape->rank, b.at_px.y, b.at_px.x);
+  });
+  return all;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/training_view.hpp"
+#include "tools/studies/rivals/linemod_settings.hpp"
+
+namespace houghstream {
+
+/// What cv::linemod's templates do not keep themselves. Pixels count from where a match is reported.
+struct LinemodTemplate {
+  struct DepthSample {
+    cv::Point at_px;
+    float depth = 0.0F;  ///< metres
+  };
+  int class_id = 0;
+  std::string class_name;
+  float distance = 0.0F;             ///< of the object frame's origin, metres
+  cv::Rect box_px;                   ///< of the mask
+  cv::Point2f origin_px;             ///< of the object frame
+  std::vector<DepthSample> samples;  ///< evenly spread over the mask, never empty
+  int rank = 0;                      ///< by view, then distance; decides between equals
+};
+
+struct LinemodMatch {
+  float similarity = 0.0F;                 ///< percent
+  const LinemodTemplate* shape = nullptr;  ///< lives as long as the LinemodTemplates
+  cv::Point at_px;
+};
+
+/// What became of the training views.
+struct LinemodTraining {
+  int templates = 0;
+  int refused_templates = 0;  ///< too small or too plain for the number of features
+  int refused_views = 0;      ///< of which no template could be made: no mask, no depth, or refused at each distance
+};
+
+class LinemodShare;
+
+/// Templates of views at a row of distances (Hinterstoisser et al. 2011), made and matched by cv::linemod with colour
+/// gradients and depth normals.
+class LinemodTemplates {
+ public:
+  /// Background views are passed over. Throws InputError for settings out of range, where no template can be made, and
+  /// for a view whose images disagree.
+  LinemodTemplates(const std::vector<TrainingView>& views, const LinemodTemplateSettings& settings);
+  ~LinemodTemplates();
+  LinemodTemplates(LinemodTemplates&&) noexcept;
+
+  /// Strongest first, in an order that depends on nothing but views, settings and frame.
+  std::vector<LinemodMatch> match(const RgbdFrame& frame, float threshold) const;
+
+  const LinemodTraining& training() const { return training_; }
+
+ private:
+  std::vector<LinemodShare> shares_;
+  LinemodTraining training_;
+};
+
+}  // namespace houghstream

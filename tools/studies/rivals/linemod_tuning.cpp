@@ -1,0 +1,112 @@
+#include "tools/studies/rivals/linemod_tuning.hpp"
+
+#include <algorithm>
+
+#include "pipeline/bus/percentiles.hpp"
+#include "tools/evaluate/metrics/detection_metrics.hpp"
+#include "tools/studies/rivals/composed_examples.hpp"
+#include "tools/studies/rivals/linemod_detector.hpp"
+
+namespace houghstream {
+namespace {
+
+/// Over the detections of all classes together, strongest first.
+void find_best_f1(const std::vector<ClassResult>& classes, LinemodTrial& trial) {
+  std::vector<JudgedDetection> all;
+  int required = 0;
+  for (const ClassResult& result : classes) {
+    all.insert(all.end(), result.judged.begin(), result.judged.end());
+    required += result.required;
+  }
+  trial.best_f1 = 0.0;
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  for (const CurvePoint& point : precision_recall_curve(all, required)) {
+    const double sum = point.precision + point.recall;
+    const double f1 = sum > 0.0 ? 2.0 * point.precision * point.recall / sum : 0.0;
+    if (f1 <= trial.best_f1) continue;
+    trial.best_f1 = f1;
+    trial.best_score = point.score;
+  }
+}
+
+using Matches = std::vector<std::vector<LinemodMatch>>;
+
+void judge(const ComposedExamples& examples, const Matches& matches, LinemodTrial& trial) {
+  std::vector<EvaluatedFrame> frames = examples.truth;
+  std::vector<double> selection_ms;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    StageClock clock;
+    frames[f].detections = Detections{};
+    frames[f].detections->detections = select_detections(matches[f], examples.frames[f], trial.selection);
+    clock.mark("");
+    selection_ms.push_back(static_cast<double>(clock.times().back().duration_us) * 1e-3);
+  }
+  trial.selection_ms = percentiles(selection_ms).p50;
+  std::vector<ClassResult> classes;
+  for (const std::string& name : examples.class_names) classes.push_back(evaluate_class(frames, name, {}));
+  trial.auc = mean_auc(classes);
+  find_best_f1(classes, trial);
+}
+
+/// All that is chosen after matching.
+std::vector<LinemodSelection> selections(LinemodSelection selection) {
+  selection.check_depth = false;
+  std::vector<LinemodSelection> out = {selection};
+  selection.check_depth = true;
+  for (const float tolerance : {0.06F, 0.1F, 0.15F, 0.2F}) {
+    selection.depth_tolerance = tolerance;
+    out.push_back(selection);
+  }
+  return out;
+}
+
+std::vector<LinemodTemplateSettings> template_grid(const LinemodTemplateSettings& base) {
+  std::vector<LinemodTemplateSettings> out;
+  for (const int features : {31, 63}) {
+    for (const float step : {1.1F, 1.15F, 1.3F}) {
+      for (const float weak_gradient : {10.0F, 30.0F}) {
+        out.push_back(base);
+        out.back().features = features;
+        out.back().distance_step = step;
+        out.back().weak_gradient = weak_gradient;
+      }
+    }
+  }
+  return out;
+}
+
+Matches match_all(const LinemodTemplates& templates, const ComposedExamples& examples, LinemodTrial& trial) {
+  Matches matches;
+  std::vector<double> match_ms;
+  for (const RgbdFrame& frame : examples.frames) {
+    StageClock clock;
+    matches.push_back(templates.match(frame, trial.selection.match_threshold));
+    clock.mark("");
+    match_ms.push_back(static_cast<double>(clock.times().back().duration_us) * 1e-3);
+  }
+  trial.match_ms = percentiles(match_ms).p50;
+  return matches;
+}
+
+}  // namespace
+
+void tune_linemod(const std::vector<TrainingView>& views, const LinemodTemplateSettings& base,
+                  const LinemodSelection& base_selection, int pictures,
+                  const std::function<void(const LinemodTrial&)>& report) {
+  const ComposedExamples examples = compose_examples(views, base.min_distance, base.max_distance, pictures);
+  for (const LinemodTemplateSettings& settings : template_grid(base)) {
+    const LinemodTemplates templates(examples.taught, settings);
+    LinemodTrial trial;
+    trial.templates = settings;
+    trial.template_count = templates.training().templates;
+    trial.selection = base_selection;
+    const Matches matches = match_all(templates, examples, trial);
+    for (const LinemodSelection& selection : selections(base_selection)) {
+      trial.selection = selection;
+      judge(examples, matches, trial);
+      report(trial);
+    }
+  }
+}
+
+}  // namespace houghstream

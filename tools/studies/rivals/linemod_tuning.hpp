@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/training_view.hpp"
+#include "tools/studies/rivals/linemod_settings.hpp"
+
+namespace houghstream {
+
+/// How one choice of settings fared on composed pictures.
+struct LinemodTrial {
+  LinemodTemplateSettings templates;
+  LinemodSelection selection;
+  int template_count = 0;
+  double auc = 0.0;           ///< mean over the classes, see evaluate_class()
+  double best_score = 0.0;    ///< of the operating point with the best F1
+  double best_f1 = 0.0;       ///< harmonic mean of precision and recall there, over all classes
+  double match_ms = 0.0;      ///< median a frame
+  double selection_ms = 0.0;  ///< median a frame
+};
+
+/// Tries a grid of settings on `pictures` composed of one view in four over the background views; templates are made of
+/// the other three, so that no picture shows what a template was made of. `report` gets each trial as it is done.
+/// The match threshold is that of `base_selection`: what it costs and loses shows by tuning again with another.
+void tune_linemod(const std::vector<TrainingView>& views, const LinemodTemplateSettings& base,
+                  const LinemodSelection& base_selection, int pictures,
+                  const std::function<void(const LinemodTrial&)>& report);
+
+}  // namespace houghstream

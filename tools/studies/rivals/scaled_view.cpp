@@ -1,0 +1,62 @@
+#include "tools/studies/rivals/scaled_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace houghstream {
+namespace {
+
+constexpr int kMargin_px = 8;  // the gradients of an outline need what lies beside it
+
+int even(int length) {
+  return length + length % 2;
+}
+
+/// The object with some of what surrounds it: all that resizing may look at.
+cv::Rect surroundings(const TrainingView& view, double scale) {
+  const cv::Rect box = cv::boundingRect(view.mask);
+  if (box.empty()) return box;
+  const int margin = static_cast<int>(std::ceil(kMargin_px / scale));
+  const cv::Rect wide(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin);
+  return wide & cv::Rect({0, 0}, view.mask.size());
+}
+
+cv::Mat with_margin(const cv::Mat& image, int border_type) {
+  cv::Mat out;
+  cv::copyMakeBorder(image, out, kMargin_px, even(image.rows) - image.rows + kMargin_px, kMargin_px,
+                     even(image.cols) - image.cols + kMargin_px, border_type, cv::Scalar::all(0));
+  return out;
+}
+
+}  // namespace
+
+std::optional<ScaledView> scale_view(const TrainingView& view, double distance) {
+  const Eigen::Vector3d origin = view.T_camera_object.translation();
+  const double scale = origin.z() / distance;
+  const cv::Rect part = surroundings(view, scale);
+  if (part.empty()) return std::nullopt;
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(part.width * scale))),
+                      std::max(1, static_cast<int>(std::lround(part.height * scale))));
+  cv::Mat colour;
+  cv::Mat depth;
+  cv::Mat mask;
+  cv::resize(view.frame.colour(part), colour, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::resize(view.frame.depth(part), depth, size, 0, 0, cv::INTER_NEAREST);
+  cv::resize(view.mask(part), mask, size, 0, 0, cv::INTER_NEAREST);
+
+  ScaledView out;
+  out.distance = distance;
+  out.view_scale = scale;
+  out.colour = with_margin(colour, cv::BORDER_REPLICATE);
+  out.mask = with_margin(mask, cv::BORDER_CONSTANT);
+  cv::Mat depth_mm = depth_to_millimetres(depth + (distance - origin.z()));
+  depth_mm.setTo(0, mask == 0);
+  out.depth_mm = with_margin(depth_mm, cv::BORDER_CONSTANT);
+  if (cv::countNonZero(out.depth_mm) == 0) return std::nullopt;
+  const Eigen::Vector2d origin_px = view.frame.camera.project(origin);
+  out.origin_px = {(origin_px.x() - part.x) * scale + kMargin_px, (origin_px.y() - part.y) * scale + kMargin_px};
+  return out;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "tools/view/drawing/latency_chart.hpp"
+#include "tools/view/drawing/overlay.hpp"
+#include "tools/view/stream_watch.hpp"
+
+namespace houghstream {
+
+/// One frame with everything that the bus said about it.
+struct ViewedFrame {
+  RgbdFrame frame;
+  Detections detections;
+  std::optional<ObjectPoses> poses;         ///< nothing where no pose process answered
+  std::optional<double> detect_latency_ms;  ///< from the arrival of the frame to that of its detections
+  std::optional<double> pose_latency_ms;    ///< from the arrival of the frame to that of its poses
+};
+
+/// What the picture shows beside the overlay.
+struct FrameViewSettings {
+  float min_score = 0.5F;   ///< weaker detections and their poses are not drawn
+  bool show_depth = true;   ///< depth, colour-mapped, to the right
+  bool show_3d = false;     ///< there the measured points, seen from elsewhere, instead (turned_view.hpp)
+  float depth_near = 0.4F;  ///< metres, red end of the colour map
+  float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue
+  bool show_keys = false;   ///< a line that names the window's keys
+  bool paused = false;      ///< said in that line
+};
+
+/// What the panel below the pictures shows of the stream as a whole.
+struct StreamView {
+  StreamState state;
+  std::int64_t frames_lost = 0;  ///< frames that never arrived here
+  LatencyHistory history;
+};
+
+/// Depth (CV_32FC1, metres) as BGR: near is warm, far is cold, no measurement is black.
+cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
+
+/// The frame without detections weaker than `min_score` and without their poses.
+ViewedFrame without_weak(ViewedFrame viewed, float min_score);
+
+/// The whole picture, CV_8UC3: overlay, depth or 3-D beside it, and below them the panel (view_panel.hpp). Its size is
+/// even in both directions, as video encoders want. Throws InputError as draw_overlay does.
+cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
+                        const StreamView& stream = {});
+
+}  // namespace houghstream

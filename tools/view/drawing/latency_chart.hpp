@@ -1,0 +1,31 @@
+#pragma once
+
+#include <deque>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "pipeline/types/stage_time.hpp"
+
+namespace houghstream {
+
+/// What one frame took.
+struct FrameLatency {
+  std::vector<StageTime> stages;
+  std::optional<double> total_ms;  ///< from the frame's arrival to its last result
+};
+
+/// The last frames, oldest first.
+using LatencyHistory = std::deque<FrameLatency>;
+
+/// The colour (BGR) of the so-manieth stage of a frame, from 0.
+cv::Scalar stage_colour(std::size_t index);
+
+/// A row per stage in columns of `rows` rows: its colour, name and milliseconds, as far as there is room in `area`.
+void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<StageTime>& stages, int rows);
+
+/// A column per frame, newest to the right: its stages on top of each other, and a white mark at the frame's whole
+/// latency. The scale, a round number of milliseconds, stands at the upper left.
+void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHistory& history);
+
+}  // namespace houghstream

@@ -1,0 +1,154 @@
+#include "tools/view/drawing/overlay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/geometry/renderer.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr double kNearPlane = 0.05;    // metres; nothing nearer is drawn
+constexpr double kDefaultAxis = 0.05;  // metres, for a class without a model
+constexpr double kFontScale = 0.45;    // of OpenCV's simplex font
+constexpr int kSubpixelBits = 4;       // anti-aliased lines are placed to 1/16 of a pixel
+const cv::Scalar kDark(20, 20, 20);
+
+cv::Scalar text_colour_on(const cv::Scalar& background) {
+  const double brightness = 0.114 * background[0] + 0.587 * background[1] + 0.299 * background[2];
+  return brightness > 130.0 ? kDark : cv::Scalar(255, 255, 255);
+}
+
+void draw_box(cv::Mat& image, const Detection& detection) {
+  const cv::Rect box = detection.box_px;
+  cv::rectangle(image, box, kDark, 3);
+  cv::rectangle(image, box, class_colour(detection.class_id), 2);
+}
+
+// The label sits on the box's upper edge, or just inside where there is no room above.
+void draw_label(cv::Mat& image, const Detection& detection, const ObjectPose* pose) {
+  std::string text = fmt::format("{} {:.2f}", detection.class_name, detection.score);
+  if (pose != nullptr && pose->status != PoseStatus::kValid) text += fmt::format(" ({})", to_string(pose->status));
+  int baseline = 0;
+  const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kFontScale, 1, &baseline);
+  const int height = size.height + baseline + 4;
+  const int x = std::clamp(static_cast<int>(detection.box_px.x), 0, std::max(0, image.cols - size.width - 6));
+  const int y = std::clamp(static_cast<int>(detection.box_px.y) - height, 0, std::max(0, image.rows - height));
+  const cv::Scalar background = class_colour(detection.class_id);
+  cv::rectangle(image, cv::Rect(x, y, size.width + 6, height), background, cv::FILLED);
+  cv::putText(image, text, {x + 3, y + size.height + 2}, cv::FONT_HERSHEY_SIMPLEX, kFontScale,
+              text_colour_on(background), 1, cv::LINE_AA);
+}
+
+// Where the model may be seen; empty when any of it is at or behind the camera.
+cv::Rect projected_region(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
+  Eigen::Vector2d low(1e9, 1e9);
+  Eigen::Vector2d high(-1e9, -1e9);
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Eigen::Vector3d point = T_camera_object * vertex.cast<double>();
+    if (point.z() < kNearPlane) return {};
+    const Eigen::Vector2d pixel = camera.project(point).cwiseMax(-1e6).cwiseMin(1e6);
+    low = low.cwiseMin(pixel);
+    high = high.cwiseMax(pixel);
+  }
+  const cv::Point corner(static_cast<int>(low.x()) - 2, static_cast<int>(low.y()) - 2);
+  const cv::Point opposite(static_cast<int>(high.x()) + 3, static_cast<int>(high.y()) + 3);
+  return cv::Rect(corner, opposite) & cv::Rect(0, 0, camera.width, camera.height);
+}
+
+void draw_outline(cv::Mat& image, const Mesh& mesh, const ObjectPose& pose, const Camera& camera) {
+  const cv::Rect region = projected_region(mesh, *pose.T_camera_object, camera);
+  if (region.empty()) return;
+  const cv::Mat depth = render_depth(mesh, *pose.T_camera_object, camera, region);
+  const cv::Mat seen = depth == depth;  // false where nothing was rendered (NaN)
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(seen, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE, region.tl());
+  cv::drawContours(image, contours, -1, kDark, 4, cv::LINE_AA);
+  cv::drawContours(image, contours, -1, class_colour(pose.class_id), 2, cv::LINE_AA);
+}
+
+// Half the model's largest extent: long enough to leave the surface, short enough not to hide the neighbours.
+double axis_length(const Mesh& mesh) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
+  return mesh.vertices.empty() ? kDefaultAxis : 0.5 * box.sizes().maxCoeff();
+}
+
+void draw_axes(cv::Mat& image, const Eigen::Isometry3d& T_camera_object, double length, const Camera& camera) {
+  const std::array<cv::Scalar, 3> colours = {cv::Scalar(60, 60, 255), cv::Scalar(60, 220, 60),
+                                             cv::Scalar(255, 120, 60)};
+  const auto pixel_of = [&](const Eigen::Vector3d& point_camera) {
+    const Eigen::Vector2d pixel = camera.project(point_camera).cwiseMax(-1e4).cwiseMin(1e4) * (1 << kSubpixelBits);
+    return cv::Point(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+  };
+  const Eigen::Vector3d origin = T_camera_object.translation();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d tip = T_camera_object * (length * Eigen::Vector3d::Unit(axis));
+    if (origin.z() < kNearPlane || tip.z() < kNearPlane) continue;
+    cv::line(image, pixel_of(origin), pixel_of(tip), kDark, 4, cv::LINE_AA, kSubpixelBits);
+    cv::line(image, pixel_of(origin), pixel_of(tip), colours[axis], 2, cv::LINE_AA, kSubpixelBits);
+  }
+}
+
+// The pose of each detection, null where there is none.
+std::vector<const ObjectPose*> poses_by_detection(const Detections& detections,
+                                                  const std::optional<ObjectPoses>& poses) {
+  std::vector<const ObjectPose*> found(detections.detections.size(), nullptr);
+  if (!poses) return found;
+  for (const ObjectPose& pose : poses->poses) {
+    require(pose.detection_index >= 0 && pose.detection_index < static_cast<int>(found.size()),
+            "poses of frame {}: detection index {}, expected 0 to {}", poses->utime, pose.detection_index,
+            static_cast<int>(found.size()) - 1);
+    found[pose.detection_index] = &pose;
+  }
+  return found;
+}
+
+}  // namespace
+
+cv::Scalar class_colour(int class_id) {
+  static const std::array<cv::Scalar, 8> kColours = {
+      cv::Scalar(0, 159, 230), cv::Scalar(233, 180, 86), cv::Scalar(115, 158, 0),   cv::Scalar(66, 228, 240),
+      cv::Scalar(178, 114, 0), cv::Scalar(0, 94, 213),   cv::Scalar(167, 121, 204), cv::Scalar(255, 255, 255)};
+  const int count = static_cast<int>(kColours.size());
+  return kColours[((class_id - 1) % count + count) % count];
+}
+
+cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
+                     const ClassModels& models) {
+  check_frame(frame, fmt::format("frame {}", frame.utime));
+  require(detections.utime == frame.utime, "detections of frame {} drawn over frame {}", detections.utime, frame.utime);
+  require(!poses || poses->utime == frame.utime, "poses of frame {} drawn over frame {}", poses ? poses->utime : 0,
+          frame.utime);
+  const std::vector<const ObjectPose*> pose_of = poses_by_detection(detections, poses);
+  cv::Mat image = frame.colour.clone();
+  for (const Detection& detection : detections.detections) draw_box(image, detection);
+  for (const ObjectPose* pose : pose_of) {
+    if (pose != nullptr) draw_pose(image, *pose, models, frame.camera);
+  }
+  // Labels last and weakest first: nothing covers the name of the surest object.
+  for (std::size_t i = detections.detections.size(); i-- > 0;) {
+    draw_label(image, detections.detections[i], pose_of[i]);
+  }
+  return image;
+}
+
+void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models, const Camera& camera) {
+  if (!pose.T_camera_object) return;
+  const auto model = models.find(pose.class_name);
+  if (model != models.end()) draw_outline(image, model->second, pose, camera);
+  const double length = model == models.end() ? kDefaultAxis : axis_length(model->second);
+  draw_axes(image, *pose.T_camera_object, length, camera);
+}
+
+void draw_text(cv::Mat& image, const std::string& text, cv::Point origin_px, double scale, const cv::Scalar& colour) {
+  cv::putText(image, text, origin_px, cv::FONT_HERSHEY_SIMPLEX, scale, kDark, 3, cv::LINE_AA);
+  cv::putText(image, text, origin_px, cv::FONT_HERSHEY_SIMPLEX, scale, colour, 1, cv::LINE_AA);
+}
+
+}  // namespace houghstream

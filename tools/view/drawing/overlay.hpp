@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/object_pose.hpp"
+
+namespace houghstream {
+
+/// Models by class name, metres, in the object frame of the poses. A class without one gets no outline.
+using ClassModels = std::map<std::string, Mesh>;
+
+/// The colour (BGR) in which a class is drawn everywhere: eight that stay apart for colour-blind eyes
+/// (Okabe and Ito 2008), then again from the first.
+cv::Scalar class_colour(int class_id);
+
+/// A copy of the frame's colour image with, for every detection, its box, name and score; with poses also the outline
+/// of the model, the object's axes (x red, y green, z blue), or the reason why there is no pose.
+/// Throws InputError when detections or poses are not of this frame (utime), or a pose names no detection.
+cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
+                     const ClassModels& models);
+
+/// The outline of the pose's model, where there is one, and its axes; nothing where there is no pose.
+void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models, const Camera& camera);
+
+/// Text that stays readable on any background: light, with a dark rim. `origin_px` is the left end of its baseline.
+void draw_text(cv::Mat& image, const std::string& text, cv::Point origin_px, double scale = 0.45,
+               const cv::Scalar& colour = {255, 255, 255});
+
+}  // namespace houghstream

@@ -1,0 +1,131 @@
+#include "tools/view/drawing/view_panel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+namespace houghstream {
+namespace {
+
+constexpr int kBlockWidth = 320;
+constexpr int kRows = 6;
+constexpr int kRowHeight = 18;
+constexpr int kHeading = 24;
+constexpr int kBlockHeight = kHeading + kRows * kRowHeight + 6;
+constexpr int kKeysHeight = 28;
+constexpr int kMargin = 8;
+constexpr double kTextScale = 0.42;
+const cv::Scalar kGround(38, 34, 32);
+const cv::Scalar kKeysGround(60, 54, 50);
+const cv::Scalar kMuted(190, 190, 190);
+const cv::Scalar kBright(255, 255, 255);
+const cv::Scalar kWarning(80, 170, 255);
+
+// One block of the panel, with its heading; what does not fit is cut off at its right edge.
+class Block {
+ public:
+  Block(cv::Mat& panel, const cv::Point& corner, const std::string& heading)
+      : image_(panel(cv::Rect(corner, cv::Size(kBlockWidth, kBlockHeight)) & cv::Rect({}, panel.size()))) {
+    draw_text(image_, heading, {kMargin, kHeading - 7}, kTextScale, kMuted);
+  }
+
+  void line(int row, const std::string& text, const cv::Scalar& colour = kBright, int indent = 0) {
+    draw_text(image_, text, {kMargin + indent, kHeading + (row + 1) * kRowHeight - 5}, kTextScale, colour);
+  }
+
+  void square(int row, const cv::Scalar& colour) {
+    cv::rectangle(image_, cv::Rect(kMargin, kHeading + row * kRowHeight + 4, 10, 10), colour, cv::FILLED);
+  }
+
+  cv::Rect area() const { return {kMargin, kHeading, kBlockWidth - 2 * kMargin, kRows * kRowHeight}; }
+  cv::Mat& image() { return image_; }
+
+ private:
+  cv::Mat image_;
+};
+
+std::string process_line(const ProcessState& process) {
+  std::string text = fmt::format("{} {:.1f} Hz, {} skipped", process.name, process.rate_hz, process.skipped);
+  if (process.lost > 0) text += fmt::format(", {} lost", process.lost);
+  if (process.refused > 0) text += fmt::format(", {} refused", process.refused);
+  return text;
+}
+
+void draw_stream(Block block, const StreamState& state, std::int64_t lost) {
+  block.line(0, fmt::format("frames {:.1f} Hz, {} lost", state.frames_hz, lost), lost > 0 ? kWarning : kBright);
+  int row = 1;
+  for (const ProcessState& process : state.processes) {
+    if (row >= kRows) return;
+    const bool wrong = process.lost > 0 || process.refused > 0;
+    block.line(row++, process_line(process), wrong ? kWarning : kBright);
+  }
+}
+
+std::string object_line(const Detection& detection, const ObjectPose* pose) {
+  std::string text = fmt::format("{} {:.2f}", detection.class_name, detection.score);
+  if (pose == nullptr) return text;
+  if (!pose->T_camera_object) return text + fmt::format(", {}", to_string(pose->status));
+  return text + fmt::format(", {:.2f} m, quality {:.2f}", pose->T_camera_object->translation().z(), pose->quality);
+}
+
+const ObjectPose* pose_of(const ViewedFrame& viewed, std::size_t detection) {
+  if (!viewed.poses) return nullptr;
+  for (const ObjectPose& pose : viewed.poses->poses) {
+    if (pose.detection_index == static_cast<int>(detection)) return &pose;
+  }
+  return nullptr;
+}
+
+void draw_objects(Block block, const ViewedFrame& viewed) {
+  const std::vector<Detection>& detections = viewed.detections.detections;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const int row = static_cast<int>(i);
+    if (row == kRows - 1 && detections.size() > kRows) {
+      block.line(row, fmt::format("and {} more", detections.size() - i), kMuted);
+      return;
+    }
+    block.square(row, class_colour(detections[i].class_id));
+    block.line(row, object_line(detections[i], pose_of(viewed, i)), kBright, 16);
+  }
+}
+
+std::string latency_heading(const ViewedFrame& viewed) {
+  if (!viewed.detect_latency_ms) return "no detections";
+  const std::string detections = fmt::format("detections after {:.0f} ms, ", *viewed.detect_latency_ms);
+  return detections + (viewed.pose_latency_ms ? fmt::format("poses {:.0f}", *viewed.pose_latency_ms) : "no poses");
+}
+
+void draw_keys(cv::Mat image, const FrameViewSettings& settings) {
+  image.setTo(kKeysGround);
+  const int baseline = kKeysHeight - 9;
+  draw_text(image,
+            fmt::format("q end   space pause   d depth   3 3-D   s save   + - score from {:.2f}", settings.min_score),
+            {kMargin, baseline}, 0.45);
+  if (settings.paused) draw_text(image, "paused", {std::max(image.cols - 70, 0), baseline}, 0.5, kWarning);
+}
+
+}  // namespace
+
+cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const FrameViewSettings& settings, int width) {
+  constexpr int kBlocks = 4;
+  const int columns = std::clamp(width / kBlockWidth, 1, kBlocks);
+  const int blocks_height = (kBlocks + columns - 1) / columns * kBlockHeight;
+  cv::Mat panel(blocks_height + (settings.show_keys ? kKeysHeight : 0), std::max(width, kBlockWidth), CV_8UC3, kGround);
+  const auto corner = [&](int block) {
+    return cv::Point(block % columns * kBlockWidth, block / columns * kBlockHeight);
+  };
+  const std::string time = fmt::format("frame {:.3f} s", static_cast<double>(viewed.frame.utime) * 1e-6);
+  draw_stream(Block(panel, corner(0), time), stream.state, stream.frames_lost);
+  const std::size_t count = viewed.detections.detections.size();
+  draw_objects(Block(panel, corner(1), fmt::format("{} objects from score {:.2f}", count, settings.min_score)), viewed);
+  Block stages(panel, corner(2), "stages, ms");
+  draw_stage_list(stages.image(), stages.area(), viewed.poses ? viewed.poses->stages : viewed.detections.stages, kRows);
+  Block latency(panel, corner(3), latency_heading(viewed));
+  draw_latency_chart(latency.image(), latency.area(), stream.history);
+  if (settings.show_keys) draw_keys(panel.rowRange(blocks_height, panel.rows), settings);
+  return panel.colRange(0, width).clone();
+}
+
+}  // namespace houghstream
