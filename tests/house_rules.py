@@ -1,0 +1,75 @@
+"""Finds what a newcomer would trip over: crowded folders, folders that do not say what they are, a long front page, scratch memory without an owner.
+
+Prints one line per fault and exits with 1 when there is any. Usage: house_rules.py REPOSITORY
+"""
+
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+
+MOST_FILES = 25  # side by side; more only where the folder's README says why ("More than 25 files")
+MOST_README_LINES = 200
+FOLDERS_WITH_README = ("lcmtypes", "pipeline", "drivers", "detector", "pose", "tools", "tests", "tools/studies")
+TOP = {"CMakeLists.txt", "README.md", "lcmtypes", "pipeline", "drivers", "detector", "pose", "tools", "tests"}
+COMMIT_HASH = re.compile(r"\b(?=[0-9a-f]*[0-9])(?=[0-9a-f]*[a-f])[0-9a-f]{7}\b")
+UNFINISHED = re.compile(r"\b(TO" r"DO|FIX" r"ME|X" r"XX)\b")
+
+
+def tracked_files(root):
+    """Paths below `root`, relative: what git tracks, or every file where there is no git."""
+    listed = subprocess.run(["git", "-C", str(root), "ls-files", "-z"], capture_output=True, text=True, check=False)
+    if listed.returncode == 0 and listed.stdout:
+        return sorted(name for name in listed.stdout.split("\0") if name and (root / name).is_file())
+    return sorted(p.relative_to(root).as_posix() for p in root.rglob("*") if p.is_file())
+
+
+def folder_faults(root, files):
+    counts = collections.Counter(str(pathlib.PurePosixPath(f).parent) for f in files)
+    for folder, count in sorted(counts.items()):
+        reason = root / folder / "README.md"
+        said = reason.is_file() and f"More than {MOST_FILES} files" in reason.read_text()
+        if folder != "." and count > MOST_FILES and not said:
+            yield f"{folder}: {count} files side by side, expected at most {MOST_FILES}"
+    for folder in FOLDERS_WITH_README:
+        if f"{folder}/README.md" not in files:
+            yield f"{folder}: no README.md that says what is where"
+    for name in sorted({f.split("/")[0] for f in files} - TOP):
+        if not name.startswith("."):
+            yield f"{name}: does not belong to the top level"
+
+
+def text_faults(root, files):
+    lines = (root / "README.md").read_text().count("\n") if "README.md" in files else 0
+    if lines > MOST_README_LINES:
+        yield f"README.md: {lines} lines, expected at most {MOST_README_LINES}"
+    for name in files:
+        suffix = pathlib.PurePosixPath(name).suffix
+        if suffix not in {".md", ".cpp", ".hpp", ".py", ".java"}:
+            continue
+        text = (root / name).read_text()
+        for number, line in enumerate(text.split("\n"), 1):
+            if suffix == ".md" and COMMIT_HASH.search(line):
+                yield f"{name}:{number}: a commit hash in prose: {COMMIT_HASH.search(line).group()}"
+            if suffix != ".md" and UNFINISHED.search(line):
+                yield f"{name}:{number}: unfinished: {line.strip()[:80]}"
+            if name.startswith(("detector/", "pose/")) and "static thread_local" in line:
+                yield f"{name}:{number}: scratch memory that no workspace owns"
+
+
+def find_faults(root):
+    files = tracked_files(root)
+    return [*folder_faults(root, files), *text_faults(root, files)]
+
+
+def main():
+    if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "pipeline").is_dir():
+        sys.exit("usage: house_rules.py REPOSITORY (the folder that holds pipeline/)")
+    faults = find_faults(pathlib.Path(sys.argv[1]))
+    print("\n".join(faults) if faults else "the house is in order")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,55 @@
+"""Plants faults in a small copy of the house and expects each to be found."""
+
+import pathlib
+import tempfile
+import unittest
+
+import house_rules
+
+GOOD = {
+    "README.md": "A house.\n",
+    "CMakeLists.txt": "",
+    ".ci/run": "",
+    "detector/detector.cpp": "int main() {}\n",
+    **{f"{folder}/README.md": "What is where.\n" for folder in house_rules.FOLDERS_WITH_README},
+}
+WRONG = {
+    "a crowded folder": {f"pose/part_{i}.cpp": "" for i in range(house_rules.MOST_FILES)},
+    "a long front page": {"README.md": "line\n" * (house_rules.MOST_README_LINES + 1)},
+    "history in prose": {"tools/studies/README.md": "Measured at 1a2b3c4.\n"},
+    "a stranger at the top": {"notes.txt": ""},
+    "memory without an owner": {"pose/region.cpp": "static thread_local int x = 0;\n"},
+    "something unfinished": {"tools/view/viewer.cpp": "// TO" "DO: the rest\n"},
+}
+
+
+def faults_with(extra, left_out=()):
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in {**GOOD, **extra}.items():
+            if name in left_out:
+                continue
+            file = pathlib.Path(folder, name)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+        return house_rules.find_faults(pathlib.Path(folder))
+
+
+class HouseRules(unittest.TestCase):
+    def test_a_tidy_house_has_no_fault(self):
+        self.assertEqual(faults_with({}), [])
+
+    def test_every_planted_fault_is_found(self):
+        for what, extra in WRONG.items():
+            with self.subTest(what):
+                self.assertEqual(len(faults_with(extra)), 1, faults_with(extra))
+
+    def test_a_folder_without_readme_is_named(self):
+        self.assertEqual(len(faults_with({}, left_out=["pose/README.md"])), 1)
+
+    def test_a_crowded_folder_may_say_why(self):
+        extra = {**WRONG["a crowded folder"], "pose/README.md": "More than 25 files: they are one list.\n"}
+        self.assertEqual(faults_with(extra), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
