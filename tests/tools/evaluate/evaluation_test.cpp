@@ -1,3 +1,5 @@
+#include "tools/evaluate/evaluation.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
