@@ -64,10 +64,12 @@ def prepare(options, targets):
     if options.bin:
         return os.path.realpath(options.bin)
     if "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ:  # else this has been done before the command started itself again
-        build = 'source tools/common.sh && configure_and_build build Release -- "$@"'
-        for words in (["tools/setup"], ["bash", "-c", f'echo "build" && {build}', "build", *targets]):
-            if subprocess.run(words, cwd=REPOSITORY, check=False).returncode != 0:
-                die(f"{words[0] if len(words) == 1 else 'the build'} failed")
+        if subprocess.run(["tools/setup"], cwd=REPOSITORY, check=False).returncode != 0:
+            die("tools/setup failed")
+        step("build")
+        build = ["bash", "-c", 'source tools/common.sh && configure_and_build build Release -- "$@"', "build", *targets]
+        if subprocess.run(build, cwd=REPOSITORY, check=False).returncode != 0:
+            die("the build failed")
     return str(REPOSITORY / "build" / "bin")
 
 

@@ -183,10 +183,10 @@ def stream_rows(summary):
 
 
 def growth_charts(summary):
-    labels = {"objects": "objects taught", "trees": "trees", "pixels": "pixels of the frame", "threads": "threads"}
+    labels = {"objects": "objects taught", "trees": "trees", "pixels": "megapixels of the frame", "threads": "threads"}
     charts = []
     for name, label in labels.items():
-        points = summary[name]
+        points = [(count * (1e-6 if name == "pixels" else 1), ms) for count, ms in summary[name]]
         if len(points) < 2:
             continue
         chart = Chart(label, "ms a frame", max(x for x, _ in points) * 1.05, max(y for _, y in points) * 1.1, name)

@@ -36,8 +36,9 @@ def parse(words):
         die("--live plays a rendered scene; it does not go with --real")
     if options.unplug and not options.live:
         die("--unplug goes with --live")
+    paths = {options.real, options.bin, str(options.out)}
+    options.command = " ".join(["tools/demo", *("DIR" if word in paths else word for word in words)])
     options.out = (options.out or pathlib.Path("out", "live" if options.live else "real" if options.real else "demo")).resolve()
-    options.command = " ".join(["tools/demo", *(word for word in words if word.startswith("--"))])
     return options
 
 

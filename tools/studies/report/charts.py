@@ -32,7 +32,7 @@ class Drawing:
         """Below the axes, in as many columns as names fit beside each other."""
         handles, names = self.axes.get_legend_handles_labels()
         if names:
-            letters = self.figure.get_figwidth() * 13
+            letters = self.figure.get_figwidth() * 15
             columns = max(1, min(len(names), int(letters / (max(map(len, names)) + 8))))
             below = -0.62 / self.figure.get_figheight()
             self.axes.legend(handles, names, loc="upper center", bbox_to_anchor=(0.5, below), ncol=columns)

@@ -70,8 +70,8 @@ def feature_rows(summary, left_out):
     for feature in (feature for feature in FEATURE_NAMES if feature not in left_out):
         ours = summary["auc"].get(feature, summary["auc"].get(forest_of(feature)))[FEATURE_SCENE]
         stated = paper.FEATURES.get(feature, {})
-        here = (show(ours), percent(relative(ours, baseline)))
-        rows.append((FEATURE_NAMES[feature], *here, show(stated.get("auc")), percent(stated.get("gain"))))
+        in_paper = (show(stated["auc"]) if "auc" in stated else "", percent(stated["gain"]) if "gain" in stated else "")
+        rows.append((FEATURE_NAMES[feature], show(ours), percent(relative(ours, baseline)), *in_paper))
     return rows
 
 
