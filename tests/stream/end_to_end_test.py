@@ -8,8 +8,9 @@ import json
 import subprocess
 import sys
 
-from bus import Process, enter_private_network, read_arguments
-from lcm_messages import detections_by_utime, poses_of, read_log, utime_of
+from folders import read_arguments
+from studies.stream import Process, enter_private_network
+from studies.lcm_log import detections_by_utime, poses_of, read_log, utime_of
 from live_stream import check_live_stream
 
 FRAMES = 24

@@ -11,7 +11,8 @@ import subprocess
 import sys
 import time
 
-from bus import enter_private_network, read_arguments
+from folders import read_arguments
+from studies.stream import enter_private_network
 
 NAMES = ["detect", "pose", "view", "capture"]
 

@@ -7,8 +7,9 @@ import subprocess
 import sys
 import time
 
-from bus import Process, enter_private_network, read_arguments
-from lcm_messages import images_of, read_log, status_of, utime_of
+from folders import read_arguments
+from studies.stream import Process, enter_private_network
+from studies.lcm_log import images_of, read_log, status_of, utime_of
 
 LIVE_FRAMES = 90
 LEFT, DEPTH_MM_ZIPPED = 0, 6

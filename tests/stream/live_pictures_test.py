@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 
-from bus import Process, enter_private_network
+from studies.stream import Process, enter_private_network
 from virtual_display import VirtualDisplay
 
 BOX_COLOURS = {"bowl": (0xE6, 0x9F, 0x00), "soda_can": (0xF0, 0xE4, 0x42)}
@@ -204,10 +204,10 @@ def main():
         try:
             processes.append(Process(logs, tools / "hs-detect", "--forest", data / "small.forest", "--threads", 1))
             processes.append(Process(logs, tools / "hs-pose", "--models", data / "views" / "models"))
-            processes.append(Process(logs, tools / "hs-view", "--models", data / "views" / "models", "--preview"))
+            processes.append(Process(logs, tools / "hs-view", "--models", data / "views" / "models", "--preview",
+                                     name="preview"))
             for process in processes:
                 process.wait_until_ready()
-            os.replace(processes[-1].log, logs / "preview.err")
             processes.append(Process(logs, tools / "hs-capture", "--source", f"bop:{data / 'scene'}", "--loop", "--rate",
                                      10, "--jpeg-quality", 80))
             if subprocess.run(["unshare", "-rn", "true"], capture_output=True, check=False).returncode == 0:

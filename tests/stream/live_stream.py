@@ -6,8 +6,8 @@ import os
 import subprocess
 import time
 
-from bus import Process
-from lcm_messages import detections_by_utime, read_log
+from studies.stream import Process
+from studies.lcm_log import detections_by_utime, read_log
 
 
 def camera_option(scene):

@@ -9,9 +9,10 @@ import subprocess
 import sys
 import time
 
-from bus import Process, read_arguments
+from folders import read_arguments
+from studies.stream import Process
 from end_to_end_test import THRESHOLD
-from lcm_messages import Wire, detections_by_utime, detections_of, read_log, utime_of
+from studies.lcm_log import Wire, detections_by_utime, detections_of, read_log, utime_of
 
 URL = "udpm://239.255.76.67:7667?ttl=1"  # one hop: to the other end of the cable
 CHANNELS = {"A": "CAMERA_A", "B": "CAMERA_B"}

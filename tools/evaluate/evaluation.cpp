@@ -34,12 +34,22 @@ std::map<std::string, double> stage_medians(const std::vector<EvaluatedFrame>& f
   return medians;
 }
 
+/// A frame that hs-pose passed over counts as the skipped frames do: its detections have no poses, or are left out.
+std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std::vector<EvaluatedFrame>& frames,
+                                      const EvaluationRules& rules) {
+  const auto passed_over = [&](const JudgedPose& pose) { return !frames[pose.frame].poses; };
+  if (rules.processed_only) judged.erase(std::remove_if(judged.begin(), judged.end(), passed_over), judged.end());
+  return judged;
+}
+
 void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
-                    double min_visible, Evaluation& out) {
+                    const EvaluationRules& rules, Evaluation& out) {
+  if (out.frames_with_poses == 0) return;  // nobody looked for any
+  const double min_visible = rules.pose_min_visible;
   for (const ClassResult& result : out.classes) {
     const auto model = models.find(result.class_name);
     if (model == models.end()) continue;
-    const std::vector<JudgedPose> judged = judge_poses(frames, result, model->second);
+    const std::vector<JudgedPose> judged = counted_poses(judge_poses(frames, result, model->second), frames, rules);
     if (judged.empty()) continue;
     out.add_s_recall[result.class_name] = add_s_recall(judged, model->second.diameter, min_visible);
     out.add_or_add_s_recall[result.class_name] = add_or_add_s_recall(judged, model->second, min_visible);
@@ -70,7 +80,7 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
     const ClassResult result = evaluate_class(frames, name, rules.detection);
     out.false_detections += count_verdicts(result, Verdict::kFalse, rules.operating_score);
   }
-  evaluate_poses(frames, models, rules.pose_min_visible, out);
+  evaluate_poses(frames, models, rules, out);
   out.stage_ms = stage_medians(frames);
   return out;
 }

@@ -15,7 +15,8 @@ struct EvaluationRules {
   DetectionRules detection;
   double pose_min_visible = 0.5;  ///< poses of less visible objects do not enter the recall
   float operating_score = 0.0F;   ///< precision, recall and false detections count detections from this score on
-  bool processed_only = false;    ///< leave skipped frames out instead of counting their objects as missed
+  /// Leave skipped frames out instead of counting their objects, and the poses of what was found there, as missed.
+  bool processed_only = false;
 };
 
 /// How the detections of one class fared from the operating score on.

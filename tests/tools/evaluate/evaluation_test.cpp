@@ -1,3 +1,5 @@
+#include "tools/evaluate/evaluation.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -208,11 +210,23 @@ TEST(PoseMetrics, ATurnedObjectIsRightByAddOnlyWhereItIsSymmetric) {
   EXPECT_EQ(add_or_add_s_recall(judged, plain, 0.5), 0.0);
 }
 
-TEST(PoseMetrics, FramesWithoutPublishedPosesAndObjectsWithoutTruePosesAreLeftOut) {
+TEST(PoseMetrics, ObjectsWithoutTruePosesAreLeftOut) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
+  frames[2].objects[0].truth.has_pose = false;
+  EXPECT_EQ(judge_poses(frames, evaluate_class(frames, "mug", {}), {kCorners, 0.2, false}).size(), 2U);
+}
+
+TEST(PoseMetrics, AFrameThatThePosesPassedOverCountsAsMissedUnlessProcessedFramesAreAskedFor) {
   std::vector<EvaluatedFrame> frames = posed_frames(1.0);
   frames[1].poses.reset();
-  frames[2].objects[0].truth.has_pose = false;
-  EXPECT_EQ(judge_poses(frames, evaluate_class(frames, "mug", {}), {kCorners, 0.2, false}).size(), 1U);
+  frames[2].poses.reset();
+  const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
+  EvaluationRules rules;
+  EXPECT_NEAR(evaluate(frames, {"mug"}, models, rules).add_s_recall.at("mug"), 1.0 / 3.0, 1e-12);
+  rules.processed_only = true;
+  EXPECT_NEAR(evaluate(frames, {"mug"}, models, rules).add_s_recall.at("mug"), 1.0, 1e-12);
+  frames[0].poses.reset();
+  EXPECT_TRUE(evaluate(frames, {"mug"}, models, {}).add_s_recall.empty()) << "nobody looked for poses";
 }
 
 fs::path write_csv(const std::string& text) {

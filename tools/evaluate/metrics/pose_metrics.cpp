@@ -67,11 +67,11 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
   std::vector<JudgedPose> judged;
   for (const JudgedDetection& detection : detections.judged) {
     const EvaluatedFrame& frame = frames[detection.frame];
-    if (detection.verdict != Verdict::kTrue || !frame.poses) continue;
+    if (detection.verdict != Verdict::kTrue) continue;
     const TrueObject& truth = frame.objects[detection.object].truth;
     if (!truth.has_pose) continue;
     JudgedPose row{detection.frame, detections.class_name, truth.visible_fraction, PoseStatus::kInvalid, kNaN, kNaN};
-    const ObjectPose* pose = find_pose(*frame.poses, detection.index);
+    const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection.index) : nullptr;
     if (pose != nullptr) row.status = pose->status;
     if (pose != nullptr && pose->T_camera_object) {
       row.add = add_error(model.points, *pose->T_camera_object, truth.T_camera_object);

@@ -41,8 +41,8 @@ struct JudgedPose {
   double add_s = 0.0;  ///< metres; NaN without a pose
 };
 
-/// The poses of all true detections of a class, in frames for which poses were published. Objects whose truth has no
-/// pose are left out.
+/// The poses of all true detections of a class; in a frame for which no poses were published, none has one. Objects
+/// whose truth has no pose are left out.
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model);
 

@@ -35,6 +35,14 @@ int positive_count(const std::string& text, const std::string& of) {
   return static_cast<int>(value);
 }
 
+float share(const std::string& text, const std::string& of) {
+  float value = 0.0F;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  require(error == std::errc() && end == text.data() + text.size() && value >= 0.0F && value <= 1.0F,
+          "{}: '{}', expected a number from 0 to 1", of, text);
+  return value;
+}
+
 std::int64_t instruction_set(const std::string& name) {
   std::vector<std::string> known;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
@@ -58,10 +66,15 @@ void grant(const std::string& wish, const std::string& text, Wishes& wishes, Con
     contender.frames = static_cast<std::size_t>(positive_count(value, text));
   } else if (name == "scale") {
     contender.image_scale = positive_number(value, text);
+  } else if (name == "threshold") {
+    wishes.search.threshold = share(value, text);
+  } else if (name == "min-mass") {
+    wishes.search.min_mass_share = share(value, text);
   } else if (name == "set") {
     contender.instruction_set = instruction_set(value);
   } else {
-    fail("{}: '{}', expected threads=N, trees=N, frames=N, scale=X, set=NAME or readable", text, wish);
+    fail("{}: '{}', expected threads=N, trees=N, frames=N, scale=X, threshold=X, min-mass=X, set=NAME or readable",
+         text, wish);
   }
 }
 

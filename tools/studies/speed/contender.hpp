@@ -20,7 +20,8 @@ struct Contender {
 };
 
 /// A detector as a command line names it: "NAME=FOREST", then any of ",threads=N" (default 2), ",readable",
-/// ",set=SSE4|AVX2|AVX3" and so on (the names of Highway), ",frames=N", ",trees=N" (the first so many), ",scale=X".
+/// ",set=SSE4|AVX2|AVX3" and so on (the names of Highway), ",frames=N", ",trees=N" (the first so many), ",scale=X",
+/// ",threshold=X" and ",min-mass=X" (as of hs-evaluate, so that time and accuracy are of the same settings).
 /// Loads the forest. Throws InputError naming what was not understood.
 Contender parse_contender(const std::string& text);
 

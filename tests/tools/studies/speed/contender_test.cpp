@@ -46,6 +46,14 @@ TEST_F(ParseContender, ItDetectsAsTheDetectorDoes) {
   EXPECT_FALSE(fast.stages.empty());
 }
 
+TEST_F(ParseContender, ItReportsFromTheThresholdAndMassThatItIsTold) {
+  RgbdFrame frame = toy::room(77);
+  toy::put_tile(0, 200, 200, 0.8, frame);
+  const std::size_t usual = parse("").detect(frame).detections.size();
+  EXPECT_GT(parse(",threshold=0,min-mass=0").detect(frame).detections.size(), usual);
+  EXPECT_TRUE(parse(",threshold=1").detect(frame).detections.empty());
+}
+
 TEST_F(ParseContender, WhatIsNotUnderstoodIsNamed) {
   const auto words = [](const std::string& text) {
     try {
@@ -56,8 +64,8 @@ TEST_F(ParseContender, WhatIsNotUnderstoodIsNamed) {
     return std::string("no error");
   };
   EXPECT_THAT(words("no_forest"), ::testing::HasSubstr("expected NAME=FOREST"));
-  for (const std::string wish :
-       {"threads=0", "threads=two", "trees=1000", "frames=1.5", "scale=-1", "set=MMX", "fast"}) {
+  for (const std::string wish : {"threads=0", "threads=two", "trees=1000", "frames=1.5", "scale=-1", "set=MMX", "fast",
+                                 "threshold=2", "min-mass=low"}) {
     EXPECT_THAT(words("ours=" + forest_file() + "," + wish), ::testing::Not("no error")) << wish;
   }
 }

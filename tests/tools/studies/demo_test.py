@@ -1,0 +1,123 @@
+"""Tests of the demo's report: accounting for frames, latencies, its page. Usage: PYTHONPATH=tools demo_test.py"""
+
+import pathlib
+import tempfile
+import unittest
+
+from studies.demo import live, report
+from studies.measured import write_json
+
+
+def observed(received, processed, skipped, on_bus):
+    detector = {"received": received, "processed": processed, "skipped": skipped}
+    return {"processes": {"hs-detect": detector}, "frames_detected": on_bus, "frames_with_poses": on_bus}
+
+
+class Account(unittest.TestCase):
+    def test_every_frame_is_accounted_for(self):
+        counts = report.account(10, observed(received=9, processed=6, skipped=3, on_bus=6))
+        self.assertEqual((counts["frames_lost"], counts["frames_detected"], counts["frames_skipped"]), (1, 6, 3))
+
+    def test_a_hole_in_the_account_ends_the_report(self):
+        for wrong in (
+            observed(received=9, processed=6, skipped=2, on_bus=6),
+            observed(received=9, processed=6, skipped=3, on_bus=5),
+            {"processes": {}, "frames_detected": 0},
+        ):
+            with self.assertRaises(SystemExit):
+                report.account(10, wrong)
+
+
+class LiveReport(unittest.TestCase):
+    SHUTTERS = [1_000_000, 1_033_333, 1_066_667]
+
+    def test_a_frame_belongs_to_the_nearest_shutter(self):
+        self.assertEqual(live.nearest(self.SHUTTERS, 1_034_000), 1_033_333)
+        self.assertEqual(live.nearest(self.SHUTTERS, 1_066_667), 1_066_667)
+        self.assertIsNone(live.nearest(self.SHUTTERS, 1_200_000))
+        self.assertIsNone(live.nearest([], 1_000_000))
+
+    def test_latency_is_from_the_shutter(self):
+        rows = [{"utime": "1000500", "t_poses": "0.080"}, {"utime": "1033400", "t_poses": ""}]
+        self.assertEqual(live.latencies_ms(rows, "t_poses", self.SHUTTERS, 1_020_000), [100.0])
+        with self.assertRaises(SystemExit):
+            live.latencies_ms([{"utime": "5", "t_poses": "1"}], "t_poses", self.SHUTTERS, 0)
+
+    def test_an_unplugged_camera_leaves_a_gap(self):
+        rows = [{"t_frame": "1.0", "t_poses": "1.1"}, {"t_frame": "4.5", "t_poses": ""}, {"t_frame": "4.6", "t_poses": "4.7"}]
+        gap = live.unplugging(rows, 1_000_000, 5_000_000)
+        self.assertEqual(gap, {"gap_s": 3.5, "frames_back_ms": 500, "poses_back_ms": 700})
+        for replugged in (1_500_000, 5_650_000):
+            with self.assertRaises(SystemExit):
+                live.unplugging(rows, 1_000_000, replugged)
+
+    def test_percentiles_of_a_hundred(self):
+        self.assertEqual(live.percentiles(range(1, 101)), {"p50": 51, "p95": 96, "p99": 100})
+        self.assertEqual(live.percentiles([])["p99"], None)
+
+
+def evaluation(auc, recall):
+    figures = {"auc": {"<bowl>": auc, "mean": auc, "weighted": auc}, "precision": {"<bowl>": 1.0}, "recall": {"<bowl>": recall}}
+    figures |= {"required": {"<bowl>": 10}, "pose_recall_add_s_10": {"<bowl>": recall, "mean": recall}}
+    return figures | {"false_detections": 0, "rules": {}, "stage_ms_median": {"detect.leaves": 2.5}, "bop19": {"ar": {"all": 0.6}}}
+
+
+class Options:
+    command, network, real, scene = "tools/demo", "private", None, "desk_1"
+
+    def __init__(self, out):
+        self.out = out
+
+
+class OneUnit:
+    """In place of the store: the forest alone."""
+
+    def __init__(self, folder):
+        self.folder, self.units = folder, {"forest": "forest"}
+
+    def log(self, unit):
+        file = self.folder / "words.txt"
+        file.write_text("train_seconds 51.5\n")
+        return file
+
+    def record(self, unit):
+        return {"command": "hs-train"}
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.out = pathlib.Path(place.name)
+        stream = self.out / "stream"
+        latency = {"p50": 20.0, "p95": 25.0, "p99": 31.0}
+        counts = {**observed(received=10, processed=8, skipped=2, on_bus=8), "frames_with_poses": 7}
+        write_json(stream / "observe.json", {**counts, "detection_rate_hz": 29.0, "latency_ms": {"total": latency}})
+        write_json(stream / "evaluation" / "summary.json", evaluation(0.72, 0.7))
+        write_json(stream / "evaluation_processed" / "summary.json", evaluation(0.9, 0.875))
+        (stream / "evaluation" / "curves.csv").write_text("object,score,precision,recall\n<bowl>,0.9,1.0,0.5\n")
+        (stream / "frame_times.csv").write_text("utime,t_frame,t_detections,t_poses\n1,0.0,0.02,0.03\n2,0.1,,\n")
+        (self.out / "overlay.png").write_bytes(b"picture")
+        self.summary = report.summarise(Options(self.out), OneUnit(self.out), 10)
+
+    def test_recalls_are_over_all_frames_and_again_over_the_processed_ones(self):
+        self.assertEqual((self.summary["auc"]["<bowl>"], self.summary["recall"]["<bowl>"]), (0.72, 0.7))
+        processed = self.summary["processed"]
+        self.assertEqual((processed["auc"]["<bowl>"], processed["recall"]["<bowl>"]), (0.9, 0.875))
+        self.assertEqual((self.summary["frames_with_poses"], self.summary["train_seconds"]), (7, 51.5))
+        for key in ("cpu", "commit", "date", "command", "latency_ms", "rate_hz", "settings", "bop19_ar"):
+            self.assertIn(key, self.summary)
+
+    def test_the_page_holds_everything_and_needs_no_network(self):
+        page = report.page(self.out, self.summary)
+        for words in ("&lt;bowl&gt;", "<td>0.720</td>", "<td>0.900</td>", "<td>detect.leaves</td><td>2.50</td>", "rendered scene desk_1"):
+            self.assertIn(words, page)
+        self.assertNotIn("http", page)
+
+    def test_latency_is_of_frames_that_have_results(self):
+        times = [{"t_frame": "0.1", "t_poses": "0.13"}, {"t_frame": "0.2", "t_poses": ""}]
+        self.assertEqual([(x, round(y, 6)) for x, y in report.latency_points(times, "t_poses")], [(0.1, 30.0)])
+
+
+if __name__ == "__main__":
+    unittest.main()

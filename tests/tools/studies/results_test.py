@@ -1,0 +1,96 @@
+"""Tests of the writer of RESULTS.md, with small summaries. Usage: PYTHONPATH=tools results_test.py"""
+
+import pathlib
+import tempfile
+import unittest
+
+from studies import results
+from studies.bench import speed
+from studies.measured import write_json
+from studies.reproduce.results import Results
+from studies.reproduce.summary import summarise
+
+OF_COMMIT = {"cpu": "a | processor", "commit": "abc1234", "date": "2020-02-20", "command": "tools/demo"}
+LATENCY = {"p50": 20.0, "p95": 25.0, "p99": 31.0}
+
+
+class Nothing:
+    """In place of the store of tools/reproduce: no unit has been run."""
+
+    def is_current(self, unit):
+        return False
+
+
+def demo(commit="abc1234"):
+    figures = {"auc": {"bowl": 0.72, "mean": 0.72}, "recall": {"bowl": 0.5}, "pose_recall_add_s_10": {"bowl": 0.25, "mean": 0.25}}
+    counts = dict.fromkeys(("frames_sent", "frames_detected", "frames_skipped", "frames_lost", "frames_with_poses"), 300)
+    return {**figures, "processed": figures, "bop19_ar": {"bowl": 0.6, "all": 0.6}, "latency_ms": {"total": LATENCY}, **counts,
+            "false_detections": 1, "rate_hz": 29.9, "train_seconds": 50.0, **OF_COMMIT, "commit": commit, "settings": {}}  # fmt: skip
+
+
+def reproduced():
+    left_out = ["attitudes", "pfh"]
+    summary = summarise(Results(Nothing(), [], left_out))
+    summary["auc"]["gall"]["desk_1"] = 0.5
+    return {**summary, "settings": {**OF_COMMIT, "command": "tools/reproduce", "left_out": left_out}}
+
+
+class ResultsOfACommit(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.out = pathlib.Path(place.name, "out")
+        self.file = pathlib.Path(place.name, "RESULTS.md")
+
+    def written(self):
+        results.write(self.out, self.file, "abc1234")
+        return self.file.read_text()
+
+    def section(self, text, title):
+        return text.split(f"## {title}")[1].split("\n## ")[0]
+
+    def test_each_table_names_machine_date_and_command(self):
+        write_json(self.out / "demo" / "summary.json", demo())
+        section = self.section(self.written(), "Demo: a rendered scene")
+        self.assertIn("*`tools/demo`; a | processor; 2020-02-20*", section)
+        self.assertIn("| AUC | 0.720 | 0.720 |", section)
+        self.assertIn("| ADD-S recall | 0.250 | 0.250 |", section)
+        self.assertIn("| BOP average recall | 0.600 | 0.600 |", section)
+
+    def test_what_is_of_another_commit_is_not_measured(self):
+        write_json(self.out / "demo" / "summary.json", demo())
+        write_json(self.out / "real" / "summary.json", demo("0ther"))
+        text = self.written()
+        self.assertIn("Not measured of this commit: `tools/demo --real DIR`", self.section(text, "Demo: camera-recorded"))
+        self.assertIn("Not measured of this commit: `tools/reproduce`", text)
+
+    def test_parts_of_a_benchmark_are_told_apart(self):
+        bench = self.out / "bench"
+        times = {"threads_1": {"ms": {"p50": 19.0}, "stage_ms": {}}, "realtime": {"ms": {"p50": 12.0}, "stage_ms": {"detect.leaves": 3.0}}}
+        write_json(bench / "speed" / "times.json", times)
+        write_json(bench / "speed" / "about.json", {**OF_COMMIT, "command": "tools/bench speed"})
+        write_json(bench / "growth" / "times.json", {"objects_4": {"ms": {"p50": 12.0}}})
+        write_json(bench / "growth" / "about.json", {**OF_COMMIT, "commit": "0ther"})
+        write_json(bench / "summary.json", {**speed.summarise(bench), **OF_COMMIT})
+        text = self.written()
+        section = self.section(text, "Speed: one frame")
+        self.assertIn("| realtime, fast engine, all threads | 12.00 | not measured | ranked", section)
+        self.assertIn("| realtime | 3.00 |", section)
+        self.assertIn("Not measured of this commit: `tools/bench growth`", text)
+
+    def test_a_cell_that_was_not_measured_says_so(self):
+        write_json(self.out / "reproduce" / "summary.json", reproduced())
+        section = self.section(self.written(), "Six rendered scenes")
+        self.assertIn("| gall (RGB Hough Forest) | not measured | not measured | 0.500 |", section)
+        self.assertNotIn("taught in all attitudes", self.file.read_text())
+
+    def test_nothing_measured_leaves_the_file_alone(self):
+        write_json(self.out / "demo" / "summary.json", demo("0ther"))
+        self.file.write_text("as it was")
+        with self.assertRaisesRegex(SystemExit, "abc1234"):
+            self.written()
+        self.assertEqual(self.file.read_text(), "as it was")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,1 @@
+"""tools/bench: time, streams, growth and poses, from nothing to a report."""

@@ -1,0 +1,65 @@
+"""Options of tools/bench. What they ask for is in parts.py."""
+
+import argparse
+import pathlib
+import sys
+
+from studies.command import Options, die, positive, prepare, recorded_folder, step
+from studies.stream import ProcessFailed, enter_private_network, enter_shared_network
+from studies.work import UnitFailed, locked
+
+PARTS = ("speed", "stream", "growth", "pose")
+TARGETS = ("hs-render", "hs-train", "hs-study-train", "hs-capture", "hs-detect", "hs-pose", "hs-observe", "hs-evaluate",
+           "hs-study-evaluate", "hs-linemod", "hs-bench-speed", "hs-bench-kernels", "hs-bench-pose", "hs-fuse",
+           "hs-bench-real")  # fmt: skip
+
+
+def part(text):
+    if text not in PARTS:
+        raise argparse.ArgumentTypeError(f"unknown benchmark {text}, expected {', '.join(PARTS)}")
+    return text
+
+
+def parse(words):
+    parser = Options("bench", "Measures everything from nothing to a report: installs, builds, renders data, trains, and "
+                              "then times detection beside its rivals, streams a minute of frames through the processes, "
+                              "lets the number of objects grow, and compares poses.")  # fmt: skip
+    add = parser.add_argument
+    add("parts", nargs="*", type=part, metavar="speed | stream | growth | pose",
+        help="speed: time a frame: profiles, stages, threads, instruction sets, the reference engine, LINEMOD. stream: a "
+             "minute of replay at 30 Hz: latency from frame to pose, losses, CPU time, memory. growth: time with 1 to 40 "
+             "objects, 5 to 30 trees, 320x240 to 1280x960 pixels. pose: accuracy and time, beside PCL's ICP and two other "
+             "methods. Default: all four")  # fmt: skip
+    add("--every", type=positive, default=2, metavar="N", help="look at every Nth of the 60 frames of each scene (default 2)")
+    add("--rivals-every", type=positive, default=6, metavar="M",
+        help="of those, the other methods of poses look at every Mth: they are slow (default 6)")  # fmt: skip
+    add("--real", metavar="DIR", help='camera-recorded data (DIR/objects, background, scenes, model) to compare poses on as '
+                                      'well; default ../shared/realdata where it is there, "" for none')  # fmt: skip
+    add("--shared-bus", action="store_true", help="stream on this machine's own network; default: a private network")
+    add("--out", type=pathlib.Path, default="out/bench", metavar="DIR", help="default out/bench")
+    add("--fresh", action="store_true", help="render and train again even where nothing has changed")
+    options = parser.parse_args(words)
+    options.parts = options.parts or list(PARTS)
+    options.real = recorded_folder(options.real, "model")
+    options.out = options.out.resolve()
+    return options
+
+
+def main():
+    options = parse(sys.argv[1:])
+    options.programs = pathlib.Path(prepare(options, TARGETS))
+    options.network = enter_shared_network() if options.shared_bus else enter_private_network()
+    from studies.bench import parts  # needs what has been installed
+
+    try:
+        with locked(options.out):
+            parts.run(options)
+    except (UnitFailed, ProcessFailed) as error:
+        die(error)
+    except KeyboardInterrupt:
+        die("interrupted")
+    step("done")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+"""What the commands that a person starts have in common: options, lines of progress, installing and building."""
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import time
+
+from studies.measured import REPOSITORY
+
+START = float(os.environ.setdefault("HOUGHSTREAM_START", str(time.time())))  # stays when a command starts itself again
+TEST_SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1", "meeting_small_1")
+RECORDED_CAMERA = "640x480,525,525,319.5,239.5"
+RECORDED_INSTANCES = "ornament_3,ornament_1,koaramarch_1,pack_2,bottle_2,can_1,can_2"
+RECORDED_NAMES = "can_1=can,can_2=can"
+
+
+def recorded_views(folder):
+    """Options of hs-train and its like for the camera-recorded training views in FOLDER/objects."""
+    return ("--views", f"uw:{folder}/objects", "--camera", RECORDED_CAMERA, "--rename", RECORDED_NAMES,
+            "--instances", RECORDED_INSTANCES)  # fmt: skip
+
+
+def step(words):
+    """A line of progress with the seconds since the start."""
+    print(f"[{time.time() - START:4.0f} s] {words}", flush=True)
+
+
+def die(words):
+    sys.exit(f"{os.environ.get('HOUGHSTREAM_COMMAND', 'studies')}: {words}")
+
+
+def positive(text):
+    if not re.fullmatch(r"[1-9][0-9]*", text):
+        raise argparse.ArgumentTypeError(f"'{text}', expected a number from 1")
+    return int(text)
+
+
+class Options(argparse.ArgumentParser):
+    """Wrong options end the command with one line. --bin names programs that are there already: none are built."""
+
+    def __init__(self, name, description):
+        os.environ["HOUGHSTREAM_COMMAND"] = name
+        super().__init__(prog=f"tools/{name}", description=description, allow_abbrev=False)
+        self.add_argument("--bin", metavar="DIR", help="programs that are there already; installs and builds nothing")
+
+    def error(self, message):
+        die(f"{message}; --help names the options")
+
+
+def recorded_folder(given, part):
+    """Camera-recorded data: DIR, or None for "". Not given, ../shared/realdata where it is there."""
+    found = given
+    if given is None:
+        found = "../shared/realdata" if os.path.isdir(f"../shared/realdata/{part}") else ""
+    if found and not os.path.isdir(f"{found}/{part}"):
+        die(f"{found}: no folder {part}/ in it, expected camera-recorded data")
+    return os.path.realpath(found) if found else None
+
+
+def prepare(options, targets):
+    """Installs what is missing and builds the targets. Returns the folder of the programs."""
+    if options.bin:
+        return os.path.realpath(options.bin)
+    if "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ:  # else this has been done before the command started itself again
+        if subprocess.run(["tools/setup"], cwd=REPOSITORY, check=False).returncode != 0:
+            die("tools/setup failed")
+        step("build")
+        build = ["bash", "-c", 'source tools/common.sh && configure_and_build build Release -- "$@"', "build", *targets]
+        if subprocess.run(build, cwd=REPOSITORY, check=False).returncode != 0:
+            die("the build failed")
+    return str(REPOSITORY / "build" / "bin")
+
+
+def call(*words, into=None):
+    """Runs a program to its end, its output in a file; one line where it fails."""
+    words = [str(word) for word in words]
+    if into:
+        into.parent.mkdir(parents=True, exist_ok=True)
+    with open(into, "w") if into else open(os.devnull, "w") as output:
+        status = subprocess.run(words, stdout=output, check=False).returncode
+    if status != 0:
+        die(f"{os.path.basename(words[0])} failed with status {status}: {' '.join(words)}")

@@ -1,0 +1,1 @@
+"""tools/demo: the main job, from nothing to a report."""

@@ -1,0 +1,62 @@
+"""Options of tools/demo. What they ask for is in run.py."""
+
+import os
+import pathlib
+import sys
+
+from studies.command import Options, die, positive, prepare, step
+from studies.stream import ProcessFailed, enter_private_network, enter_shared_network
+from studies.work import UnitFailed, locked
+
+TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
+           "hs-spy", "hs-evaluate", "virtual_camera")  # fmt: skip
+
+
+def parse(words):
+    parser = Options("demo", "Installs, builds, makes or reads data, trains, replays the recorded scene through the "
+                             "stream, and measures what comes out.")  # fmt: skip
+    add = parser.add_argument
+    add("--live", action="store_true", help="a virtual camera plays the rendered scene through OpenNI2; measures from "
+                                            "its shutter to the poses")  # fmt: skip
+    add("--seconds", type=positive, default=60, metavar="N", help="how long it does so (default 60)")
+    add("--unplug", action="store_true", help="takes the camera away for three seconds halfway through, and plugs it in "
+                                              "again")  # fmt: skip
+    add("--real", metavar="DIR", help="camera-recorded data (DIR/objects, background, scenes, clutter) instead of "
+                                      "rendered data")  # fmt: skip
+    add("--shared-bus", action="store_true", help="use this machine's own network, so that lcm-spy sees the stream; "
+                                                  "default: a private network")  # fmt: skip
+    add("--scene", default="table_small_1", metavar="NAME", help="rendered test scene (default table_small_1)")
+    add("--frames", type=positive, default=300, metavar="N", help="its length (default 300)")
+    add("--out", type=pathlib.Path, metavar="DIR", help="default out/demo, out/real with --real, or out/live with --live")
+    add("--fresh", action="store_true", help="render and train again even where nothing has changed")
+    options = parser.parse_args(words)
+    if options.real and not os.path.isdir(f"{options.real}/objects"):
+        die(f"{options.real}: no folder objects/ in it, expected camera-recorded data")
+    if options.live and options.real:
+        die("--live plays a rendered scene; it does not go with --real")
+    if options.unplug and not options.live:
+        die("--unplug goes with --live")
+    paths = {options.real, options.bin, str(options.out)}
+    options.command = " ".join(["tools/demo", *("DIR" if word in paths else word for word in words)])
+    options.out = (options.out or pathlib.Path("out", "live" if options.live else "real" if options.real else "demo")).resolve()
+    return options
+
+
+def main():
+    options = parse(sys.argv[1:])
+    programs = prepare(options, TARGETS)
+    options.network = enter_shared_network() if options.shared_bus else enter_private_network()
+    from studies.demo import run  # needs what has been installed
+
+    try:
+        with locked(options.out):
+            run.run(options, pathlib.Path(programs))
+    except (UnitFailed, ProcessFailed) as error:
+        die(error)
+    except KeyboardInterrupt:
+        die("interrupted; the same command goes on from here")
+    step("done")
+
+
+if __name__ == "__main__":
+    main()

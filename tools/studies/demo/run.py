@@ -1,0 +1,141 @@
+"""What tools/demo does: data, log, stream, evaluation, report; of a rendered scene, of recorded ones, or live."""
+
+import shutil
+import threading
+import time
+
+from studies.command import RECORDED_CAMERA, call, die, recorded_views, step
+from studies.demo import live, report
+from studies.lcm_log import count_events
+from studies.measured import threads, write_json
+from studies.stream import Stream
+from studies.work import Store, Units, make
+
+RATE, SINGLE_PICTURES_RATE = 30, 2  # Hz; single pictures are sent slowly enough that each is looked at
+AWAY_S = 3.0  # for which --unplug takes the camera away
+
+
+def rendered_units(options):
+    """Rendered views and rooms, the forest that is trained on them, and the test scene."""
+    units = Units()
+    units.add("training", "", "hs-render", "training", "--out", "{out}")
+    units.add("background", "", "hs-render", "background", "--count", 215, "--out", "{out}")
+    units.add("forest", "", "hs-train", "--threads", threads(), "--out", "{out}", "--views", "bop:{training}",
+              "--background", "bop:{background}")  # fmt: skip
+    units.add("scene", "", "hs-render", "scene", options.scene, "--frames", options.frames, "--out", "{out}")
+    return units
+
+
+def recorded_units(options):
+    units = Units()
+    units.add("scenes", "", "hs-import", "boxes", f"{options.real}/scenes", "{out}")
+    units.add("clutter", "", "hs-log", "export", "bop", f"uw:{options.real}/clutter,{RECORDED_CAMERA}", "{out}")
+    units.add("forest", "", "hs-train", "--threads", threads(), "--out", "{out}", *recorded_views(options.real),
+              "--background", f"images:{options.real}/background")  # fmt: skip
+    return units
+
+
+def add_log(units, name, scene, rate):
+    units.add(name, "", "hs-capture", "--source", f"bop:{{{scene}}}", "--rate", rate, "--log", "{out}")
+
+
+class Demo:
+    def __init__(self, options, programs, units):
+        self.options, self.programs, self.out = options, programs, options.out
+        self.store = Store(options.out, programs, units.all(), files="data")
+        make(self.store, options.fresh)
+
+    def stream(self, name, frames, models):
+        """hs-detect shows even its weakest detections here: precision and recall are drawn over all scores."""
+        return Stream(self.programs, self.store.path("forest"), models, frames, self.out / name,
+                      detect=("--threshold", "0.01"), pose=("--threads", 1), show=True)  # fmt: skip
+
+    def replay(self, name, log, scene, models=None):
+        """The log through the stream, and what came out beside the truth of the scene. Returns how many frames were sent."""
+        file = self.store.path(log)
+        sent = count_events(file, "OPENNI_FRAME")
+        step(f"{name}: {sent} frames through the stream")
+        self.stream(name, sent, models).play("lcm-logplayer", file)
+        step(f"{name}: evaluation")
+        self.evaluate(name, "evaluation", scene, models)
+        self.evaluate(name, "evaluation_processed", scene, models, "--processed-only")
+        return sent
+
+    def evaluate(self, name, what, scene, models, *options):
+        out = self.out / name
+        with_models = ("--models", models) if models else ()
+        call(self.programs / "hs-evaluate", "--scene", self.store.path(scene), "--log", out / "results.lcmlog",
+             "--forest", self.store.path("forest"), "--latency", out / "frame_times.csv", "--threads", threads(),
+             *with_models, *options, "--out", out / what, into=out / f"{what}.txt")  # fmt: skip
+
+
+def run_replay(options, programs):
+    if options.real:
+        units = recorded_units(options)
+        add_log(units, "stream.lcmlog", "scenes", SINGLE_PICTURES_RATE)
+        add_log(units, "clutter_stream.lcmlog", "clutter", SINGLE_PICTURES_RATE)
+        demo = Demo(options, programs, units)
+        sent = demo.replay("stream", "stream.lcmlog", "scenes")
+        demo.replay("clutter_stream", "clutter_stream.lcmlog", "clutter")
+    else:
+        units = rendered_units(options)
+        add_log(units, "stream.lcmlog", "scene", RATE)
+        demo = Demo(options, programs, units)
+        sent = demo.replay("stream", "stream.lcmlog", "scene", demo.store.path("training") / "models")
+    step("report")
+    report.write(options, demo.store, sent)
+
+
+class Hand(threading.Thread):
+    """Takes the camera away when so many frames have been taken, and puts it back. The camera looks at its script often: it
+    must find a whole one."""
+
+    def __init__(self, frames, script, shutter):
+        super().__init__(daemon=True)
+        self.frames, self.script, self.shutter = frames, script, shutter
+        self.replugged_us = None
+
+    def _write(self, text):
+        fresh = self.script.with_suffix(".new")
+        fresh.write_text(text)
+        fresh.replace(self.script)
+
+    def run(self):
+        plugged = self.script.read_text()
+        while not self.shutter.exists() or self.shutter.read_text().count("\n") < self.frames:
+            time.sleep(0.1)
+        self._write(plugged + "plugged no\n")
+        time.sleep(AWAY_S)
+        replugged_us = time.time_ns() // 1000
+        self._write(plugged)
+        self.replugged_us = replugged_us
+
+
+def run_live(options, programs):
+    """The virtual camera's pictures are in memory, and its shutter writes down when it opens."""
+    demo = Demo(options, programs, rendered_units(options))
+    out, frames = options.out, RATE * options.seconds
+    script, shutter = out / "camera_script", out / "shutter.txt"
+    shutter.unlink(missing_ok=True)
+    script.write_text(f"scene {demo.store.path('scene')}\nshutter_file {shutter}\n")
+    step(f"live: {options.seconds} s of the virtual camera through the stream at {RATE} Hz")
+    hand = Hand(frames // 2, script, shutter)
+    if options.unplug:
+        hand.start()
+    camera = {"LD_LIBRARY_PATH": str(programs.parent / "virtual_camera"), "HOUGHSTREAM_VIRTUAL_CAMERA": str(script)}
+    capture = (programs / "hs-capture", "--source", "openni2", "--frames", frames)
+    demo.stream("stream", frames, demo.store.path("training") / "models").play(*capture, **camera)
+    if options.unplug:
+        hand.join(2 * AWAY_S)
+        if not hand.replugged_us:
+            die("the stream ended before the camera was taken away and put back")
+    for name in ("overlay.png", "overlay.mp4"):
+        shutil.copyfile(out / "stream" / name, out / name)
+    summary = live.summarise(out, shutter, hand.replugged_us if options.unplug else None)
+    write_json(out / "summary.json", {**summary, **report.about_run(options)})
+    live.print_summary(summary)
+    print(f"{out}/summary.json, {out}/overlay.png, {out}/overlay.mp4")
+
+
+def run(options, programs):
+    run_live(options, programs) if options.live else run_replay(options, programs)

@@ -1,0 +1,1 @@
+"""The one report kit: charts as SVG, pages and tables as HTML."""
