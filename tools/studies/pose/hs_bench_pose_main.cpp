@@ -88,7 +88,7 @@ void run(const BenchOptions& options) {
       makers = make_makers(models.meshes, !options.no_rivals);
     }
     const DetectedScene detected = detect_scene(name, scene, detector, options.every);
-    bench_scene(detected, models, makers, options.rivals_every, settings.threads, bench);
+    bench_scene(detected, models, makers, {options.rivals_every, settings.threads}, bench);
   }
   write_bench(bench, options.out);
   write_worst(bench.each_frame.at(kOurs).trials, scenes, meshes, options.out);
