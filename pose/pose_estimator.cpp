@@ -1,75 +1,108 @@
 #include "pose/pose_estimator.hpp"
 
-#include <algorithm>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
-#include "pose/registration/candidates.hpp"
-#include "pose/registration/refinement.hpp"
-#include "pose/registration/region.hpp"
-#include "pose/registration/rotation_clusters.hpp"
-#include "pose/verification/quality.hpp"
 
 namespace houghstream {
 namespace {
 
-bool is_finite(const Eigen::Vector3f& centre_camera) {
-  return centre_camera.allFinite() && centre_camera.z() > 0.0F;
+/// A detection on its way to a pose: what the stages have found.
+struct Estimation {
+  const Detection& detection;
+  const ObjectModel& model;
+  ObjectPose& pose;  ///< what is published; its status is kInvalid until it is decided
+  std::optional<SeenObject> seen;
+  std::vector<RotationCandidate> rotations;
+  std::vector<PoseCandidate> candidates;
+  std::vector<RegistrationResult> registered;  ///< the candidates
+  RegistrationResult chosen;
+};
+
+ObjectPoses undecided_poses(const Detections& detections) {
+  ObjectPoses poses;
+  poses.utime = detections.utime;
+  poses.source_channel = detections.source_channel;
+  poses.stages = detections.stages;
+  for (const Detection& detection : detections.detections) {
+    ObjectPose pose;
+    pose.class_id = detection.class_id;
+    pose.class_name = detection.class_name;
+    pose.detection_score = detection.score;
+    pose.detection_index = static_cast<int>(poses.poses.size());
+    pose.residual = std::numeric_limits<float>::quiet_NaN();
+    poses.poses.push_back(std::move(pose));
+  }
+  return poses;
 }
 
-/// Renders the model, compares, and publishes the pose or says why not.
-PoseStatus judge_registered(const SeenRegion& seen, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                            const PoseSettings& settings, ObjectPose& pose) {
-  const DepthTolerance tolerance{settings.verification.tolerance_m, settings.noise};
-  const ViewLook look = look_at_view(seen.frame, model, T_camera_object, settings.registration.fine_points);
-  const Verification depth = verify_pose(seen.frame, model.mesh, T_camera_object, tolerance);
-  const PoseEvidence evidence{pose.detection_score, depth, compare_colours(seen.colours, look, tolerance)};
+/// Why no pose is looked for, or kInvalid.
+PoseStatus reason_to_pass_over(const Detection& detection, bool has_model, const PoseSettings& settings) {
+  const Eigen::Vector3f& centre_camera = detection.centre_camera;
+  if (!has_model) return PoseStatus::kNoModel;
+  if (detection.score < settings.min_score) return PoseStatus::kLowScore;
+  if (!centre_camera.allFinite() || !(centre_camera.z() > 0.0F)) return PoseStatus::kNoInitialPose;
+  return PoseStatus::kInvalid;
+}
+
+/// The detections whose pose is looked for; `poses` of the others say why not.
+std::vector<Estimation> begin_estimations(const Detections& detections,
+                                          const std::map<std::string, ObjectModel>& models,
+                                          const PoseSettings& settings, std::vector<ObjectPose>& poses) {
+  std::vector<Estimation> begun;
+  begun.reserve(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Detection& detection = detections.detections[i];
+    const auto model = models.find(detection.class_name);
+    poses[i].status = reason_to_pass_over(detection, model != models.end(), settings);
+    if (poses[i].status != PoseStatus::kInvalid) continue;
+    begun.push_back({detection, model->second, poses[i], {}, {}, {}, {}, {}});
+  }
+  return begun;
+}
+
+void look_at_region(const RgbdFrame& frame, const PoseSettings& settings, Estimation& it) {
+  it.seen.emplace(see_object(frame, it.detection, it.model, settings.region, settings.noise));
+  if (it.seen->region.points < settings.region.min_points) it.pose.status = PoseStatus::kTooFewPoints;
+}
+
+void find_candidates(std::int64_t utime, const ObjectPoses& earlier, const PoseSettings& settings, Estimation& it) {
+  it.rotations = rotation_clusters(it.detection.rotations, settings.initial);
+  it.candidates = place_candidates(*it.seen, it.rotations, settings.search);
+  const std::vector<PoseCandidate> warm = earlier_candidates(utime, it.detection, earlier, settings.warm_start);
+  it.candidates.insert(it.candidates.end(), warm.begin(), warm.end());
+  if (it.candidates.empty()) it.pose.status = PoseStatus::kNoInitialPose;
+}
+
+void choose_one(const PoseSettings& settings, Estimation& it) {
+  it.chosen = choose_pose(*it.seen, it.registered, it.rotations, settings);
+  it.pose.converged = it.chosen.converged;
+  it.pose.iterations = it.chosen.iterations;
+  it.pose.inliers = it.chosen.inliers;
+  it.pose.inlier_fraction = it.chosen.inlier_fraction;
+  it.pose.residual = it.chosen.residual;
+  if (it.chosen.inliers == 0) it.pose.status = PoseStatus::kNotConverged;
+}
+
+/// Publishes the pose or says why not.
+void verify_one(const PoseSettings& settings, Estimation& it) {
+  const PoseEvidence evidence =
+      gather_evidence(*it.seen, it.chosen.T_camera_object, it.detection.score, settings.verification);
   const QualityTerms terms = quality_terms(evidence, settings.quality);
-  pose.visible_fraction = depth.visible_fraction();
-  pose.free_space_violation = depth.free_space_violation();
-  pose.quality = pose_quality(terms, settings.quality);
-  if (pose.quality < settings.quality.least) return reason_against(terms, settings.quality);
-  pose.T_camera_object = T_camera_object;
-  return PoseStatus::kValid;
-}
-
-ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, const ObjectModel* model,
-                        const ObjectPoses& earlier, const PoseSettings& settings) {
-  ObjectPose pose;
-  pose.class_id = detection.class_id;
-  pose.class_name = detection.class_name;
-  pose.detection_score = detection.score;
-  pose.residual = std::numeric_limits<float>::quiet_NaN();
-  const auto without = [&pose](PoseStatus status) {
-    pose.status = status;
-    return pose;
-  };
-  if (model == nullptr) return without(PoseStatus::kNoModel);
-  if (detection.score < settings.min_score) return without(PoseStatus::kLowScore);
-  if (!is_finite(detection.centre_camera)) return without(PoseStatus::kNoInitialPose);
-
-  const DepthRegion region = find_region(frame, detection, *model, settings.region);
-  if (region.points < settings.region.min_points) return without(PoseStatus::kTooFewPoints);
-
-  const std::vector<RotationCandidate> rotations = rotation_clusters(detection.rotations, settings.initial);
-  std::vector<PoseCandidate> candidates = place_candidates(frame, *model, detection.centre_camera, rotations, settings);
-  const std::vector<PoseCandidate> warm = earlier_candidates(frame.utime, detection, earlier, settings.warm_start);
-  candidates.insert(candidates.end(), warm.begin(), warm.end());
-  if (candidates.empty()) return without(PoseStatus::kNoInitialPose);
-
-  const SeenRegion seen{frame, lab_region(frame, region.box_px), region};
-  const RegistrationResult registered =
-      refine_candidates(seen, *model, detection.centre_camera, candidates, rotations, settings);
-  pose.converged = registered.converged;
-  pose.iterations = registered.iterations;
-  pose.inliers = registered.inliers;
-  pose.inlier_fraction = registered.inlier_fraction;
-  pose.residual = registered.residual;
-  if (registered.inliers == 0) return without(PoseStatus::kNotConverged);
-  return without(judge_registered(seen, *model, registered.T_camera_object, settings, pose));
+  it.pose.visible_fraction = evidence.depth.visible_fraction();
+  it.pose.free_space_violation = evidence.depth.free_space_violation();
+  it.pose.quality = pose_quality(terms, settings.quality);
+  if (it.pose.quality < settings.quality.least) {
+    it.pose.status = reason_against(terms, settings.quality);
+  } else {
+    it.pose.status = PoseStatus::kValid;
+    it.pose.T_camera_object = it.chosen.T_camera_object;
+  }
 }
 
 }  // namespace
@@ -100,22 +133,28 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     throw std::logic_error(fmt::format("detections of frame {} given with frame {}", detections.utime, frame.utime));
   }
   check_frame(frame, "pose estimation");
+  const PoseSettings& settings = state_->settings;
   StageClock clock;
-  ObjectPoses result;
-  result.utime = detections.utime;
-  result.source_channel = detections.source_channel;
-  result.stages = detections.stages;
-  const int count = static_cast<int>(detections.detections.size());
-  result.poses.resize(detections.detections.size());
-  parallel_for(state_->settings.threads, count, [&](int index) {
-    const auto i = static_cast<std::size_t>(index);
-    const Detection& detection = detections.detections[i];
-    const auto model = state_->models.find(detection.class_name);
-    const ObjectModel* known = model == state_->models.end() ? nullptr : &model->second;
-    result.poses[i] = estimate_one(frame, detection, known, earlier, state_->settings);
-    result.poses[i].detection_index = index;
-  });
-  clock.mark("pose.estimate");
+  ObjectPoses result = undecided_poses(detections);
+  std::vector<Estimation> estimations = begin_estimations(detections, state_->models, settings, result.poses);
+  const auto for_each_undecided = [&](const auto& stage) {
+    parallel_for(settings.threads, static_cast<int>(estimations.size()), [&](int i) {
+      if (estimations[i].pose.status == PoseStatus::kInvalid) stage(estimations[i]);
+    });
+  };
+
+  for_each_undecided([&](Estimation& it) { look_at_region(frame, settings, it); });
+  clock.mark("pose.region");
+  for_each_undecided([&](Estimation& it) { find_candidates(frame.utime, earlier, settings, it); });
+  clock.mark("pose.candidates");
+  for_each_undecided(
+      [&](Estimation& it) { it.registered = register_candidates(*it.seen, it.candidates, settings.registration); });
+  clock.mark("pose.registration");
+  for_each_undecided([&](Estimation& it) { choose_one(settings, it); });
+  clock.mark("pose.choice");
+  for_each_undecided([&](Estimation& it) { verify_one(settings, it); });
+  clock.mark("pose.verification");
+
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());
   return result;
 }

@@ -12,16 +12,24 @@
 
 namespace houghstream {
 
-/// Refines detections to 6-DoF poses: initial poses from the votes, ICP, verification against rendered depth.
+/// Refines detections to 6-DoF poses: candidates from the votes, registration to the measured depth, verification
+/// against the rendered model.
+///
+/// Keeps nothing from frame to frame, so that estimate() may be called from several threads at once. A frame's stages
+/// follow one another, each for all detections on PoseSettings::threads threads: what a stage found lies in the call's
+/// own memory, and its time is what passed on the wall.
 class PoseEstimator {
  public:
-  /// Models by class name, in metres, in the object frame of the training views.
+  /// Models by class name, in metres, in the object frame of the training views. Throws InputError as
+  /// make_object_model() does.
   PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings);
   ~PoseEstimator();
   PoseEstimator(PoseEstimator&&) noexcept;
 
-  /// One ObjectPose per detection, in their order; stage times "pose.*" are appended to those of the detections.
-  /// The detections must be of this frame (same utime); throws std::logic_error otherwise.
+  /// One ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
+  /// pose.registration, pose.choice and pose.verification are appended to those of the detections.
+  /// The detections must be of this frame (same utime); throws std::logic_error otherwise, and InputError for a frame
+  /// that is none.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// The same with the poses of an earlier frame (warm start): they are candidates beside those of the votes, never the

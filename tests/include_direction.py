@@ -18,7 +18,7 @@ ALLOWED = {
 }
 # Headers that only some places may see: what they are called, where they are welcome.
 OPENNI2 = (re.compile(r"^(OpenNI\.h|openni2/|Driver/OniDriver)"), re.compile(r"^(drivers|tests)/"))
-PCL = (re.compile(r"^pcl/"), re.compile(r"^(pose|tools|tests)/|^detector/baseline/surface_"))
+PCL = (re.compile(r"^pcl/"), re.compile(r"^(pose/baseline|tools/studies|tests)/|^detector/baseline/surface_"))
 LCM = re.compile(r"^(lcm/|houghstream/)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 

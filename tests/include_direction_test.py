@@ -15,7 +15,8 @@ GOOD = {
     "pipeline/messages.cpp": '#include "pipeline/messages/messages.hpp"\n#include <lcm/lcm-cpp.hpp>\n',
     "drivers/camera.cpp": '#include <OpenNI.h>\n#include "pipeline/types/frame.hpp"\n',
     "detector/baseline/surface_normals.cpp": "#include <pcl/features/normal_3d.h>\n",
-    "pose/icp.cpp": "#include <pcl/registration/icp.h>\n",
+    "pose/icp.hpp": "#pragma once\n",
+    "pose/baseline/icp.cpp": "#include <pcl/registration/icp.h>\n",
     "tools/view/main.cpp": '#include <lcm/lcm-cpp.hpp>\n#include "detector/surface.hpp"\n',
     "tests/pose/icp_test.cpp": '#include "pose/icp.hpp"\n#include "tools/view/drawing/overlay.hpp"\n',
 }
@@ -28,6 +29,8 @@ WRONG = {
     "tools/view/main.cpp": '#include "tests/helpers.hpp"\n',
     "pose/camera.cpp": "#include <OpenNI.h>\n",
     "tools/capture/main.cpp": "#include <OpenNI.h>\n",
+    "pose/registration.cpp": "#include <pcl/registration/icp.h>\n",
+    "tools/pose/main.cpp": "#include <pcl/console/print.h>\n",
     "detector/forest.cpp": "#include <pcl/point_types.h>\n",
     "pipeline/geometry/mesh.hpp": "#include <pcl/point_types.h>\n",
     "detector/stream.cpp": "#include <lcm/lcm-cpp.hpp>\n",

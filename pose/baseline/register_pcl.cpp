@@ -1,11 +1,11 @@
+#include "pose/baseline/register_pcl.hpp"
+
 #include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
 #include <pcl/registration/transformation_estimation_point_to_plane_lls.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "pose/registration/registration.hpp"
 
 namespace houghstream {
 namespace {
@@ -78,9 +78,9 @@ Eigen::Isometry3d rigid_motion(const Eigen::Matrix4d& matrix) {
   return T;
 }
 
-RegistrationResult register_pcl(const std::vector<Eigen::Vector3f>& points_camera, const ObjectModel& model,
-                                const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
-                                const RegistrationSettings& settings) {
+RegistrationResult register_points_pcl(const std::vector<Eigen::Vector3f>& points_camera, const ObjectModel& model,
+                                       const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
+                                       const RegistrationSettings& settings) {
   constexpr std::size_t kLeastPoints = 12;  // twice the unknowns
   RegistrationResult result;
   result.T_camera_object = T_camera_object;
@@ -112,6 +112,12 @@ RegistrationResult register_pcl(const std::vector<Eigen::Vector3f>& points_camer
   // The measured points moved by M in the object frame, so the object moves the other way in the camera frame.
   result.T_camera_object = T_camera_object * rigid_motion(icp.getFinalTransformation().cast<double>()).inverse();
   return result;
+}
+
+RegistrationResult register_pcl(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                                const RegistrationStage& stage, const RegistrationSettings& settings) {
+  return register_points_pcl(region_points(seen.frame, seen.region, stage.points), seen.model, T_camera_object, stage,
+                             settings);
 }
 
 }  // namespace houghstream

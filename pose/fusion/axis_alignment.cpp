@@ -7,7 +7,7 @@
 
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;  // rotation, translation; camera frame
@@ -161,4 +161,4 @@ void align_views(std::vector<DepthView>& views, const AlignmentSettings& setting
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

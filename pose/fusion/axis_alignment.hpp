@@ -4,7 +4,7 @@
 
 #include "pose/fusion/depth_view.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 
 /// How the views of a model are laid on each other.
 struct AlignmentSettings {
@@ -32,4 +32,4 @@ Agreement measure_agreement(const std::vector<DepthView>& views, const Alignment
 /// along it) stays.
 void align_views(std::vector<DepthView>& views, const AlignmentSettings& settings);
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -6,7 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -132,4 +132,4 @@ std::vector<SurfaceSample> sample_view(const DepthView& view, int most) {
   return samples;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -7,7 +7,7 @@
 
 #include "pipeline/types/training_view.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 
 /// A training view as fusion needs it: the object's surface with its normals, and where the object surely is not. All
 /// images have the size of the camera's.
@@ -42,4 +42,4 @@ struct SurfaceSample {
 /// At most about `most` points of the view, evenly over its pixels.
 std::vector<SurfaceSample> sample_view(const DepthView& view, int most);
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 /// What of the space around the views' points holds the object.
@@ -148,4 +148,4 @@ DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSetti
   return grid;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

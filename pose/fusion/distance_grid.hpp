@@ -6,7 +6,7 @@
 
 #include "pose/fusion/depth_view.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 
 /// A box of voxels in the object frame. Voxel (i,j,k) has its centre at origin + voxel * (i,j,k).
 struct DistanceGrid {
@@ -40,4 +40,4 @@ struct GridSettings {
 /// `most_voxels`.
 DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings);
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

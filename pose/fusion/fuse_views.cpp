@@ -5,7 +5,7 @@
 #include "pose/fusion/grid_surface.hpp"
 #include "pose/fusion/view_colours.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 
 FusedModel fuse_views(const std::string& name, const std::vector<TrainingView>& views, const FusionSettings& settings) {
   require(!views.empty(), "{}: no views, expected some to fuse", name);
@@ -30,4 +30,4 @@ FusedModel fuse_views(const std::string& name, const std::vector<TrainingView>& 
   return model;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

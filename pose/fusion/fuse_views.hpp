@@ -8,7 +8,7 @@
 #include "pose/fusion/axis_alignment.hpp"
 #include "pose/fusion/distance_grid.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 
 /// How a model is made of an object's training views.
 struct FusionSettings {
@@ -31,4 +31,4 @@ struct FusedModel {
 /// height, other gaps by what the outlines leave. Throws InputError naming `name` where there is nothing to fuse.
 FusedModel fuse_views(const std::string& name, const std::vector<TrainingView>& views, const FusionSettings& settings);
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <unordered_map>
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 using Cell = std::array<int, 3>;  // its lowest corner is the voxel of the same indices; -1 = outside the grid
@@ -133,4 +133,4 @@ Mesh largest_part(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

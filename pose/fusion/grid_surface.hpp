@@ -3,7 +3,7 @@
 #include "pipeline/geometry/mesh.hpp"
 #include "pose/fusion/distance_grid.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 
 /// The surface between inside and outside, by surface nets (Gibson 1998): one vertex in each cell that the surface
 /// crosses, at the mean of where it crosses the cell's edges; closed, with normals, triangles counter-clockwise from
@@ -14,4 +14,4 @@ Mesh extract_surface(const DistanceGrid& grid);
 /// triangles only.
 Mesh largest_part(const Mesh& mesh);
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

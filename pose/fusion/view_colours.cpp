@@ -4,7 +4,7 @@
 
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 struct Sum {
@@ -70,4 +70,4 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
   return seen;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -5,11 +5,11 @@
 #include "pipeline/geometry/mesh.hpp"
 #include "pose/fusion/depth_view.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 
 /// Gives each vertex the mean colour of the views that see it (their depth is at most `tolerance_m` off), weighted by
 /// how frontally they see it. What no view sees takes the colour of the vertices next to it. Needs normals. Returns
 /// which vertices were seen.
 std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolerance_m, int threads, Mesh& mesh);
 
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -6,9 +6,17 @@
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pose/model/surface_colour.hpp"
-#include "pose/pose_settings.hpp"
 
 namespace houghstream {
+
+/// What is kept of a model: for view directions spread over the sphere, points that are visible from there.
+struct ModelSettings {
+  int views_per_edge = 4;        ///< each edge of an icosahedron in so many parts: 10 n^2 + 2 directions
+  int points_per_view = 600;     ///< at most
+  double view_distance_m = 1.2;  ///< from the model's centre
+  int pixels_per_diameter = 72;  ///< of the pictures from which visible points are drawn
+  double least_facing = 0.15;    ///< cosine between normal and line of sight below which a point is too grazing
+};
 
 /// Surface points visible from one direction, in random order so that any first n of them cover the view evenly
 /// (sparse viewpoint models: Stoiber et al. 2022, "Iterative Corresponding Geometry").
@@ -24,9 +32,9 @@ struct ModelView {
 struct ObjectModel {
   Mesh mesh;
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the bounding box, object frame
-  Eigen::Vector3f middle =
-      Eigen::Vector3f::Zero();  ///< median of the surface along each axis: a handle does not move it
-  float radius = 0.0F;          ///< of the sphere about the centre that holds the mesh, metres
+  /// Median of the surface along each axis, object frame: a handle does not move it.
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  float radius = 0.0F;  ///< of the sphere about the centre that holds the mesh, metres
   std::vector<ModelView> views;
 };
 

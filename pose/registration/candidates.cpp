@@ -1,23 +1,81 @@
 #include "pose/registration/candidates.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
+#include "pose/model/angles.hpp"
 #include "pose/verification/depth_score.hpp"
 
 namespace houghstream {
 namespace {
 
-PoseCandidate best_place(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                         const PoseSettings& settings) {
-  const SearchSettings& search = settings.search;
-  const DepthTolerance tolerance{search.tolerance_m, settings.noise};
+std::vector<RotationVote> usable_votes(const std::vector<RotationVote>& votes) {
+  std::vector<RotationVote> out;
+  for (const RotationVote& vote : votes) {
+    const float norm = vote.R_camera_object.norm();
+    const bool usable = std::isfinite(norm) && norm > 0.5F && std::isfinite(vote.weight) && vote.weight > 0.0F;
+    if (usable) out.push_back({vote.R_camera_object.normalized(), vote.weight});
+  }
+  return out;
+}
+
+/// |a.b| is the cosine of half the angle between two rotations.
+float likeness(const RotationVote& a, const RotationVote& b) {
+  return std::abs(a.R_camera_object.dot(b.R_camera_object));
+}
+
+/// Largest eigenvector of the weighted sum of q q^T (Markley et al. 2007, eq. 12).
+RotationCandidate mean_rotation(const std::vector<RotationVote>& votes) {
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  RotationCandidate mean;
+  for (const RotationVote& vote : votes) {
+    const Eigen::Vector4d q = vote.R_camera_object.coeffs().cast<double>();
+    sum += static_cast<double>(vote.weight) * q * q.transpose();
+    mean.weight += vote.weight;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
+  mean.R_camera_object.coeffs() = solver.eigenvectors().col(3).cast<float>();
+  mean.R_camera_object.normalize();
+  return mean;
+}
+
+/// The vote with most weight within the radius; ties go to the first.
+std::size_t densest(const std::vector<RotationVote>& votes, float least_likeness) {
+  std::size_t best = 0;
+  float best_weight = -1.0F;
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    float weight = 0.0F;
+    for (const RotationVote& other : votes) weight += likeness(votes[i], other) >= least_likeness ? other.weight : 0.0F;
+    if (weight > best_weight) {
+      best_weight = weight;
+      best = i;
+    }
+  }
+  return best;
+}
+
+void add_turned(std::vector<RotationCandidate>& candidates, int turned_clusters) {
+  const std::size_t heaviest = std::min<std::size_t>(candidates.size(), std::max(0, turned_clusters));
+  for (std::size_t i = 0; i < heaviest; ++i) {
+    const Eigen::Quaternionf R_camera_object = candidates[i].R_camera_object;
+    for (const double degrees : {90.0, 180.0, 270.0}) {
+      const Eigen::AngleAxisf turn(static_cast<float>(degrees * kRadPerDeg), Eigen::Vector3f::UnitZ());
+      candidates.push_back({R_camera_object * Eigen::Quaternionf(turn), 0.0F});
+    }
+  }
+}
+
+PoseCandidate best_place(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                         const SearchSettings& settings) {
+  const ShiftSearch along{settings.points, settings.reach_m, {settings.tolerance_m, seen.noise}};
   PoseCandidate best;
-  for (int j = -search.steps; j <= search.steps; ++j) {
-    for (int i = -search.steps; i <= search.steps; ++i) {
-      Eigen::Isometry3d T = Eigen::Translation3d(i * search.step_m, j * search.step_m, 0.0) * T_camera_object;
-      const DepthShift found = best_depth_shift(frame, model, T, search.points, search.reach_m, tolerance);
+  for (int j = -settings.steps; j <= settings.steps; ++j) {
+    for (int i = -settings.steps; i <= settings.steps; ++i) {
+      Eigen::Isometry3d T = Eigen::Translation3d(i * settings.step_m, j * settings.step_m, 0.0) * T_camera_object;
+      const DepthShift found = best_depth_shift(seen.frame, seen.model, T, along);
       T.translation() *= 1.0 + found.shift_m / T.translation().z();
-      const bool first = i == -search.steps && j == -search.steps;
+      const bool first = i == -settings.steps && j == -settings.steps;
       if (first || found.score.value > best.score) best = {T, found.score.value};
     }
   }
@@ -26,20 +84,50 @@ PoseCandidate best_place(const RgbdFrame& frame, const ObjectModel& model, const
 
 }  // namespace
 
-std::vector<PoseCandidate> place_candidates(const RgbdFrame& frame, const ObjectModel& model,
-                                            const Eigen::Vector3f& centre_camera,
-                                            const std::vector<RotationCandidate>& rotations,
-                                            const PoseSettings& settings) {
+std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>& votes,
+                                                 const InitialSettings& settings) {
+  std::vector<RotationVote> left = usable_votes(votes);
+  constexpr double kSelf = 0.9999;  // a vote is always in its own cluster
+  const double limit = std::cos(0.5 * settings.cluster_radius_deg * kRadPerDeg);
+  const auto least_likeness = static_cast<float>(std::min(limit, kSelf));
+  std::vector<RotationCandidate> candidates;
+  while (!left.empty() && static_cast<int>(candidates.size()) < settings.clusters) {
+    const RotationVote centre = left[densest(left, least_likeness)];
+    const auto far = [&](const RotationVote& vote) { return likeness(vote, centre) < least_likeness; };
+    const auto near_begin = std::stable_partition(left.begin(), left.end(), far);
+    candidates.push_back(mean_rotation({near_begin, left.end()}));
+    left.erase(near_begin, left.end());
+  }
+  add_turned(candidates, settings.turned_clusters);
+  return candidates;
+}
+
+float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object,
+                   const InitialSettings& settings) {
+  const double width_rad = settings.cluster_radius_deg * kRadPerDeg;
+  const Eigen::Quaternionf R_camera_object(Eigen::Quaterniond(T_camera_object.linear()).cast<float>());
+  float sum = 0.0F;
+  float most = 0.0F;
+  for (const RotationCandidate& vote : votes) {
+    const double ratio = static_cast<double>(R_camera_object.angularDistance(vote.R_camera_object)) / width_rad;
+    sum += vote.weight * static_cast<float>(std::exp(-0.5 * ratio * ratio));
+    most = std::max(most, vote.weight);
+  }
+  return most > 0.0F ? std::min(1.0F, sum / most) : 0.0F;
+}
+
+std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::vector<RotationCandidate>& rotations,
+                                            const SearchSettings& settings) {
   std::vector<PoseCandidate> candidates;
   for (const RotationCandidate& rotation : rotations) {
     Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
     T_camera_object.linear() = rotation.R_camera_object.cast<double>().normalized().toRotationMatrix();
-    T_camera_object.translation() = centre_camera.cast<double>();
-    candidates.push_back(best_place(frame, model, T_camera_object, settings));
+    T_camera_object.translation() = seen.centre_camera.cast<double>();
+    candidates.push_back(best_place(seen, T_camera_object, settings));
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });
-  candidates.resize(std::min<std::size_t>(candidates.size(), std::max(1, settings.search.keep)));
+  candidates.resize(std::min<std::size_t>(candidates.size(), std::max(1, settings.keep)));
   return candidates;
 }
 

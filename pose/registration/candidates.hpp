@@ -1,16 +1,56 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "pipeline/types/detection.hpp"
-#include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
-#include "pose/model/object_model.hpp"
-#include "pose/pose_settings.hpp"
-#include "pose/registration/rotation_clusters.hpp"
+#include "pose/region.hpp"
 
 namespace houghstream {
+
+/// Rotations from the votes.
+struct InitialSettings {
+  double cluster_radius_deg = 25.0;
+  int clusters = 6;         ///< at most
+  int turned_clusters = 1;  ///< of the heaviest also turned by quarters about the object's z axis
+  float vote_gain = 0.3F;   ///< how much a rotation that the votes agree on is preferred after registration
+};
+
+/// Coarse choice by depth score: each rotation at several places, the best go to registration.
+struct SearchSettings {
+  double reach_m = 0.06;      ///< along the line of sight, to each side of the detected centre
+  double step_m = 0.012;      ///< between places across the line of sight
+  int steps = 1;              ///< to each side
+  int points = 80;            ///< of a view
+  int keep = 3;               ///< candidates that are registered
+  double tolerance_m = 0.02;  ///< measured and model depth agree; 3 sigma is added
+};
+
+/// Poses of an earlier frame as further candidates.
+struct WarmStartSettings {
+  double max_age_s = 0.5;  ///< between the frames
+  double reach_m = 0.1;    ///< from the detected centre; objects farther away are others
+};
+
+/// A rotation on which votes agree.
+struct RotationCandidate {
+  Eigen::Quaternionf R_camera_object = Eigen::Quaternionf::Identity();
+  float weight = 0.0F;  ///< of its votes, 0 for one that was added without votes
+};
+
+/// Modes of the votes' rotations, heaviest first: the vote with most weight about it gathers its neighbours, whose mean
+/// (Markley et al. 2007) is a candidate; again with the rest. Then the heaviest turned by quarters about the
+/// object's z axis, because views of a standing object are most easily confused that way.
+/// Empty where the votes hold no finite rotation with weight.
+std::vector<RotationCandidate> rotation_clusters(const std::vector<RotationVote>& votes,
+                                                 const InitialSettings& settings);
+
+/// How much the votes speak for a pose's rotation: weight of the modes about it, as near as the clusters are wide,
+/// relative to the heaviest mode's, 0 to 1.
+float vote_support(const std::vector<RotationCandidate>& votes, const Eigen::Isometry3d& T_camera_object,
+                   const InitialSettings& settings);
 
 /// A place to start registration from.
 struct PoseCandidate {
@@ -20,10 +60,8 @@ struct PoseCandidate {
 
 /// Tries each rotation at places about the detected centre, moved along the line of sight onto the measured surface;
 /// gives the best place of each rotation, best first, at most SearchSettings::keep.
-std::vector<PoseCandidate> place_candidates(const RgbdFrame& frame, const ObjectModel& model,
-                                            const Eigen::Vector3f& centre_camera,
-                                            const std::vector<RotationCandidate>& rotations,
-                                            const PoseSettings& settings);
+std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::vector<RotationCandidate>& rotations,
+                                            const SearchSettings& settings);
 
 /// What an earlier frame's poses add: those of the class that lie near the detected centre, as they were then. None of
 /// a frame that is later than `utime` or too long before it.

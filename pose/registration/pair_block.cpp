@@ -6,8 +6,6 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
-#include "pose/model/pixel_rays.hpp"
-
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {
 

@@ -8,6 +8,28 @@
 
 namespace houghstream {
 
+/// A frame's depth image and its camera in single precision, for many pixels.
+struct PixelRays {
+  explicit PixelRays(const RgbdFrame& frame)
+      : focal(static_cast<float>(frame.camera.fx), static_cast<float>(frame.camera.fy)),
+        centre(static_cast<float>(frame.camera.cx), static_cast<float>(frame.camera.cy)),
+        first(frame.camera.backproject(0, 0, 1.0).cast<float>()),
+        step((frame.camera.backproject(1, 1, 1.0) - frame.camera.backproject(0, 0, 1.0)).cast<float>()),
+        columns(frame.depth.cols),
+        rows(frame.depth.rows),
+        row_step(static_cast<int>(frame.depth.step1())) {}
+
+  static constexpr float kWidest = 65536.0F;  ///< pixels; more than any image has
+
+  Eigen::Vector2f focal;   ///< pixels
+  Eigen::Vector2f centre;  ///< pixels
+  Eigen::Vector3f first;   ///< of pixel (0,0), with z = 1
+  Eigen::Vector3f step;    ///< between neighbours
+  int columns;
+  int rows;
+  int row_step;  ///< values of depth
+};
+
 /// Some of a model's points on their way to being paired, one array per coordinate; camera frame, metres.
 struct PairBlock {
   static constexpr std::size_t kSize = 64;
@@ -24,11 +46,9 @@ struct PairSearch {
   int steps = 1;            ///< of the lattice to each side
 };
 
-/// Fills in the gap from each of the block's points to the measured point nearest to it on its lattice.
+/// Fills in the gap from each of the block's points to the measured point nearest to it on its lattice. Written for
+/// vector units; pose/baseline/reference_pair_block.hpp has the same point by point.
 void find_gaps(const RgbdFrame& frame, const PairSearch& search, PairBlock& block);
-
-/// The same point by point, bit for bit.
-void find_gaps_readably(const RgbdFrame& frame, const PairSearch& search, PairBlock& block);
 
 /// Eight values of a pair; rows of a least-squares problem.
 struct alignas(32) PairRow {
@@ -41,8 +61,5 @@ using PairSums = Eigen::Matrix<float, 8, 8>;
 
 /// Adds weight * row * row^T of the first `count` rows, in their order.
 void add_products(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums);
-
-/// The same row by row, bit for bit.
-void add_products_readably(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums);
 
 }  // namespace houghstream

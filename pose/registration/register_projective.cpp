@@ -15,11 +15,11 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 constexpr int kLeastPairs = 12;    // for a step: twice the unknowns
 constexpr double kDamping = 1e-3;  // of the mean curvature, holds turns that symmetric surfaces leave open
 
-/// What the pairs pull, as weighted sums of products. Arms are from the model's centre to the points, in its radius.
-struct Pull {
+/// Weighted sums of products over the pairs. Arms are from the model's centre to the points, in its radius.
+struct PairTotals {
   PairSums across = PairSums::Zero();  // of (arm x normal, normal, gap along the normal, 0)
   PairSums along = PairSums::Zero();   // of (arm, 1, gap, 0)
-  int pairs = 0;
+  int count = 0;
   double squares = 0.0;  // of the distances along the normals
 };
 
@@ -47,8 +47,9 @@ PairRow across_row(const Eigen::Vector3f& a, const Eigen::Vector3f& n, float apa
            n.z(), apart, 0.0F}};
 }
 
-/// Adds what the block's pairs pull and empties it.
-void add_pairs(const ObjectModel& model, const Eigen::Vector3f& centre, float limit_sq, Visible& visible, Pull& pull) {
+/// Adds the block's pairs and empties it.
+void add_pairs(const ObjectModel& model, const Eigen::Vector3f& centre, float limit_sq, Visible& visible,
+               PairTotals& totals) {
   const PairBlock& block = visible.block;
   PairRows across;
   PairRows along;
@@ -63,11 +64,11 @@ void add_pairs(const ObjectModel& model, const Eigen::Vector3f& centre, float li
     across[pairs] = across_row(arm, visible.normals[i], apart);
     along[pairs] = {{arm.x(), arm.y(), arm.z(), 1.0F, gap.x(), gap.y(), gap.z(), 0.0F}};
     weights[pairs++] = left * left;  // Tukey's biweight
-    pull.squares += static_cast<double>(apart * apart);
+    totals.squares += static_cast<double>(apart * apart);
   }
-  add_products(across, weights, pairs, pull.across);
-  add_products(along, weights, pairs, pull.along);
-  pull.pairs += static_cast<int>(pairs);
+  add_products(across, weights, pairs, totals.across);
+  add_products(along, weights, pairs, totals.along);
+  totals.count += static_cast<int>(pairs);
   visible.block.count = 0;
 }
 
@@ -78,41 +79,42 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
 }
 
 /// Of the sum of weight ((gap along the normal)^2 + point_weight gap^2).
-StepEquations equations_of(const Pull& pull, double point_weight) {
-  const Eigen::Matrix<double, 8, 8> along = point_weight * pull.along.cast<double>();
+StepEquations equations_of(const PairTotals& totals, double point_weight) {
+  const Eigen::Matrix<double, 8, 8> along = point_weight * totals.along.cast<double>();
   const Eigen::Matrix3d arms = along.topLeftCorner<3, 3>();
   const Eigen::Matrix3d moments = along.block<3, 3>(0, 4);  // arm times gap
   StepEquations equations;
-  equations.curvature = pull.across.topLeftCorner<6, 6>().cast<double>();
+  equations.curvature = totals.across.topLeftCorner<6, 6>().cast<double>();
   equations.curvature.topLeftCorner<3, 3>() += arms.trace() * Eigen::Matrix3d::Identity() - arms;
   equations.curvature.bottomLeftCorner<3, 3>() -= cross_matrix(along.block<3, 1>(0, 3));
   equations.curvature.bottomRightCorner<3, 3>().diagonal().array() += along(3, 3);
-  equations.gradient = pull.across.block<6, 1>(0, 6).cast<double>();
+  equations.gradient = totals.across.block<6, 1>(0, 6).cast<double>();
   equations.gradient.head<3>() +=
       Eigen::Vector3d(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2), moments(0, 1) - moments(1, 0));
   equations.gradient.tail<3>() += along.block<3, 1>(4, 3);
   return equations;
 }
 
-Pull pair_up(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-             std::size_t count, double distance, int steps) {
+/// Of the first `count` points of the view nearest to the pose.
+PairTotals pair_up(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, std::size_t count,
+                   const PairSearch& search) {
+  const ObjectModel& model = seen.model;
   const ModelView& view = nearest_view(model, T_camera_object);
   const Eigen::Isometry3f T = T_camera_object.cast<float>();
   const Eigen::Vector3f centre = T * model.centre;
-  const PairSearch search{static_cast<float>(distance), steps};
   const std::size_t used = std::min(count, view.points.size());
   Visible visible;
-  Pull pull;
+  PairTotals totals;
   for (std::size_t i = 0; i < used; ++i) {
     const Eigen::Vector3f point = T * view.points[i];
     const Eigen::Vector3f normal = T.linear() * view.normals[i];
-    const bool seen = point.z() > 0.0F && normal.dot(point) < 0.0F;  // not turned away since the view was chosen
-    if (seen) visible.add(point, normal);
+    const bool in_sight = point.z() > 0.0F && normal.dot(point) < 0.0F;  // not turned away since the view was chosen
+    if (in_sight) visible.add(point, normal);
     if (visible.block.count < PairBlock::kSize && i + 1 < used) continue;
-    find_gaps(frame, search, visible.block);
-    add_pairs(model, centre, search.distance_m * search.distance_m, visible, pull);
+    find_gaps(seen.frame, search, visible.block);
+    add_pairs(model, centre, search.distance_m * search.distance_m, visible, totals);
   }
-  return pull;
+  return totals;
 }
 
 /// Moves the model by the damped Gauss-Newton step and gives the step's length, metres.
@@ -134,9 +136,9 @@ double take_step(StepEquations equations, const ObjectModel& model, Eigen::Isome
 
 }  // namespace
 
-RegistrationResult register_projective(const RgbdFrame& frame, const ObjectModel& model,
-                                       const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
-                                       const RegistrationSettings& settings) {
+RegistrationResult register_projective(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                                       const RegistrationStage& stage, const RegistrationSettings& settings) {
+  const ObjectModel& model = seen.model;
   RegistrationResult result;
   result.T_camera_object = T_camera_object;
   const auto points = static_cast<std::size_t>(stage.points);
@@ -144,19 +146,21 @@ RegistrationResult register_projective(const RgbdFrame& frame, const ObjectModel
       std::pow(stage.end_distance_m / stage.start_distance_m, 1.0 / std::max(1, stage.iterations - 1));
   double distance = stage.start_distance_m;
   for (; result.iterations < stage.iterations; ++result.iterations) {
-    const Pull pull = pair_up(frame, model, result.T_camera_object, points, distance, stage.search_steps);
+    const PairTotals pairs =
+        pair_up(seen, result.T_camera_object, points, {static_cast<float>(distance), stage.search_steps});
     result.converged = false;
-    if (pull.pairs < kLeastPairs) break;
-    const StepEquations equations = equations_of(pull, settings.point_weight);
+    if (pairs.count < kLeastPairs) break;
+    const StepEquations equations = equations_of(pairs, settings.point_weight);
     result.converged = take_step(equations, model, result.T_camera_object) < settings.converged_m;
     if (result.converged && distance <= stage.end_distance_m * 1.01) break;
     distance = std::max(distance * shrink, stage.end_distance_m);
   }
-  const Pull last = pair_up(frame, model, result.T_camera_object, points, stage.end_distance_m, stage.search_steps);
+  const PairTotals last =
+      pair_up(seen, result.T_camera_object, points, {static_cast<float>(stage.end_distance_m), stage.search_steps});
   const std::size_t used = std::min(points, nearest_view(model, result.T_camera_object).points.size());
-  result.inliers = last.pairs;
-  result.inlier_fraction = static_cast<float>(last.pairs) / static_cast<float>(used);
-  result.residual = static_cast<float>(std::sqrt(last.squares / last.pairs));  // 0/0 is NaN
+  result.inliers = last.count;
+  result.inlier_fraction = static_cast<float>(last.count) / static_cast<float>(used);
+  result.residual = static_cast<float>(std::sqrt(last.squares / last.count));  // 0/0 is NaN
   return result;
 }
 

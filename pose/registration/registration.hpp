@@ -4,9 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "pipeline/types/frame.hpp"
-#include "pose/model/object_model.hpp"
-#include "pose/pose_settings.hpp"
+#include "pose/region.hpp"
+#include "pose/registration/candidates.hpp"
 
 namespace houghstream {
 
@@ -20,9 +19,6 @@ struct RegistrationResult {
   float residual = std::numeric_limits<float>::quiet_NaN();  ///< RMS distance of the inliers along normals, metres
 };
 
-/// The motion that a 4x4 matrix stands for, its rotation made exact again after rounding.
-Eigen::Isometry3d rigid_motion(const Eigen::Matrix4d& matrix);
-
 /// How far one registration goes: pairs farther apart than the distance, which shrinks from start to end, have no
 /// weight. Distances in metres.
 struct RegistrationStage {
@@ -33,17 +29,56 @@ struct RegistrationStage {
   int search_steps = 2;  ///< ours: measured points looked at to each side of a model point's pixel
 };
 
+struct RegistrationSettings;
+
+/// Registers the model of a seen object to the measured depth, from one start. Has no memory of its own; may be called
+/// from several threads at once.
+using RegistrationEngine = RegistrationResult (*)(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                                                  const RegistrationStage& stage, const RegistrationSettings& settings);
+
 /// Ours: each visible model point is paired with the nearest measured point about its pixel (projective data
 /// association, Blais & Levine 1995), and one step of Gauss-Newton lowers the distances along the model's normals
 /// (Chen & Medioni 1992) under Tukey's weights. What lies in front of the model or behind it finds no pair.
-RegistrationResult register_projective(const RgbdFrame& frame, const ObjectModel& model,
-                                       const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
-                                       const RegistrationSettings& settings);
+RegistrationResult register_projective(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                                       const RegistrationStage& stage, const RegistrationSettings& settings);
 
-/// The reference: pcl::IterativeClosestPoint, point to plane, of the measured points (camera frame, metres) to those of
-/// the model that are visible at the start.
-RegistrationResult register_pcl(const std::vector<Eigen::Vector3f>& points_camera, const ObjectModel& model,
-                                const Eigen::Isometry3d& T_camera_object, const RegistrationStage& stage,
-                                const RegistrationSettings& settings);
+/// Point-to-plane registration with Tukey's weights (Rusinkiewicz & Levoy 2001).
+struct RegistrationSettings {
+  RegistrationEngine engine = register_projective;  ///< a study may set another (pose/baseline)
+  int coarse_iterations = 8;
+  int coarse_points = 120;
+  int fine_iterations = 10;
+  int fine_points = 600;
+  double start_distance_m = 0.035;  ///< pairs farther apart have no weight; shrinks with every iteration
+  double end_distance_m = 0.008;    ///< 3 sigma is added
+  double point_weight = 0.1;        ///< of the distance along the surface beside that across it
+  double max_shift_m = 0.07;        ///< from the detected centre; what ended farther away is something else
+  double converged_m = 0.0005;      ///< last step moved the model's surface by less
+};
+
+/// Pair distances at which coarse registration of an object begins and all registration of it ends, metres: the
+/// settings' and what depth's noise adds where the object is.
+struct PairDistances {
+  double start = 0.0;
+  double end = 0.0;
+};
+PairDistances pair_distances(const SeenObject& seen, const RegistrationSettings& settings);
+
+/// With few points, from pairs `start_m` apart on.
+RegistrationResult register_coarsely(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, double start_m,
+                                     const RegistrationSettings& settings);
+
+/// With many points from where another registration ended; that one's result where this one leads too far away. Counts
+/// the iterations of both.
+RegistrationResult register_finely(const SeenObject& seen, const RegistrationResult& result,
+                                   const RegistrationSettings& settings);
+
+/// The result is where the detection is.
+bool ends_near(const SeenObject& seen, const RegistrationResult& result, const RegistrationSettings& settings);
+
+/// Every candidate registered coarsely, in their order.
+std::vector<RegistrationResult> register_candidates(const SeenObject& seen,
+                                                    const std::vector<PoseCandidate>& candidates,
+                                                    const RegistrationSettings& settings);
 
 }  // namespace houghstream

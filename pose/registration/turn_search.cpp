@@ -3,16 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pose/verification/colour_score.hpp"
 #include "pose/verification/depth_score.hpp"
 
 namespace houghstream {
-
-ScoredPose judge_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                      const Eigen::Isometry3d& T_camera_object, int points, const DepthTolerance& tolerance) {
-  const ViewLook seen = look_at_view(frame, model, T_camera_object, points);
-  return {T_camera_object, joint_score(score_look(seen, tolerance).value, compare_colours(colours, seen, tolerance))};
-}
-
 namespace {
 
 /// Those that are better than both neighbours; `ring`: the last one's next is the first.
@@ -35,9 +29,16 @@ Eigen::Isometry3d turned(const Eigen::Isometry3d& T_camera_object, const ObjectM
 
 }  // namespace
 
-ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                      const Eigen::Isometry3d& T_camera_object, const Climb& climb, const DepthTolerance& tolerance) {
-  ScoredPose best = judge_pose(frame, colours, model, T_camera_object, climb.points, tolerance);
+ScoredPose judge_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, int points,
+                      const DepthTolerance& tolerance) {
+  const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, points);
+  const float depth = score_look(look, tolerance).value;
+  return {T_camera_object, joint_score(depth, compare_colours(seen.colours, look, tolerance))};
+}
+
+ScoredPose climb_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, const Climb& climb,
+                      const DepthTolerance& tolerance) {
+  ScoredPose best = judge_pose(seen, T_camera_object, climb.points, tolerance);
   constexpr int kMotions = 8;
   double size = 1.0;
   int failed = 0;  // one after the other, of this size
@@ -47,11 +48,11 @@ ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const Ob
       const double way = (motion % 2 == 0 ? 1.0 : -1.0) * size;
       Eigen::Isometry3d moved = best.T_camera_object;
       if (motion < 2) {
-        moved = turned(moved, model, way * climb.step_rad);
+        moved = turned(moved, seen.model, way * climb.step_rad);
       } else {
         moved.translate(way * climb.step_m * Eigen::Vector3d::Unit(motion / 2 - 1));
       }
-      const ScoredPose next = judge_pose(frame, colours, model, moved, climb.points, tolerance);
+      const ScoredPose next = judge_pose(seen, moved, climb.points, tolerance);
       ++failed;
       if (!(next.score > best.score)) continue;
       best = next;
@@ -65,15 +66,14 @@ ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const Ob
   return best;
 }
 
-std::vector<ScoredPose> best_turns(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                                   const Eigen::Isometry3d& T_camera_object, const TurnRange& range,
-                                   const DepthTolerance& tolerance) {
+std::vector<ScoredPose> best_turns(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                                   const TurnRange& range, const DepthTolerance& tolerance) {
   const int steps = static_cast<int>(std::floor(range.reach_rad / range.step_rad + 1e-9));
   const bool all_round = 2.0 * range.reach_rad >= 2.0 * M_PI - 1e-9;  // then both ends are one pose
   std::vector<ScoredPose> turns;
   for (int i = -steps; i <= steps - (all_round ? 1 : 0); ++i) {
-    const Eigen::Isometry3d turn = turned(T_camera_object, model, i * range.step_rad);
-    turns.push_back(judge_pose(frame, colours, model, turn, range.points, tolerance));
+    const Eigen::Isometry3d turn = turned(T_camera_object, seen.model, i * range.step_rad);
+    turns.push_back(judge_pose(seen, turn, range.points, tolerance));
   }
   std::vector<ScoredPose> best = summits(turns, all_round);
   std::stable_sort(best.begin(), best.end(),

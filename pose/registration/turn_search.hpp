@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstddef>
 #include <vector>
 
-#include "pose/verification/colour_score.hpp"
+#include "pose/region.hpp"
 
 namespace houghstream {
 
@@ -12,8 +14,9 @@ struct ScoredPose {
   float score = 0.0F;
 };
 
-ScoredPose judge_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                      const Eigen::Isometry3d& T_camera_object, int points, const DepthTolerance& tolerance);
+/// At the first `points` points of the view nearest to the pose.
+ScoredPose judge_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, int points,
+                      const DepthTolerance& tolerance);
 
 /// Which turns are tried, and how many of them are wanted.
 struct TurnRange {
@@ -26,9 +29,8 @@ struct TurnRange {
 /// The pose turned about the object's z axis, through the middle of its surface; those turns that are better than their
 /// neighbours, best first. Views of a standing object are most easily confused that way, and of a round one only its
 /// print tells them apart.
-std::vector<ScoredPose> best_turns(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                                   const Eigen::Isometry3d& T_camera_object, const TurnRange& range,
-                                   const DepthTolerance& tolerance);
+std::vector<ScoredPose> best_turns(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                                   const TurnRange& range, const DepthTolerance& tolerance);
 
 /// Small steps: turns about the object's z axis and shifts along its axes.
 struct Climb {
@@ -40,7 +42,7 @@ struct Climb {
 
 /// From the pose uphill by such steps: what neither depth alone nor a coarse turn settles, such as how far a printed
 /// round thing stands along its axis.
-ScoredPose climb_pose(const RgbdFrame& frame, const LabRegion& colours, const ObjectModel& model,
-                      const Eigen::Isometry3d& T_camera_object, const Climb& climb, const DepthTolerance& tolerance);
+ScoredPose climb_pose(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, const Climb& climb,
+                      const DepthTolerance& tolerance);
 
 }  // namespace houghstream

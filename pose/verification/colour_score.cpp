@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
-
-#include "pose/verification/colour_sums.hpp"
 
 namespace houghstream {
 namespace {
@@ -68,13 +65,6 @@ ColourComparison compare(const ColourProducts& products, int count) {
 }
 
 }  // namespace
-
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px) {
-  LabRegion region{{}, part_px.tl()};
-  cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
-  cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);
-  return region;
-}
 
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
                                                 const DepthTolerance& tolerance) {

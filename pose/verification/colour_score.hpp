@@ -1,20 +1,14 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <optional>
 
-#include "pipeline/types/frame.hpp"
-#include "pose/model/view_look.hpp"
-#include "pose/pose_settings.hpp"
+#include "pose/region.hpp"
+#include "pose/verification/depth_score.hpp"
 
 namespace houghstream {
-
-/// The colours of a part of a frame.
-struct LabRegion {
-  cv::Mat lab;          ///< CV_8UC3, 8-bit CIE L*a*b*, of the part; neighbouring pixels averaged against noise
-  cv::Point origin_px;  ///< its first pixel in the frame
-};
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px);
 
 /// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree.
 struct ColourComparison {
@@ -35,5 +29,93 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
 /// little the turns of a round thing differ in colour, less a part where the colours do not explain what is seen.
 /// `depth_value` itself where that is not above 0.
 float joint_score(float depth_value, const std::optional<ColourComparison>& colour);
+
+// What compare_colours() sums, to be tested by itself.
+
+/// What is noted of a compared point; values about 0, so that single precision is enough.
+enum ColourColumn : Eigen::Index {
+  kLightness,
+  kNormal,
+  kOne = kNormal + 3,
+  kA,
+  kB,
+  kSeenLightness,
+  kSeenA,
+  kSeenB,
+  kColourColumns
+};
+using ColourProducts = Eigen::Matrix<double, kColourColumns, kColourColumns>;  ///< of the columns' mean values
+
+/// A compared point, in vectors of four.
+struct ComparedPoint {
+  Eigen::Array4f own, seen;  ///< L*, a*, b* and 1
+  Eigen::Array4f normal;     ///< its coordinates and 1
+};
+
+/// Sums of those products that are asked for. Only sums of normals are ever rounded: colours are whole numbers.
+class ColourSums {
+ public:
+  /// By blocks, so that the sums stay in registers.
+  template <typename Points>
+  void add(const Points& points, std::size_t count) {
+    ColourSums sums = *this;
+    for (std::size_t i = 0; i < count; ++i) sums.add(points[i]);
+    *this = sums;
+  }
+
+  int count() const { return count_; }
+
+  /// Of at least one point. Entries that were not summed are 0.
+  ColourProducts means() const {
+    ColourProducts products = ColourProducts::Zero();
+    const auto set = [&](Eigen::Index a, Eigen::Index b, float sum) {
+      products(a, b) = products(b, a) = static_cast<double>(sum) / static_cast<double>(count_);
+    };
+    constexpr std::array<Eigen::Index, 3> kOwn = {kLightness, kA, kB};
+    constexpr std::array<Eigen::Index, 3> kSeen = {kSeenLightness, kSeenA, kSeenB};
+    const std::array<const Eigen::Array4f*, 3> normals = {&normal_x_, &normal_y_, &normal_z_};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto i = static_cast<Eigen::Index>(c);
+      set(kOwn[c], kOne, own_[i]);
+      set(kSeen[c], kOne, seen_[i]);
+      set(kOwn[c], kOwn[c], own_own_[i]);
+      set(kOwn[c], kSeen[c], own_seen_[i]);
+      set(kSeen[c], kSeen[c], seen_seen_[i]);
+      set(kNormal + i, kLightness, normal_own_[i]);
+      set(kNormal + i, kSeenLightness, normal_seen_[i]);
+      set(kNormal + i, kOne, (*normals[c])[3]);
+      for (Eigen::Index j = 0; j <= i; ++j) set(kNormal + i, kNormal + j, (*normals[c])[j]);
+    }
+    set(kOne, kOne, static_cast<float>(count_));
+    return products;
+  }
+
+ private:
+  void add(const ComparedPoint& point) {
+    own_ += point.own;
+    seen_ += point.seen;
+    own_own_ += point.own * point.own;
+    own_seen_ += point.own * point.seen;
+    seen_seen_ += point.seen * point.seen;
+    normal_own_ += point.own[0] * point.normal;
+    normal_seen_ += point.seen[0] * point.normal;
+    normal_x_ += point.normal[0] * point.normal;
+    normal_y_ += point.normal[1] * point.normal;
+    normal_z_ += point.normal[2] * point.normal;
+    ++count_;
+  }
+
+  Eigen::Array4f own_ = Eigen::Array4f::Zero();
+  Eigen::Array4f seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f own_own_ = Eigen::Array4f::Zero();
+  Eigen::Array4f own_seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f seen_seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_own_ = Eigen::Array4f::Zero();   // times the own lightness
+  Eigen::Array4f normal_seen_ = Eigen::Array4f::Zero();  // times the seen lightness
+  Eigen::Array4f normal_x_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_y_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_z_ = Eigen::Array4f::Zero();
+  int count_ = 0;
+};
 
 }  // namespace houghstream

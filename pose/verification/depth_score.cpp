@@ -42,6 +42,25 @@ float densest_mean(const std::vector<float>& sorted, float width) {
 
 }  // namespace
 
+ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points) {
+  ViewLook result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), {}};
+  const auto columns = static_cast<float>(frame.depth.cols);
+  const auto rows = static_cast<float>(frame.depth.rows);
+  result.looks.resize(std::min<std::size_t>(static_cast<std::size_t>(std::max(0, points)), result.view.points.size()));
+  for (std::size_t i = 0; i < result.looks.size(); ++i) {
+    const Eigen::Vector3f point = result.T * result.view.points[i];
+    if (!(point.z() > 0.0F)) continue;
+    const Eigen::Vector2f pixel = frame.camera.project_single(point) + Eigen::Vector2f::Constant(0.5F);
+    if (!(pixel.x() >= 0.0F && pixel.y() >= 0.0F && pixel.x() < columns && pixel.y() < rows)) continue;
+    Look& look = result.looks[i];
+    look.x = static_cast<int>(pixel.x());
+    look.y = static_cast<int>(pixel.y());
+    look.beyond = frame.depth.ptr<float>(look.y)[look.x] - point.z();
+  }
+  return result;
+}
+
 DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance) {
   return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.T.translation().z())));
 }
@@ -52,13 +71,13 @@ DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Ei
 }
 
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                            int points, double reach, const DepthTolerance& tolerance) {
-  const ViewLook seen = look_at_view(frame, model, T_camera_object, points);
-  const auto width = static_cast<float>(tolerance.at(T_camera_object.translation().z()));
+                            const ShiftSearch& search) {
+  const ViewLook seen = look_at_view(frame, model, T_camera_object, search.points);
+  const auto width = static_cast<float>(search.tolerance.at(T_camera_object.translation().z()));
   std::vector<float> within;
   within.reserve(seen.looks.size());
   for (const Look& look : seen.looks) {
-    if (std::abs(look.beyond) <= reach) within.push_back(look.beyond);  // false for NaN
+    if (std::abs(look.beyond) <= search.reach_m) within.push_back(look.beyond);  // false for NaN
   }
   std::sort(within.begin(), within.end());
   const float shift = densest_mean(within, width);

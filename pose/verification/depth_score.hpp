@@ -1,13 +1,31 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <vector>
 
 #include "pipeline/types/frame.hpp"
 #include "pose/model/object_model.hpp"
-#include "pose/model/view_look.hpp"
-#include "pose/pose_settings.hpp"
+#include "pose/region.hpp"
 
 namespace houghstream {
+
+/// Where a model's point falls in a frame, and what was measured there.
+struct Look {
+  /// Measured minus model depth along the ray, metres; NaN where nothing was measured or the image ends.
+  float beyond = std::numeric_limits<float>::quiet_NaN();
+  int x = 0;  ///< pixel; meaningless where the image ends
+  int y = 0;
+};
+
+/// A model's view at a pose, against a frame.
+struct ViewLook {
+  const ModelView& view;    ///< nearest to the pose
+  Eigen::Isometry3f T;      ///< camera from object
+  std::vector<Look> looks;  ///< of the first points of the view
+};
+ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points);
 
 /// How the measured depth speaks for a pose, judged at the visible points of the model.
 struct DepthScore {
@@ -30,8 +48,15 @@ struct DepthShift {
   DepthScore score;  ///< as score_pose would give it, but for the small change of scale
 };
 
-/// The shift within `reach` metres that makes most visible points agree; none where no point is within reach.
+/// Where such a move is looked for.
+struct ShiftSearch {
+  int points = 0;        ///< of the view nearest to the pose, the first
+  double reach_m = 0.0;  ///< to each side
+  DepthTolerance tolerance;
+};
+
+/// The shift within reach that makes most visible points agree; none where no point is within reach.
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-                            int points, double reach, const DepthTolerance& tolerance);
+                            const ShiftSearch& search);
 
 }  // namespace houghstream

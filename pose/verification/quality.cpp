@@ -14,6 +14,14 @@ double log_odds(double probability) {
 
 }  // namespace
 
+PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
+                             const VerificationSettings& settings) {
+  const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
+  const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
+  return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance),
+          compare_colours(seen.colours, look, tolerance)};
+}
+
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
   // Added to shares and counts, so that none weighs too much where there is little of it.
   constexpr double kShare = 0.01;
@@ -24,30 +32,33 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
   QualityTerms terms = settings.typical;
-  terms[0] = log_odds(static_cast<double>(evidence.detection_score));
-  terms[1] = -std::log(depth.violating / judged + kShare);
-  terms[2] = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
-  terms[3] = std::log((depth.outline_ends + kCount) / (depth.outline_continues + kCount));
+  terms.detection_log_odds = log_odds(static_cast<double>(evidence.detection_score));
+  terms.seen_through = -std::log(depth.violating / judged + kShare);
+  terms.visible = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
+  terms.outline = std::log((depth.outline_ends + kCount) / (depth.outline_continues + kCount));
   if (evidence.colour) {
-    terms[4] = -static_cast<double>(evidence.colour->chroma_shift) / kColourUnits;
-    terms[5] = -std::max(0.0, static_cast<double>(evidence.colour->left_over) - kUsualContrast) / kColourUnits;
+    terms.chroma_shift = -static_cast<double>(evidence.colour->chroma_shift) / kColourUnits;
+    terms.contrast = -std::max(0.0, static_cast<double>(evidence.colour->left_over) - kUsualContrast) / kColourUnits;
   }
   return terms;
 }
 
 float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
   double sum = settings.bias;
-  for (std::size_t i = 0; i < terms.size(); ++i) sum += settings.weights[i] * terms[i];
+  for (const auto term : kQualityTerms) sum += settings.weights.*term * terms.*term;
   return static_cast<float>(1.0 / (1.0 + std::exp(-sum)));
 }
 
 PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings) {
-  constexpr std::array<PoseStatus, 6> kReasons = {PoseStatus::kLowScore,         PoseStatus::kRejectedByDepth,
-                                                  PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByOutline,
-                                                  PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour};
+  constexpr std::array<PoseStatus, kQualityTerms.size()> kReasons = {
+      PoseStatus::kLowScore,          PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByDepth,
+      PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour};
+  const auto against = [&](std::size_t i) {
+    const auto term = kQualityTerms[i];
+    return settings.weights.*term * (settings.typical.*term - terms.*term);
+  };
   std::size_t worst = 0;
-  const auto against = [&](std::size_t i) { return settings.weights[i] * (settings.typical[i] - terms[i]); };
-  for (std::size_t i = 1; i < terms.size(); ++i) {
+  for (std::size_t i = 1; i < kReasons.size(); ++i) {
     if (against(i) > against(worst)) worst = i;
   }
   return kReasons[worst];

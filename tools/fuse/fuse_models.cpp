@@ -13,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-void report(const std::string& name, const FusedModel& model, std::size_t views) {
+void report(const std::string& name, const fusion::FusedModel& model, std::size_t views) {
   const auto seen = static_cast<double>(std::count(model.seen.begin(), model.seen.end(), true));
   fmt::print("{} views {} triangles {} diameter_mm {:.1f} seen_share {:.3f} agreement_mm {:.2f} before_mm {:.2f}\n",
              name, views, model.mesh.triangles.size(), 1e3 * mesh_diameter(model.mesh),
@@ -49,7 +49,7 @@ std::vector<ObjectViews> group_views(std::vector<TrainingView> views) {
   return objects;
 }
 
-void fuse_models(const std::vector<ObjectViews>& objects, FusionSettings settings, const FuseOutputs& outputs) {
+void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings settings, const FuseOutputs& outputs) {
   std::vector<NamedModel> models;
   for (const ObjectViews& object : objects) {
     if (!object.unused.empty()) {
@@ -57,7 +57,7 @@ void fuse_models(const std::vector<ObjectViews>& objects, FusionSettings setting
                   object.views.front().object_frame, fmt::join(object.unused, ", "));
     }
     settings.align = !object.exact_poses;
-    FusedModel model = fuse_views(object.class_name, object.views, settings);
+    fusion::FusedModel model = fusion::fuse_views(object.class_name, object.views, settings);
     report(object.class_name, model, object.views.size());
     if (!outputs.pictures.empty()) {
       std::filesystem::create_directories(outputs.pictures);

@@ -30,6 +30,6 @@ struct FuseOutputs {
 
 /// Fuses each object's views and writes the models, under the classes' ids and names; one line of stdout for each.
 /// Views with exact poses are not aligned. Throws InputError.
-void fuse_models(const std::vector<ObjectViews>& objects, FusionSettings settings, const FuseOutputs& outputs);
+void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings settings, const FuseOutputs& outputs);
 
 }  // namespace houghstream

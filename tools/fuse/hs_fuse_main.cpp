@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   CommandLine app("Makes models of objects that have none, from their training views: views with masks in, models/ out",
                   "hs-fuse");
   TrainingSources sources;
-  FusionSettings settings;
+  fusion::FusionSettings settings;
   FuseOutputs outputs;
   double voxel_mm = 1e3 * settings.grid.voxel;
   app.add_option("--views", sources.views, "training views: bop:DIR (poses are taken as they are) or uw:DIR")

@@ -4,7 +4,7 @@
 
 #include "tests/pose/fusion/turntable_views.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 using test_scene::TurntableScene;
@@ -72,4 +72,4 @@ TEST(AxisAlignment, ASingleViewStays) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::fusion

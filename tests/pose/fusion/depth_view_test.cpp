@@ -6,7 +6,7 @@
 
 #include "tests/pose/fusion/turntable_views.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 using test_scene::TurntableScene;
@@ -77,4 +77,4 @@ TEST(DepthView, PixelsOfPointsOutOfSightAreNone) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::fusion

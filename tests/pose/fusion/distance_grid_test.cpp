@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/pose/fusion/turntable_views.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 using test_scene::TurntableScene;
@@ -68,4 +68,4 @@ TEST(DistanceGrid, WhatCannotBeFusedIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/pose/fusion/turntable_views.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 using test_scene::median;
@@ -135,4 +135,4 @@ TEST(FuseViews, NothingToFuseIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::fusion

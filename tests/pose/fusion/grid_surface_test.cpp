@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 const Eigen::Vector3d kLarge(0.0, 0.0, 0.0);
@@ -80,4 +80,4 @@ TEST(GridSurface, NothingInsideIsNoSurface) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::fusion

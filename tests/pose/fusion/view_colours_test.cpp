@@ -4,7 +4,7 @@
 
 #include "tests/pose/fusion/turntable_views.hpp"
 
-namespace houghstream {
+namespace houghstream::fusion {
 namespace {
 
 /// Two squares of 12 cm, 2 cm apart, one behind the other; both face -y.
@@ -45,4 +45,4 @@ TEST(ViewColours, TheUnseenTakesItsNeighboursColour) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::fusion

@@ -2,12 +2,93 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "pose/model/angles.hpp"
 #include "tests/pose/test_scene.hpp"
 
 namespace houghstream {
 namespace {
 
 using namespace test_scene;
+
+Eigen::Quaternionf rotation_of(const Eigen::Isometry3d& T) {
+  return Eigen::Quaternionf(T.linear().cast<float>());
+}
+
+double degrees_between(const Eigen::Quaternionf& a, const Eigen::Quaternionf& b) {
+  return a.angularDistance(b) * 57.29577951308232;
+}
+
+TEST(RotationClusters, TwoModesComeOutHeaviestFirst) {
+  const Eigen::Isometry3d first = standing(10.0, 30.0, 1.0);
+  const Eigen::Isometry3d second = standing(130.0, 30.0, 1.0);
+  Random random(3);
+  std::vector<RotationVote> votes;
+  for (int i = 0; i < 20; ++i) {
+    Eigen::Quaternionf q = rotation_of(perturbed(first, 8.0, 0.0, random));
+    if (i % 2 == 0) q.coeffs() = -q.coeffs();  // the same rotation
+    votes.push_back({q, 1.0F});
+    votes.push_back({rotation_of(perturbed(second, 8.0, 0.0, random)), 0.7F});
+  }
+  InitialSettings settings;
+  settings.turned_clusters = 0;
+  const std::vector<RotationCandidate> found = rotation_clusters(votes, settings);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_LT(degrees_between(found[0].R_camera_object, rotation_of(first)), 4.0);
+  EXPECT_LT(degrees_between(found[1].R_camera_object, rotation_of(second)), 4.0);
+  EXPECT_NEAR(found[0].weight, 20.0F, 1e-4F);
+  EXPECT_NEAR(found[1].weight, 14.0F, 1e-4F);
+}
+
+TEST(RotationClusters, HeaviestIsAlsoTurnedByQuartersAboutTheObjectsAxis) {
+  const Eigen::Quaternionf q = rotation_of(standing(10.0, 30.0, 1.0));
+  const std::vector<RotationCandidate> found = rotation_clusters({{q, 2.0F}}, InitialSettings());
+  ASSERT_EQ(found.size(), 4U);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Eigen::Quaternionf expected = rotation_of(standing(10.0 + 90.0 * static_cast<double>(i), 30.0, 1.0));
+    EXPECT_LT(degrees_between(found[i].R_camera_object, expected), 0.1);
+    EXPECT_EQ(found[i].weight, 0.0F);
+  }
+}
+
+TEST(RotationClusters, NumberIsCappedEvenWithANarrowRadius) {
+  Random random(4);
+  std::vector<RotationVote> votes;
+  for (int i = 0; i < 64; ++i) {
+    votes.push_back({rotation_of(perturbed(standing(0, 0, 1), 180.0 * random.uniform(), 0.0, random)), 1.0F});
+  }
+  InitialSettings settings;
+  settings.cluster_radius_deg = 0.0;
+  settings.turned_clusters = 0;
+  EXPECT_EQ(rotation_clusters(votes, settings).size(), 6U);
+}
+
+TEST(RotationClusters, UnusableVotesAreLeftOut) {
+  const Eigen::Quaternionf good = rotation_of(standing(10.0, 30.0, 1.0));
+  const float nan = std::nanf("");
+  const std::vector<RotationVote> bad{{Eigen::Quaternionf(0, 0, 0, 0), 1.0F},
+                                      {Eigen::Quaternionf(nan, 0, 0, 1), 1.0F},
+                                      {good, nan},
+                                      {good, 0.0F},
+                                      {good, -1.0F}};
+  EXPECT_TRUE(rotation_clusters(bad, InitialSettings()).empty());
+  EXPECT_TRUE(rotation_clusters({}, InitialSettings()).empty());
+}
+
+TEST(RotationClusters, VotesSupportWhatTheyAgreeOn) {
+  const auto about_z = [](double degrees) {
+    return Eigen::Quaternionf(Eigen::AngleAxisf(static_cast<float>(degrees * kRadPerDeg), Eigen::Vector3f::UnitZ()));
+  };
+  const std::vector<RotationCandidate> votes = {{about_z(0.0), 4.0F}, {about_z(120.0), 1.0F}, {about_z(200.0), 0.0F}};
+  const auto support = [&](double degrees) {
+    return vote_support(votes, Eigen::Isometry3d(about_z(degrees).cast<double>()), {});
+  };
+  EXPECT_NEAR(support(0.0), 1.0F, 1e-3F);
+  EXPECT_NEAR(support(120.0), 0.25F, 1e-2F);
+  EXPECT_LT(support(200.0), 0.05F);
+  EXPECT_EQ(vote_support({}, Eigen::Isometry3d::Identity(), {}), 0.0F);
+}
 
 TEST(Candidates, BestPlacedRotationComesFirst) {
   const Mesh object = cereal_box();
@@ -20,11 +101,12 @@ TEST(Candidates, BestPlacedRotationComesFirst) {
     return Eigen::Quaternionf(standing(azimuth, 30.0, 1.0).linear().cast<float>());
   };
   const Eigen::Vector3f centre = (truth.translation() + Eigen::Vector3d(0.01, -0.01, 0.02)).cast<float>();
-  PoseSettings settings;
+  const SeenObject seen{frame, model, centre, {}, {}, {}};
+  const SearchSettings settings;
   const std::vector<PoseCandidate> found = place_candidates(
-      frame, model, centre,
-      {{rotation(150.0), 3.0F}, {rotation(60.0), 1.0F}, {rotation(100.0), 1.0F}, {rotation(330.0), 1.0F}}, settings);
-  ASSERT_EQ(found.size(), static_cast<std::size_t>(settings.search.keep));
+      seen, {{rotation(150.0), 3.0F}, {rotation(60.0), 1.0F}, {rotation(100.0), 1.0F}, {rotation(330.0), 1.0F}},
+      settings);
+  ASSERT_EQ(found.size(), static_cast<std::size_t>(settings.keep));
   EXPECT_GE(found[0].score, found[1].score);
   EXPECT_GE(found[1].score, found[2].score);
   EXPECT_LT((found[0].T_camera_object.translation() - truth.translation()).norm(), 0.015);

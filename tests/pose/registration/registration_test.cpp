@@ -4,42 +4,17 @@
 
 #include <cmath>
 
-#include "pose/registration/region.hpp"
-#include "tests/pose/test_scene.hpp"
+#include "tests/pose/registration_scene.hpp"
 
 namespace houghstream {
 namespace {
 
 using namespace test_scene;
 
-struct Scene {
-  Mesh object;
-  Mesh ground = table();
-  Eigen::Isometry3d truth;
-  RgbdFrame frame;
-  ObjectModel model;
-  SurfaceError surface_error;
-
-  Scene(Mesh mesh, double foot, const Eigen::Isometry3d& pose)
-      : object(std::move(mesh)), truth(pose), surface_error(object) {
-    frame = noisy_frame({{&object, truth, 1}, {&ground, truth * Eigen::Translation3d(0, 0, foot), 2}}, 7);
-    model = make_object_model("it", object, ModelSettings());
-  }
-  RegistrationResult projective(const Eigen::Isometry3d& start) const {
-    return register_projective(frame, model, start, {20, 400, 0.035, 0.012}, RegistrationSettings());
-  }
-  RegistrationResult pcl(const Eigen::Isometry3d& start) const {
-    const DepthRegion region = find_region(frame, detection_of("it", object, truth, 1), model, RegionSettings());
-    return register_pcl(region_points(frame, region, 400), model, start, {30, 400, 0.035, 0.012},
-                        RegistrationSettings());
-  }
-  double error(const RegistrationResult& result) const { return surface_error(truth, result.T_camera_object); }
-};
-
 TEST(Registration, OursComesBackFromStartsTwentyDegreesAndTwentyMillimetresOff) {
   Random random(11);
   for (const bool is_box : {true, false}) {
-    const Scene scene(is_box ? cereal_box() : mug(), is_box ? -0.13 : -0.05, standing(35.0, 30.0, 0.9));
+    const RegistrationScene scene(is_box ? cereal_box() : mug(), is_box ? -0.13 : -0.05, standing(35.0, 30.0, 0.9));
     for (int i = 0; i < 10; ++i) {
       const Eigen::Isometry3d start = perturbed(scene.truth, 12.0 + 0.8 * i, 0.02, random);
       const RegistrationResult found = scene.projective(start);
@@ -51,27 +26,8 @@ TEST(Registration, OursComesBackFromStartsTwentyDegreesAndTwentyMillimetresOff) 
   }
 }
 
-TEST(Registration, OursIsAtLeastAsAccurateAsPclFromTheSameStarts) {
-  Random random(12);
-  const Scene scene(cereal_box(), -0.13, standing(35.0, 30.0, 0.9));
-  double ours = 0.0;
-  double reference = 0.0;
-  int reference_near = 0;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Isometry3d start = perturbed(scene.truth, 12.0, 0.015, random);
-    ours += scene.error(scene.projective(start));
-    const RegistrationResult pcl = scene.pcl(start);
-    EXPECT_GT(pcl.inliers, 50);
-    EXPECT_GT(pcl.iterations, 0);
-    reference += scene.error(pcl);
-    reference_near += scene.error(pcl) < 0.008 ? 1 : 0;
-  }
-  EXPECT_GE(reference_near, 6);  // the reference works
-  EXPECT_LE(ours, reference + 8 * 0.0005);
-}
-
 TEST(Registration, NothingToPairWithIsNotConvergedAndLeavesTheStart) {
-  Scene scene(mug(), -0.05, standing(35.0, 30.0, 0.9));
+  RegistrationScene scene(mug(), -0.05, standing(35.0, 30.0, 0.9));
   scene.frame.depth.setTo(std::nanf(""));
   Eigen::Isometry3d outside = scene.truth;
   outside.translation() = Eigen::Vector3d(0.0, 0.0, -1.0);
@@ -82,23 +38,36 @@ TEST(Registration, NothingToPairWithIsNotConvergedAndLeavesTheStart) {
     EXPECT_TRUE(std::isnan(ours.residual));
     EXPECT_EQ(ours.T_camera_object.matrix(), start.matrix());
   }
-  const RegistrationResult pcl =
-      register_pcl({}, scene.model, scene.truth, {30, 400, 0.035, 0.012}, RegistrationSettings());
-  EXPECT_FALSE(pcl.converged);
-  EXPECT_EQ(pcl.inliers, 0);
-  const std::vector<Eigen::Vector3f> far_away(50, Eigen::Vector3f(1.0F, 1.0F, 3.0F));
-  EXPECT_FALSE(
-      register_pcl(far_away, scene.model, scene.truth, {30, 400, 0.035, 0.012}, RegistrationSettings()).converged);
 }
 
-TEST(Registration, PclSurvivesOneFlatFace) {
-  // Seen straight on, the pairs leave sliding and turning in the plane open.
-  const Scene scene(cereal_box(), -0.13, standing(0.0, 0.0, 0.9));
-  Random random(13);
-  for (int i = 0; i < 5; ++i) {
-    const RegistrationResult found = scene.pcl(perturbed(scene.truth, 5.0, 0.01, random));
-    EXPECT_TRUE(found.T_camera_object.matrix().allFinite());
-  }
+TEST(Registration, CandidatesKeepTheirOrderAndFineRegistrationThatLeavesTheDetectionIsDropped) {
+  const RegistrationScene scene(cereal_box(), -0.13, standing(35.0, 30.0, 0.9));
+  const SeenObject seen = scene.seen();
+  Eigen::Isometry3d away = scene.truth;
+  away.translation().z() += 0.5;
+  const std::vector<RegistrationResult> found = register_candidates(seen, {{away, 1.0F}, {scene.truth, 0.0F}}, {});
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].inliers, 0);
+  EXPECT_FALSE(ends_near(seen, found[0], {}));
+  EXPECT_LT(scene.error(found[1]), 0.003);
+  EXPECT_TRUE(ends_near(seen, found[1], {}));
+  RegistrationSettings strict;
+  strict.max_shift_m = 0.0;
+  EXPECT_EQ(register_finely(seen, found[1], strict).iterations, found[1].iterations);
+  EXPECT_GT(register_finely(seen, found[1], {}).iterations, found[1].iterations);
+}
+
+TEST(Registration, PairDistancesGrowWithDepthsNoise) {
+  const RegistrationScene scene(mug(), -0.05, standing(35.0, 30.0, 0.9));
+  SeenObject seen = scene.seen();
+  const RegistrationSettings settings;
+  const PairDistances near = pair_distances(seen, settings);
+  EXPECT_EQ(near.start, settings.start_distance_m);
+  EXPECT_GT(near.end, settings.end_distance_m);
+  seen.centre_camera.z() = 4.0F;
+  const PairDistances far = pair_distances(seen, settings);
+  EXPECT_GT(far.end, settings.start_distance_m);
+  EXPECT_EQ(far.start, far.end) << "registration never ends with wider pairs than it begins with";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pose/model/angles.hpp"
 #include "tests/pose/printed_box.hpp"
 
 namespace houghstream {
@@ -9,33 +10,32 @@ namespace {
 
 using namespace test_scene;
 
-constexpr double kRad = 0.017453292519943295;
 const DepthTolerance kTolerance{0.008, {}};
 
 double turn_between_deg(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() / kRad;
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() / kRadPerDeg;
 }
 
 struct SeenBox {
   ObjectModel model = make_object_model("box", printed_box(), {});
   Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
   RgbdFrame frame = coloured_frame(model.mesh, truth, 3);
-  LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  SeenObject seen{frame, model, truth.translation().cast<float>(), {}, {}, lab_region(frame, {0, 0, 640, 480})};
 };
 
 TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {
-  const auto& [model, truth, frame, colours] = SeenBox();
+  const SeenBox box;
   for (const double degrees : {90.0, 180.0, 270.0}) {
     const auto turns =
-        best_turns(frame, colours, model, turned(truth, degrees), {15.0 * kRad, 180.0 * kRad, 3, 250}, kTolerance);
+        best_turns(box.seen, turned(box.truth, degrees), {15.0 * kRadPerDeg, 180.0 * kRadPerDeg, 3, 250}, kTolerance);
     ASSERT_FALSE(turns.empty());
-    EXPECT_LT(turn_between_deg(turns.front().T_camera_object, truth), 1.0) << degrees;
+    EXPECT_LT(turn_between_deg(turns.front().T_camera_object, box.truth), 1.0) << degrees;
   }
 }
 
 TEST(TurnSearch, TheBestComesFirstAndNeighboursOfABetterOneAreLeftOut) {
-  const auto& [model, truth, frame, colours] = SeenBox();
-  const auto turns = best_turns(frame, colours, model, truth, {5.0 * kRad, 180.0 * kRad, 4, 250}, kTolerance);
+  const SeenBox box;
+  const auto turns = best_turns(box.seen, box.truth, {5.0 * kRadPerDeg, 180.0 * kRadPerDeg, 4, 250}, kTolerance);
   ASSERT_LE(turns.size(), 4U);
   for (std::size_t i = 1; i < turns.size(); ++i) {
     EXPECT_GE(turns[i - 1].score, turns[i].score);
@@ -49,13 +49,13 @@ TEST(TurnSearch, AHandleDoesNotMoveTheAxis) {
 }
 
 TEST(TurnSearch, ClimbsBackFromASmallTurnAndShift) {
-  const auto& [model, truth, frame, colours] = SeenBox();
-  Eigen::Isometry3d start = turned(truth, 5.0);
+  const SeenBox box;
+  Eigen::Isometry3d start = turned(box.truth, 5.0);
   start.translate(Eigen::Vector3d(0.0, 0.0, 0.004));
-  const Climb climb{3.0 * kRad, 0.004, 5, 250};
-  const ScoredPose top = climb_pose(frame, colours, model, start, climb, kTolerance);
-  EXPECT_GT(top.score, judge_pose(frame, colours, model, start, 250, kTolerance).score);
-  EXPECT_LT(turn_between_deg(top.T_camera_object, truth), 3.0);
+  const Climb climb{3.0 * kRadPerDeg, 0.004, 5, 250};
+  const ScoredPose top = climb_pose(box.seen, start, climb, kTolerance);
+  EXPECT_GT(top.score, judge_pose(box.seen, start, 250, kTolerance).score);
+  EXPECT_LT(turn_between_deg(top.T_camera_object, box.truth), 3.0);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(GroupViews, BackgroundAloneIsRefused) {
 TEST(FuseModels, WritesWhatTheOtherToolsRead) {
   const fs::path folder = fresh_folder("fuse_models");
   test_scene::TurntableScene scene{test_scene::cereal_box()};
-  FusionSettings settings;
+  fusion::FusionSettings settings;
   settings.grid.voxel = 0.004;
   fuse_models(group_views(turntable_views(scene)), settings, {folder / "models", folder / "pictures"});
   const std::map<std::string, Mesh> models = load_class_models(folder / "models");

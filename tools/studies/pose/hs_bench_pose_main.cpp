@@ -8,6 +8,7 @@
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pose/baseline/register_pcl.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/studies/pose/bench_report.hpp"
@@ -31,7 +32,7 @@ BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, bool with_r
   BenchedMakers makers;
   PoseSettings settings;
   makers.each_frame[kOurs] = estimator_maker(meshes, settings);
-  settings.registration.method = Registration::kPcl;
+  settings.registration.engine = register_pcl;
   makers.each_frame[kPcl] = estimator_maker(meshes, settings);
   settings = PoseSettings{};
   settings.quality.least = 0.0F;
@@ -87,7 +88,7 @@ void run(const BenchOptions& options) {
       makers = make_makers(models.meshes, !options.no_rivals);
     }
     const DetectedScene detected = detect_scene(name, scene, detector, options.every);
-    bench_scene(detected, models, makers, options.rivals_every, settings.threads, bench);
+    bench_scene(detected, models, makers, {options.rivals_every, settings.threads}, bench);
   }
   write_bench(bench, options.out);
   write_worst(bench.each_frame.at(kOurs).trials, scenes, meshes, options.out);

@@ -31,18 +31,20 @@ void VariantResult::add(const PoseRun& run, const BopScene& scene, const SceneMo
 }
 
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
-                 int rivals_every, int threads, PoseBench& bench) {
+                 const BenchRules& rules, PoseBench& bench) {
   bench.frames += static_cast<int>(detected.frames.size());
   for (const auto& [name, maker] : makers.each_frame) {
     const PoseRun run = run_maker(detected, maker, 1);
-    bench.each_frame[name].add(run, detected.scene, models, threads);
+    bench.each_frame[name].add(run, detected.scene, models, rules.threads);
     if (!makers.rivals.empty())
-      bench.on_rival_frames[name].add(thin_run(run, rivals_every), detected.scene, models, threads);
+      bench.on_rival_frames[name].add(thin_run(run, rules.rivals_every), detected.scene, models, rules.threads);
   }
   for (const auto& [name, maker] : makers.rivals) {
-    bench.on_rival_frames[name].add(run_maker(detected, maker, rivals_every), detected.scene, models, threads);
+    bench.on_rival_frames[name].add(run_maker(detected, maker, rules.rivals_every), detected.scene, models,
+                                    rules.threads);
   }
-  if (!makers.rivals.empty()) bench.rival_frames += static_cast<int>(every_nth(detected.frames, rivals_every).size());
+  if (!makers.rivals.empty())
+    bench.rival_frames += static_cast<int>(every_nth(detected.frames, rules.rivals_every).size());
 }
 
 }  // namespace houghstream

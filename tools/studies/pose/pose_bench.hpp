@@ -39,9 +39,14 @@ struct DetectedScene {
   std::vector<EvaluatedFrame> frames;
 };
 
-/// Has every maker give poses to all detections, rivals to those of frames 0, M, 2M, ..., M being `rivals_every`, and
-/// adds what came of it.
+/// How a scene is benched.
+struct BenchRules {
+  int rivals_every = 10;  ///< the rivals look at frames 0, N, 2N, ... of those that were detected in
+  int threads = 1;        ///< for measuring errors; the makers run on one
+};
+
+/// Has every maker give poses to all detections, rivals to those of their frames, and adds what came of it.
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
-                 int rivals_every, int threads, PoseBench& bench);
+                 const BenchRules& rules, PoseBench& bench);
 
 }  // namespace houghstream

@@ -30,10 +30,9 @@ class PoseRival {
 
 /// PCL: fast point feature histograms (Rusu, Blodow, Beetz 2009) of model and region are brought together by random
 /// sampling that gives up early on samples whose distances disagree (Buch et al. 2013,
-/// pcl::SampleConsensusPrerejective), then point-to-plane ICP (register_pcl()). Models by class name, metres. Throws
-/// InputError for settings out of range and for models as make_object_model() does.
-/// PCL draws from std::rand(), which each estimate seeds anew: one estimate runs at a time, and nothing else may draw
-/// while it does.
+/// pcl::SampleConsensusPrerejective), then point-to-plane ICP (register_points_pcl()). Models by class name, metres.
+/// Throws InputError for settings out of range and for models as make_object_model() does. PCL draws from std::rand(),
+/// which each estimate seeds anew: one estimate runs at a time, and nothing else may draw while it does.
 std::unique_ptr<PoseRival> make_prerejective_rival(const std::map<std::string, Mesh>& models, const PoseSettings& pose,
                                                    const PrerejectiveSettings& settings);
 

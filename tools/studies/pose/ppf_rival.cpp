@@ -4,7 +4,7 @@
 #include <opencv2/surface_matching/icp.hpp>
 
 #include "pipeline/base/checks.hpp"
-#include "pose/registration/registration.hpp"
+#include "pose/baseline/register_pcl.hpp"
 #include "tools/studies/pose/surface_rival.hpp"
 
 namespace houghstream {

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "pipeline/base/checks.hpp"
-#include "pose/registration/registration.hpp"
+#include "pose/baseline/register_pcl.hpp"
 #include "tools/studies/pose/surface_rival.hpp"
 
 namespace houghstream {
@@ -112,7 +112,8 @@ class PrerejectiveRival final : public SurfaceRival {
                                           const std::vector<Eigen::Vector3f>& points_camera) const {
     const RegistrationStage stage{settings_.icp_iterations, settings_.icp_points, settings_.icp_start_m,
                                   settings_.icp_end_m};
-    const RegistrationResult result = register_pcl(points_camera, model, start, stage, pose_settings().registration);
+    const RegistrationResult result =
+        register_points_pcl(points_camera, model, start, stage, pose_settings().registration);
     if (result.inliers == 0) return std::nullopt;
     return result.T_camera_object;
   }

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "pose/registration/region.hpp"
+#include "pose/region.hpp"
 #include "pose/verification/depth_score.hpp"
 
 namespace houghstream {

@@ -53,7 +53,7 @@ void run(const BenchOptions& options) {
   pose_settings.quality.least = 0.0F;
   const PoseEstimator unchecked(models, pose_settings);
   const DrawnBoxes drawn = read_drawn_boxes(std::filesystem::path(options.scenes) / "boxes.json");
-  const RealBench bench = run_real_bench(options.scenes, drawn, detector, estimator, unchecked, models, object);
+  const RealBench bench = run_real_bench(options.scenes, drawn, {detector, estimator, unchecked, models}, object);
   std::filesystem::create_directories(options.out);
   write_json(to_json(bench, object), options.out / "poses.json");
   write_png(draw_model(object.scan.mesh), options.out / (options.object + ".png"));

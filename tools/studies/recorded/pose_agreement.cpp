@@ -3,8 +3,8 @@
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/percentiles.hpp"
+#include "pose/model/angles.hpp"
 #include "pose/model/symmetry.hpp"
-#include "pose/pose_settings.hpp"
 
 namespace houghstream {
 namespace {

@@ -72,24 +72,23 @@ OrderedJson to_json(const ComparedFrame& frame) {
 
 }  // namespace
 
-RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const Detector& detector,
-                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
+RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const BenchedMethod& method,
                          const ComparedObject& object) {
   RealBench bench;
   std::int64_t utime = 0;
   for (const FramePair& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, drawn.camera, ++utime);
-    const Detections detections = detector.detect(frame);
-    const ObjectPoses poses = estimator.estimate(frame, detections);
-    const ObjectPoses withheld =
-        withheld_poses(detections, poses, unchecked.estimate(frame, detections), boxes_of(pair.name, drawn.frames));
+    const Detections detections = method.detector.detect(frame);
+    const ObjectPoses poses = method.estimator.estimate(frame, detections);
+    const ObjectPoses withheld = withheld_poses(detections, poses, method.unchecked.estimate(frame, detections),
+                                                boxes_of(pair.name, drawn.frames));
     for (const ObjectPose& pose : poses.poses) bench.poses += pose.T_camera_object ? 1 : 0;
     const auto reference = object.references.find(pair.name);
     const bool is_compared = reference != object.references.end();
     if (is_compared) bench.compared.push_back(compare(pair.name, reference->second, poses, object));
     const std::string title = title_of(pair.name, is_compared ? &bench.compared.back() : nullptr);
-    bench.pictures.push_back(draw_poses(frame, poses, withheld, models, title));
-    bench.pictures.push_back(paint_models(frame, poses, models));
+    bench.pictures.push_back(draw_poses(frame, poses, withheld, method.models, title));
+    bench.pictures.push_back(paint_models(frame, poses, method.models));
   }
   require(bench.compared.size() == object.references.size(), "{}: {} of the {} frames with reference poses",
           scenes.string(), bench.compared.size(), object.references.size());

@@ -30,12 +30,18 @@ struct RealBench {
   std::vector<cv::Mat> pictures;        ///< of every frame two: draw_poses, paint_models
 };
 
+/// What makes the poses.
+struct BenchedMethod {
+  const Detector& detector;
+  const PoseEstimator& estimator;
+  const PoseEstimator& unchecked;  ///< publishes every pose it finds
+  const ClassModels& models;
+};
+
 /// Detects in every image pair of the folder and estimates poses; of several detections of the compared object the
-/// strongest one that has a pose counts. `unchecked` publishes every pose it finds: those that `estimator` withholds
-/// are drawn too where the detection lies in a drawn box of its class. Throws InputError, also for references to frames
-/// that are not there.
-RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const Detector& detector,
-                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
+/// strongest one that has a pose counts. Those that `estimator` withholds are drawn too where the detection lies in a
+/// drawn box of its class. Throws InputError, also for references to frames that are not there.
+RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const BenchedMethod& method,
                          const ComparedObject& object);
 
 /// {"object", "poses", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries", "alignment",

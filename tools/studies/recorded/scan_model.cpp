@@ -35,7 +35,7 @@ ScanModel fit_scan(const Mesh& scan, const Mesh& fused, double base_m) {
   const MeshAlignment with_disc = align_meshes(scan, fused);
   Mesh standing = moved(welded(scan), with_disc.T_target_source);
   const auto ground = static_cast<float>(base_height(standing) + base_m);
-  standing = largest_part(crop_below(standing, Eigen::Hyperplane<float, 3>(Eigen::Vector3f::UnitZ(), -ground)));
+  standing = fusion::largest_part(crop_below(standing, Eigen::Hyperplane<float, 3>(Eigen::Vector3f::UnitZ(), -ground)));
   require(!standing.triangles.empty(), "scan: nothing is left {:.0f} mm above its base", 1e3 * base_m);
   ScanModel model;
   model.alignment = align_meshes(standing, fused);

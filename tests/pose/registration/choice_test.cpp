@@ -1,7 +1,8 @@
-#include "pose/registration/refinement.hpp"
+#include "pose/registration/choice.hpp"
 
 #include <gtest/gtest.h>
 
+#include "pose/pose_settings.hpp"
 #include "tests/pose/printed_box.hpp"
 
 namespace houghstream {
@@ -16,29 +17,30 @@ struct Boxed {
   RgbdFrame frame = coloured_frame(mesh, truth, 5);
   DepthRegion region{cv::Rect(0, 0, 640, 480), 0.5F, 1.2F, 10000};
 
-  RegistrationResult refine(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {
-    return refine_candidates({frame, lab_region(frame, region.box_px), region}, model, centre, candidates, {}, {});
+  RegistrationResult choose(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {
+    const SeenObject seen{frame, model, centre, {}, region, lab_region(frame, region.box_px)};
+    return choose_pose(seen, register_candidates(seen, candidates, {}), {}, {});
   }
 };
 
-TEST(Refinement, ABoxThatWasTakenForItsBackIsTurnedRound) {
+TEST(Choice, ABoxThatWasTakenForItsBackIsTurnedRound) {
   const Boxed boxed;
   const Eigen::Vector3f centre = boxed.truth.translation().cast<float>();
-  const RegistrationResult found = boxed.refine({{turned(boxed.truth, 180.0), 1.0F}}, centre);
+  const RegistrationResult found = boxed.choose({{turned(boxed.truth, 180.0), 1.0F}}, centre);
   ASSERT_GT(found.inliers, 0);
   const double angle = Eigen::AngleAxisd(found.T_camera_object.linear().transpose() * boxed.truth.linear()).angle();
   EXPECT_LT(angle, 0.02);
   EXPECT_LT((found.T_camera_object.translation() - boxed.truth.translation()).norm(), 0.003);
 }
 
-TEST(Refinement, WhatEndsFarFromTheDetectionIsNoResult) {
+TEST(Choice, WhatEndsFarFromTheDetectionIsNoResult) {
   const Boxed boxed;
-  const RegistrationResult found = boxed.refine({{boxed.truth, 1.0F}}, Eigen::Vector3f(0.3F, 0.0F, 0.8F));
+  const RegistrationResult found = boxed.choose({{boxed.truth, 1.0F}}, Eigen::Vector3f(0.3F, 0.0F, 0.8F));
   EXPECT_EQ(found.inliers, 0);
 }
 
-TEST(Refinement, WithoutCandidatesThereIsNoResult) {
-  EXPECT_EQ(Boxed().refine({}, Eigen::Vector3f(0, 0, 0.8F)).inliers, 0);
+TEST(Choice, WithoutCandidatesThereIsNoResult) {
+  EXPECT_EQ(Boxed().choose({}, Eigen::Vector3f(0, 0, 0.8F)).inliers, 0);
 }
 
 }  // namespace

@@ -1,19 +1,25 @@
-#include <algorithm>
+#include "pose/baseline/reference_pair_block.hpp"
 
-#include "pose/model/pixel_rays.hpp"
-#include "pose/registration/pair_block.hpp"
+#include <algorithm>
 
 namespace houghstream {
 namespace {
 
-/// Of point `k`, which lies in the image at pixel (u,v).
-void find_one(const RgbdFrame& frame, const PairSearch& search, int u, int v, int stride, std::size_t k,
+/// Pixels where a point's measured partner is looked for.
+struct PointLattice {
+  int u = 0;  ///< in the image
+  int v = 0;
+  int stride = 1;
+};
+
+/// Of point `k`.
+void find_one(const RgbdFrame& frame, const PairSearch& search, const PointLattice& at, std::size_t k,
               PairBlock& block) {
   const PixelRays rays(frame);
   for (int j = -search.steps; j <= search.steps; ++j) {
-    const int y = v + j * stride;
+    const int y = at.v + j * at.stride;
     for (int i = -search.steps; i <= search.steps; ++i) {
-      const int x = u + i * stride;
+      const int x = at.u + i * at.stride;
       if (x < 0 || y < 0 || x >= rays.columns || y >= rays.rows) continue;
       const float z = frame.depth.ptr<float>(y)[x];  // NaN fails the comparison below
       const Eigen::Vector3f here(z * (rays.first.x() + rays.step.x() * static_cast<float>(x)) - block.x[k],
@@ -31,7 +37,7 @@ void find_one(const RgbdFrame& frame, const PairSearch& search, int u, int v, in
 
 }  // namespace
 
-void find_gaps_readably(const RgbdFrame& frame, const PairSearch& search, PairBlock& block) {
+void reference_find_gaps(const RgbdFrame& frame, const PairSearch& search, PairBlock& block) {
   const PixelRays rays(frame);
   for (std::size_t k = 0; k < block.count; ++k) {
     block.distance_sq[k] = search.distance_m * search.distance_m;
@@ -42,12 +48,13 @@ void find_gaps_readably(const RgbdFrame& frame, const PairSearch& search, PairBl
                         pixel.y() < static_cast<float>(rays.rows);
     if (!inside) continue;
     const float stride = search.distance_m / (rays.step.x() * point.z() * static_cast<float>(search.steps));
-    find_one(frame, search, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()),
-             std::max(1, static_cast<int>(std::min(stride, PixelRays::kWidest))), k, block);
+    const PointLattice at{static_cast<int>(pixel.x()), static_cast<int>(pixel.y()),
+                          std::max(1, static_cast<int>(std::min(stride, PixelRays::kWidest)))};
+    find_one(frame, search, at, k, block);
   }
 }
 
-void add_products_readably(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums) {
+void reference_add_products(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums) {
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Map<const Eigen::Matrix<float, 8, 1>> row(rows[i].values.data());
     sums += (weights[i] * row) * row.transpose();

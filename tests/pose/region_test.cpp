@@ -1,4 +1,4 @@
-#include "pose/registration/region.hpp"
+#include "pose/region.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,8 @@
-#include "pose/registration/region.hpp"
+#include "pose/region.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 namespace houghstream {
 namespace {
@@ -47,6 +48,20 @@ std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRe
     }
   }
   return points;
+}
+
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px) {
+  LabRegion region{{}, part_px.tl()};
+  cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
+  cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);
+  return region;
+}
+
+SeenObject see_object(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
+                      const RegionSettings& settings, const DepthNoise& noise) {
+  SeenObject seen{frame, model, detection.centre_camera, noise, find_region(frame, detection, model, settings), {}};
+  if (seen.region.points >= settings.min_points) seen.colours = lab_region(frame, seen.region.box_px);
+  return seen;
 }
 
 }  // namespace houghstream

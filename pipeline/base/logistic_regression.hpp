@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <vector>
+
+namespace houghstream {
+
+/// A judged example: the values that the weights multiply, and what came of it.
+template <int N>
+struct LogisticExample {
+  Eigen::Matrix<double, N, 1> terms = Eigen::Matrix<double, N, 1>::Zero();
+  bool is_true = false;
+};
+
+/// What the weights of a logistic regression are pulled to, and how strongly: `stiffness` is the inverse variance of a
+/// weight about the prior's, as strong as so many examples.
+template <int N>
+struct LogisticPrior {
+  Eigen::Matrix<double, N, 1> weights = Eigen::Matrix<double, N, 1>::Zero();
+  double stiffness = 1.0;
+};
+
+inline double logistic(double x) {
+  return 1.0 / (1.0 + std::exp(-x));
+}
+
+/// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
+template <int N>
+double logistic_loss(const std::vector<LogisticExample<N>>& examples, const Eigen::Matrix<double, N, 1>& weights,
+                     const LogisticPrior<N>& prior) {
+  double loss = prior.stiffness * (0.5 * (weights - prior.weights).squaredNorm());
+  for (const LogisticExample<N>& example : examples) {
+    const double x = weights.dot(example.terms) * (example.is_true ? 1.0 : -1.0);
+    loss += x > 0.0 ? std::log1p(std::exp(-x)) : -x + std::log1p(std::exp(x));
+  }
+  return loss;
+}
+
+/// The weights of smallest loss, by Newton's method (Bishop 2006, section 4.3.3). The prior keeps them finite where a
+/// plane parts the examples, and is what comes of none.
+template <int N>
+Eigen::Matrix<double, N, 1> fit_logistic(const std::vector<LogisticExample<N>>& examples,
+                                         const LogisticPrior<N>& prior) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  constexpr int kSteps = 30;  // it needs about eight
+  Vector weights = prior.weights;
+  double loss = logistic_loss<N>(examples, weights, prior);
+  for (int step = 0; step < kSteps; ++step) {
+    Vector gradient = prior.stiffness * (prior.weights - weights);
+    Matrix curvature = prior.stiffness * Matrix::Identity();
+    for (const LogisticExample<N>& example : examples) {
+      const double p = logistic(weights.dot(example.terms));
+      gradient += ((example.is_true ? 1.0 : 0.0) - p) * example.terms;
+      curvature += p * (1.0 - p) * example.terms * example.terms.transpose();
+    }
+    Vector change = curvature.ldlt().solve(gradient);
+    // Far from the minimum a whole step may lead away from it.
+    while (logistic_loss<N>(examples, weights + change, prior) > loss && change.norm() > 1e-9) change *= 0.5;
+    weights += change;
+    loss = logistic_loss<N>(examples, weights, prior);
+  }
+  return weights;
+}
+
+}  // namespace houghstream

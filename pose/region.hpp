@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pose/model/object_model.hpp"
+
+namespace houghstream {
+
+/// Standard deviation of measured depth, base + per_m * z^2: a structured-light camera's disparity error
+/// (Khoshelham & Elberink 2012, 1.4 mm at 1 m) over what registration of depth to colour adds.
+struct DepthNoise {
+  double base_m = 0.001;
+  double per_m = 0.00143;  ///< 1/m
+  double sigma(double z) const { return base_m + per_m * z * z; }
+};
+
+/// Measured and model depth agree when they differ by no more than this.
+struct DepthTolerance {
+  double base_m = 0.0;
+  DepthNoise noise;
+  double at(double z) const { return base_m + 3.0 * noise.sigma(z); }
+};
+
+/// The detection's part of the depth image.
+struct RegionSettings {
+  double enlarge = 0.15;        ///< of the box's size, on each side
+  double gate_margin_m = 0.06;  ///< depth farther from the centre than the model's radius plus this is not the object
+  int min_points = 60;          ///< pixels with depth inside the gate; with fewer there is no pose
+};
+
+/// Where in the depth image a detected object can be: its box, a little enlarged, and a range of depth.
+struct DepthRegion {
+  cv::Rect box_px;        ///< inside the image, may be empty
+  float nearest = 0.0F;   ///< metres
+  float farthest = 0.0F;  ///< metres
+  int points = 0;         ///< pixels inside with depth in range
+};
+DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
+                        const RegionSettings& settings);
+
+/// At most about `most` points of the region, camera frame, metres, evenly over the image.
+std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int most);
+
+/// The colours of a part of a frame.
+struct LabRegion {
+  cv::Mat lab;          ///< CV_8UC3, 8-bit CIE L*a*b*, of the part; neighbouring pixels averaged against noise
+  cv::Point origin_px;  ///< its first pixel in the frame
+};
+/// `part_px` must lie inside the image and not be empty.
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px);
+
+/// What is seen of a detected object, and the model that it is compared with: what every later stage looks at. Frame
+/// and model must outlive it.
+struct SeenObject {
+  const RgbdFrame& frame;
+  const ObjectModel& model;
+  Eigen::Vector3f centre_camera;  ///< detected origin of the object frame, metres, z > 0
+  DepthNoise noise;               ///< of the frame's depth
+  DepthRegion region;
+  LabRegion colours;  ///< of the region's box; empty where the region has too few points
+};
+SeenObject see_object(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
+                      const RegionSettings& settings, const DepthNoise& noise);
+
+}  // namespace houghstream

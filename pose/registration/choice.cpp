@@ -1,0 +1,89 @@
+#include "pose/registration/choice.hpp"
+
+#include <limits>
+
+#include "pose/model/angles.hpp"
+#include "pose/pose_settings.hpp"
+#include "pose/registration/turn_search.hpp"
+
+namespace houghstream {
+namespace {
+
+/// The steps of the choice for one object, with what they share.
+class Choice {
+ public:
+  Choice(const SeenObject& seen, const std::vector<RotationCandidate>& votes, const PoseSettings& settings)
+      : seen_(seen),
+        votes_(votes),
+        settings_(settings),
+        tolerance_{settings.verification.tolerance_m, seen.noise},
+        distances_(pair_distances(seen, settings.registration)) {}
+
+  RegistrationResult best_of(const std::vector<RegistrationResult>& registered) const {
+    RegistrationResult best;
+    float best_score = -std::numeric_limits<float>::infinity();
+    for (const RegistrationResult& result : registered) take_better(result, best, best_score);
+    return best;
+  }
+
+  /// The best of `result` and of the best turns of it, registered again.
+  RegistrationResult best_turn(const RegistrationResult& result, double step_deg, double reach_deg,
+                               std::size_t most) const {
+    RegistrationResult best = result;
+    float best_score = score_of(result);
+    const TurnRange range{step_deg * kRadPerDeg, reach_deg * kRadPerDeg, most, settings_.turn.points};
+    for (const ScoredPose& turn : best_turns(seen_, result.T_camera_object, range, tolerance_)) {
+      RegistrationResult again = uphill(register_coarsely(
+          seen_, turn.T_camera_object, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      again.iterations += result.iterations;
+      take_better(again, best, best_score);
+    }
+    return best;
+  }
+
+ private:
+  void take_better(const RegistrationResult& result, RegistrationResult& best, float& best_score) const {
+    if (!ends_near(seen_, result, settings_.registration)) return;
+    const float score = score_of(result);
+    if (!(score > best_score)) return;
+    best = result;
+    best_score = score;
+  }
+
+  RegistrationResult uphill(RegistrationResult result) const {
+    const TurnSettings& turn = settings_.turn;
+    const Climb climb{turn.fine_step_deg * kRadPerDeg, turn.climb_step_m, turn.climb_rounds, turn.points};
+    result.T_camera_object = climb_pose(seen_, result.T_camera_object, climb, tolerance_).T_camera_object;
+    return result;
+  }
+
+  /// How depth, colour and votes speak for the result.
+  float score_of(const RegistrationResult& result) const {
+    const ScoredPose judged = judge_pose(seen_, result.T_camera_object, settings_.registration.fine_points, tolerance_);
+    const float support = vote_support(votes_, result.T_camera_object, settings_.initial);
+    return judged.score * (1.0F + settings_.initial.vote_gain * support);
+  }
+
+  const SeenObject& seen_;
+  const std::vector<RotationCandidate>& votes_;
+  const PoseSettings& settings_;
+  DepthTolerance tolerance_;
+  PairDistances distances_;
+};
+
+}  // namespace
+
+RegistrationResult choose_pose(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
+                               const std::vector<RotationCandidate>& votes, const PoseSettings& settings) {
+  const Choice choice(seen, votes, settings);
+  const TurnSettings& turn = settings.turn;
+  const RegistrationSettings& registration = settings.registration;
+  const RegistrationResult best = choice.best_of(registered);
+  if (best.inliers == 0) return best;
+  const RegistrationResult settled = register_finely(seen, best, registration);
+  const RegistrationResult turned = choice.best_turn(settled, turn.step_deg, 180.0, turn.registered);
+  const RegistrationResult fine = register_finely(seen, turned, registration);
+  return register_finely(seen, choice.best_turn(fine, turn.fine_step_deg, turn.step_deg, 1), registration);
+}
+
+}  // namespace houghstream

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pose/registration/registration.hpp"
+
+namespace houghstream {
+
+struct PoseSettings;
+
+/// Turns about the object's z axis that are tried after registration, degrees.
+struct TurnSettings {
+  double step_deg = 15.0;       ///< all the way round
+  double fine_step_deg = 3.0;   ///< up to one step to each side
+  double climb_step_m = 0.004;  ///< shifts along the object's axes that are tried with small turns
+  int climb_rounds = 4;         ///< of those, to each side
+  int points = 250;             ///< of a view
+  std::size_t registered = 3;   ///< the best turns all round are registered again
+};
+
+/// Of the registered candidates the one for which depth, colour and votes speak most is registered finely and turned
+/// about its z axis, where votes err most; of the turns, each registered again and moved a little uphill, the one for
+/// which they speak most goes on; then its print may turn it a little, and registration has the last word. No inliers
+/// where no candidate ended near the detected centre. `votes` are the modes of the detection's rotations.
+RegistrationResult choose_pose(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
+                               const std::vector<RotationCandidate>& votes, const PoseSettings& settings);
+
+}  // namespace houghstream

@@ -1,0 +1,55 @@
+#include "pipeline/base/logistic_regression.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/base/random.hpp"
+
+namespace houghstream {
+namespace {
+
+using Weights = Eigen::Vector3d;
+
+/// Drawn by the probabilities that the weights give.
+std::vector<LogisticExample<3>> drawn_by(const Weights& weights, int count) {
+  Random random(5);
+  std::vector<LogisticExample<3>> examples(count);
+  for (LogisticExample<3>& example : examples) {
+    example.terms = {1.0, random.normal(), random.normal()};
+    example.is_true = random.uniform() < logistic(weights.dot(example.terms));
+  }
+  return examples;
+}
+
+TEST(LogisticRegression, TheWeightsThatDrewTheExamplesComeBack) {
+  const Weights truth(-0.5, 2.0, -1.0);
+  const Weights found = fit_logistic<3>(drawn_by(truth, 20000), {Weights::Zero(), 1e-3});
+  EXPECT_LT((found - truth).cwiseAbs().maxCoeff(), 0.1) << found.transpose();
+}
+
+TEST(LogisticRegression, NoOtherWeightsHaveLessLoss) {
+  const std::vector<LogisticExample<3>> examples = drawn_by({1.0, 1.0, 0.0}, 200);
+  const LogisticPrior<3> prior{Weights(0.0, 0.5, 0.0), 1.0};
+  const Weights found = fit_logistic<3>(examples, prior);
+  const double least = logistic_loss<3>(examples, found, prior);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double step : {-0.01, 0.01}) {
+      EXPECT_GT(logistic_loss<3>(examples, found + step * Weights::Unit(axis), prior), least);
+    }
+  }
+}
+
+TEST(LogisticRegression, WithoutExamplesThePriorStays) {
+  const Weights prior(1.0, -2.0, 3.0);
+  EXPECT_EQ((fit_logistic<3>({}, {prior, 1.0})), prior);
+}
+
+TEST(LogisticRegression, ExamplesThatAPlanePartsGiveFiniteWeights) {
+  const std::vector<LogisticExample<3>> examples = {{{1.0, -1.0, 0.0}, false}, {{1.0, 1.0, 0.0}, true}};
+  const Weights found = fit_logistic<3>(examples, {Weights::Zero(), 1e-3});
+  ASSERT_TRUE(found.allFinite());
+  EXPECT_GT(found[1], 1.0);
+  EXPECT_EQ(found[2], 0.0);
+}
+
+}  // namespace
+}  // namespace houghstream

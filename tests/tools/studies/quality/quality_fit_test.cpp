@@ -1,0 +1,115 @@
+#include "tools/studies/quality/quality_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/random.hpp"
+
+namespace houghstream::quality {
+namespace {
+
+const QualityTerms kWeights = {1.5, 0.5, 1.0, -0.5, 2.0, 1.0};
+constexpr double kBias = -1.0;
+
+/// Right as often as kWeights and kBias say; `scenes` of equal size.
+std::vector<Example> drawn(int count, int scenes) {
+  QualitySettings truth;
+  truth.weights = kWeights;
+  truth.bias = kBias;
+  Random random(7);
+  std::vector<Example> examples(count);
+  for (int i = 0; i < count; ++i) {
+    Example& example = examples[i];
+    example.scene = std::to_string(i % scenes);
+    for (const auto term : kQualityTerms) example.terms.*term = random.normal();
+    example.is_right = random.uniform() < static_cast<double>(pose_quality(example.terms, truth));
+  }
+  return examples;
+}
+
+TEST(QualityFit, TheWeightsThatDrewTheExamplesComeBackUnderTheirNames) {
+  const QualitySettings found = fit_quality(drawn(20000, 5));
+  EXPECT_NEAR(found.bias, kBias, 0.1);
+  for (const auto term : kQualityTerms) EXPECT_NEAR(found.weights.*term, kWeights.*term, 0.1);
+}
+
+TEST(QualityFit, TypicalValuesAreTheMeansOfRightPoses) {
+  std::vector<Example> examples(3);
+  examples[0].terms.outline = 2.0;
+  examples[0].is_right = true;
+  examples[1].terms.outline = 4.0;
+  examples[1].terms.contrast = -1.0;
+  examples[1].is_right = true;
+  examples[2].terms.outline = -50.0;
+  const QualityTerms typical = fit_quality(examples).typical;
+  EXPECT_DOUBLE_EQ(typical.outline, 3.0);
+  EXPECT_DOUBLE_EQ(typical.contrast, -0.5);
+  EXPECT_DOUBLE_EQ(typical.visible, 0.0);
+}
+
+TEST(QualityFit, OneKindAloneIsRefused) {
+  std::vector<Example> examples(3);
+  EXPECT_THROW(fit_quality(examples), InputError);
+  for (Example& example : examples) example.is_right = true;
+  EXPECT_THROW(fit_quality(examples), InputError);
+  EXPECT_THROW(fit_quality({}), InputError);
+}
+
+TEST(QualityFit, APoseIsCheckedByAFitThatHasNotSeenItsScene) {
+  std::vector<Example> examples = drawn(4000, 4);
+  for (Example& example : examples) {
+    if (example.scene == "2") example.is_right = example.terms.outline > 0.0;  // the others do not know that
+  }
+  const std::vector<CheckedPose> checked = check_by_scene(examples, 4);
+  ASSERT_EQ(checked.size(), examples.size());
+  QualitySettings others;
+  std::vector<Example> seen;
+  for (const Example& example : examples) {
+    if (example.scene != "2") seen.push_back(example);
+  }
+  others = fit_quality(seen);
+  const auto first = checked.begin() + 2000;  // of the third part
+  for (std::size_t i = 0, n = 0; i < examples.size(); ++i) {
+    if (examples[i].scene != "2") continue;
+    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n))->quality, pose_quality(examples[i].terms, others));
+    EXPECT_EQ((first + static_cast<std::ptrdiff_t>(n++))->is_right, examples[i].is_right);
+  }
+  EXPECT_THROW(check_by_scene(drawn(300, 3), 4), InputError);
+}
+
+TEST(QualityFit, TheLeastQualityIsTheFirstRoundOneFromWhichEnoughAreRight) {
+  std::vector<CheckedPose> checked(98, {0.9F, true});
+  checked.insert(checked.end(), 2, {0.7F, false});
+  checked.insert(checked.end(), 10, {0.42F, false});
+  EXPECT_EQ(least_quality(checked, 0.98), 0.45F);
+  EXPECT_EQ(least_quality(checked, 0.99), 0.75F);
+  EXPECT_EQ(published_from(checked, 0.7F).poses, 100);
+  EXPECT_EQ(published_from(checked, 0.7F).right, 98);
+  EXPECT_TRUE(std::isnan(published_from(checked, 0.95F).right_share()));
+  EXPECT_EQ(least_quality({{0.9F, false}}, 0.98), std::nullopt);
+}
+
+TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
+  Learnt learnt = learn_quality(drawn(8000, 4));
+  EXPECT_EQ(std::tuple(learnt.scenes, learnt.examples), std::tuple(4, 8000));
+  learnt.settings.weights = kWeights;
+  learnt.settings.bias = -3.711;
+  learnt.settings.least = 0.6F;
+  learnt.settings.typical = {};
+  EXPECT_EQ(to_initialisers(learnt.settings),
+            "double bias = -3.71;\n"
+            "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00};\n"
+            "QualityTerms typical = {0.00, 0.00, 0.00, 0.00, 0.00, 0.00};\n"
+            "float least = 0.60F;\n");
+  const OrderedJson json = to_json(learnt);
+  EXPECT_EQ(json["weights"]["chroma_shift"], 2.0);
+  EXPECT_EQ(json["weights"]["outline"], -0.5);
+  EXPECT_EQ(json["published"].size(), 19U);
+  EXPECT_EQ(json["published"][0]["from"], 0.05F);
+}
+
+}  // namespace
+}  // namespace houghstream::quality

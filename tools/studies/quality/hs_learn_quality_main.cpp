@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+
+#include "detector/forest/forest_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "tools/common/search_options.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/studies/quality/quality_examples.hpp"
+
+namespace {
+
+using namespace houghstream;
+
+struct LearnOptions {
+  std::string forest;
+  std::vector<std::string> scenes;
+  std::string models;
+  std::string out;
+  int every = 1;
+  SearchOptions search;
+};
+
+std::string name_of(const std::string& scene_folder) {
+  return std::filesystem::absolute(std::filesystem::path(scene_folder) / "").parent_path().filename().string();
+}
+
+/// Those of the classes that the forest knows: others are never detected.
+std::map<std::string, Mesh> models_of(const LearnOptions& options, const Forest& forest) {
+  std::map<std::string, Mesh> known;
+  const std::map<std::string, Mesh> all = load_class_models(options.models);
+  for (const ObjectClass& object : forest.classes) {
+    if (const auto found = all.find(object.name); found != all.end()) known.insert(*found);
+  }
+  require(!known.empty(), "{}: none of its {} models is of a class of {}", options.models, all.size(), options.forest);
+  return known;
+}
+
+std::vector<quality::Example> gather(const LearnOptions& options) {
+  Forest forest = load_forest(options.forest);
+  const std::map<std::string, Mesh> meshes = models_of(options, forest);
+  std::map<std::string, PoseModel> judged_by;
+  for (const auto& [name, mesh] : meshes) judged_by[name] = make_pose_model(mesh, false);
+  const DetectionSettings settings = options.search.settings_for(forest);
+  const Detector detector(std::move(forest), settings);
+  const quality::PoseFinder finder(meshes, settings.threads);
+  std::vector<quality::Example> examples;
+  std::set<std::string> names;
+  for (const std::string& folder : options.scenes) {
+    const std::string name = name_of(folder);
+    require(names.insert(name).second, "{}: a second scene of this name", folder);
+    const quality::FoundPoses found = finder.find(name, BopScene(folder), detector, options.every);
+    const std::vector<quality::Example> here = quality::judge_examples(found, judged_by);
+    log_info("{}: {} frames, {} poses", name, found.frames.size(), here.size());
+    examples.insert(examples.end(), here.begin(), here.end());
+  }
+  return examples;
+}
+
+void run(const LearnOptions& options) {
+  const quality::Learnt learnt = quality::learn_quality(gather(options));
+  const quality::Published published = quality::published_from(learnt.checked, learnt.settings.least);
+  fmt::print(
+      "// {} poses in {} scenes, {} right; from {:.2f} on {} of {} right in scenes that the fit has not seen\n{}",
+      learnt.examples, learnt.scenes, learnt.right, learnt.settings.least, published.right, published.poses,
+      quality::to_initialisers(learnt.settings));
+  if (!options.out.empty()) write_json(quality::to_json(learnt), options.out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine app("Learns QualitySettings, by which a pose's evidence becomes the probability that it is right",
+                  "hs-learn-quality");
+  LearnOptions options;
+  options.search.threshold = PoseSettings{}.min_score;
+  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--scene", options.scenes, "BOP scene folder with the truth; at least four, whose truth decides")
+      .required();
+  app.add_option("--models", options.models, "models/ of a BOP dataset, millimetres").required();
+  app.add_option("--out", options.out,
+                 "JSON file with the numbers, and how many poses are right from which quality on");
+  app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
+  add_search_options(app, options.search);
+  app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
+  return run_tool(app, argc, argv, [&] { run(options); });
+}

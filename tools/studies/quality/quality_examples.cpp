@@ -1,0 +1,76 @@
+#include "tools/studies/quality/quality_examples.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace houghstream::quality {
+namespace {
+
+PoseSettings withholding_none(int threads) {
+  PoseSettings settings;
+  settings.threads = threads;
+  settings.quality.least = 0.0F;
+  return settings;
+}
+
+}  // namespace
+
+std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models) {
+  std::vector<Example> examples;
+  for (const auto& [name, model] : models) {
+    for (const JudgedDetection& judged : judge_detections(found.frames, name, DetectionRules{})) {
+      const std::optional<QualityTerms>& terms = found.terms[judged.frame][judged.index];
+      if (!terms || judged.verdict == Verdict::kIgnored) continue;
+      Example example{found.scene, *terms, false};
+      if (judged.verdict == Verdict::kTrue) {
+        const EvaluatedFrame& frame = found.frames[judged.frame];
+        const TrueObject& truth = frame.objects[judged.object].truth;
+        if (!truth.has_pose) continue;
+        const Eigen::Isometry3d& T_camera_object = *frame.poses->poses[judged.index].T_camera_object;
+        const double error = add_s_error(model.points, T_camera_object, truth.T_camera_object);
+        example.is_right = error < kRightBelow * model.diameter;
+      }
+      examples.push_back(std::move(example));
+    }
+  }
+  return examples;
+}
+
+PoseFinder::PoseFinder(const std::map<std::string, Mesh>& models, int threads)
+    : settings_(withholding_none(threads)), estimator_(models, settings_) {
+  for (const auto& [name, mesh] : models) models_.emplace(name, make_object_model(name, mesh, settings_.model));
+}
+
+FoundPoses PoseFinder::find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const {
+  FoundPoses found{name, every_nth(read_truth(scene, find_bop_names(scene.folder())), every), {}};
+  for (EvaluatedFrame& truth : found.frames) {
+    const RgbdFrame frame = scene.read_frame(truth.image);
+    truth.detections = detector.detect(frame);
+    truth.poses = estimator_.estimate(frame, *truth.detections);
+    found.terms.push_back(terms_of(frame, *truth.detections, *truth.poses));
+  }
+  return found;
+}
+
+std::vector<std::optional<QualityTerms>> PoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,
+                                                              const ObjectPoses& poses) const {
+  std::vector<std::optional<QualityTerms>> all;
+  for (const ObjectPose& pose : poses.poses) {
+    std::optional<QualityTerms>& terms = all.emplace_back();
+    if (!pose.T_camera_object) continue;
+    const Detection& detection = detections.detections[pose.detection_index];
+    const SeenObject seen =
+        see_object(frame, detection, models_.at(pose.class_name), settings_.region, settings_.noise);
+    terms = quality_terms(gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification),
+                          settings_.quality);
+    if (pose_quality(*terms, settings_.quality) != pose.quality) {
+      throw std::logic_error(
+          fmt::format("pose of {}: not judged by the evidence that is learnt from", pose.class_name));
+    }
+  }
+  return all;
+}
+
+}  // namespace houghstream::quality

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "detector/detector.hpp"
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pose/pose_estimator.hpp"
+#include "tools/evaluate/metrics/pose_metrics.hpp"
+#include "tools/studies/quality/quality_fit.hpp"
+
+namespace houghstream::quality {
+
+/// Frames of a scene with detections and poses, one pose for each detection in their order, and what each pose is
+/// judged by: by frame and detection, nothing where there is no pose.
+struct FoundPoses {
+  std::string scene;
+  std::vector<EvaluatedFrame> frames;
+  std::vector<std::vector<std::optional<QualityTerms>>> terms;
+};
+
+/// The poses of the classes with a model beside the truth. Those of detections that are neither true nor false, and of
+/// objects whose truth has no pose, are left out.
+std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models);
+
+/// Finds poses and withholds none, and says what each would be judged by.
+class PoseFinder {
+ public:
+  /// Models by class name, metres. `threads` as PoseSettings::threads.
+  PoseFinder(const std::map<std::string, Mesh>& models, int threads);
+
+  /// Detects in frames 0, N, 2N, ... of a scene and finds the detections' poses.
+  FoundPoses find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const;
+
+ private:
+  std::vector<std::optional<QualityTerms>> terms_of(const RgbdFrame& frame, const Detections& detections,
+                                                    const ObjectPoses& poses) const;
+
+  PoseSettings settings_;
+  PoseEstimator estimator_;
+  std::map<std::string, ObjectModel> models_;
+};
+
+}  // namespace houghstream::quality

@@ -1,0 +1,174 @@
+#include "tools/studies/quality/quality_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/logistic_regression.hpp"
+
+namespace houghstream::quality {
+namespace {
+
+constexpr int kWeights = 1 + static_cast<int>(kQualityTerms.size());  // the bias first
+constexpr double kRightShare = 0.98;
+constexpr int kParts = 4;
+constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
+
+/// As QualityTerms names them, in the order of kQualityTerms.
+constexpr std::array<const char*, kQualityTerms.size()> kNames = {
+    "detection_log_odds", "seen_through", "visible", "outline", "chroma_shift", "contrast"};
+
+LogisticExample<kWeights> to_logistic(const Example& example) {
+  LogisticExample<kWeights> out;
+  out.is_true = example.is_right;
+  out.terms[0] = 1.0;
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) {
+    out.terms[static_cast<Eigen::Index>(i) + 1] = example.terms.*kQualityTerms[i];
+  }
+  return out;
+}
+
+QualityTerms mean_of_right(const std::vector<Example>& examples) {
+  QualityTerms sum;
+  int count = 0;
+  for (const Example& example : examples) {
+    if (!example.is_right) continue;
+    ++count;
+    for (const auto term : kQualityTerms) sum.*term += example.terms.*term;
+  }
+  for (const auto term : kQualityTerms) sum.*term /= count;
+  return sum;
+}
+
+std::vector<std::string> scenes_of(const std::vector<Example>& examples) {
+  std::vector<std::string> scenes;
+  for (const Example& example : examples) {
+    if (std::find(scenes.begin(), scenes.end(), example.scene) == scenes.end()) scenes.push_back(example.scene);
+  }
+  return scenes;
+}
+
+int count_right(const std::vector<Example>& examples) {
+  return static_cast<int>(
+      std::count_if(examples.begin(), examples.end(), [](const Example& example) { return example.is_right; }));
+}
+
+std::string to_braces(const QualityTerms& terms) {
+  std::string text;
+  for (const auto term : kQualityTerms) text += fmt::format("{}{:.2f}", text.empty() ? "" : ", ", terms.*term);
+  return "{" + text + "}";
+}
+
+OrderedJson to_json(const QualityTerms& terms) {
+  OrderedJson out = OrderedJson::object();
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) out[kNames[i]] = terms.*kQualityTerms[i];
+  return out;
+}
+
+float round_quality(int step) {
+  return static_cast<float>(step) / kRoundSteps;
+}
+
+}  // namespace
+
+QualitySettings fit_quality(const std::vector<Example>& examples) {
+  const int right = count_right(examples);
+  require(right > 0 && right < static_cast<int>(examples.size()), "{} poses, {} of them right, expected both kinds",
+          examples.size(), right);
+  std::vector<LogisticExample<kWeights>> logistic_examples;
+  for (const Example& example : examples) logistic_examples.push_back(to_logistic(example));
+  LogisticPrior<kWeights> prior;
+  prior.stiffness = 1e-3;  // decides nothing but keeps the weights finite
+  const Eigen::Matrix<double, kWeights, 1> weights = fit_logistic<kWeights>(logistic_examples, prior);
+  QualitySettings settings;
+  settings.bias = weights[0];
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) {
+    settings.weights.*kQualityTerms[i] = weights[static_cast<Eigen::Index>(i) + 1];
+  }
+  settings.typical = mean_of_right(examples);
+  return settings;
+}
+
+std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, int parts) {
+  const std::vector<std::string> scenes = scenes_of(examples);
+  require(static_cast<int>(scenes.size()) >= parts,
+          "poses of {} scenes, expected at least {} to judge each part by the others", scenes.size(), parts);
+  std::vector<CheckedPose> checked;
+  for (int part = 0; part < parts; ++part) {
+    const auto is_judged = [&](const Example& example) {
+      const auto at = std::find(scenes.begin(), scenes.end(), example.scene) - scenes.begin();
+      return at % parts == part;
+    };
+    std::vector<Example> others;
+    std::copy_if(examples.begin(), examples.end(), std::back_inserter(others),
+                 [&](const Example& example) { return !is_judged(example); });
+    const QualitySettings settings = fit_quality(others);
+    for (const Example& example : examples) {
+      if (is_judged(example)) checked.push_back({pose_quality(example.terms, settings), example.is_right});
+    }
+  }
+  return checked;
+}
+
+double Published::right_share() const {
+  return poses > 0 ? static_cast<double>(right) / poses : std::numeric_limits<double>::quiet_NaN();
+}
+
+Published published_from(const std::vector<CheckedPose>& checked, float least) {
+  Published out;
+  for (const CheckedPose& pose : checked) {
+    if (pose.quality < least) continue;
+    ++out.poses;
+    out.right += pose.is_right ? 1 : 0;
+  }
+  return out;
+}
+
+std::optional<float> least_quality(const std::vector<CheckedPose>& checked, double right_share) {
+  for (int step = 1; step < kRoundSteps; ++step) {
+    if (published_from(checked, round_quality(step)).right_share() >= right_share) return round_quality(step);
+  }
+  return std::nullopt;
+}
+
+Learnt learn_quality(const std::vector<Example>& examples) {
+  Learnt learnt;
+  learnt.scenes = static_cast<int>(scenes_of(examples).size());
+  learnt.examples = static_cast<int>(examples.size());
+  learnt.right = count_right(examples);
+  learnt.settings = fit_quality(examples);
+  learnt.checked = check_by_scene(examples, kParts);
+  const std::optional<float> least = least_quality(learnt.checked, kRightShare);
+  require(least.has_value(), "{} poses: from no quality are {:.0f} % of those in unseen scenes right", examples.size(),
+          100.0 * kRightShare);
+  learnt.settings.least = *least;
+  return learnt;
+}
+
+std::string to_initialisers(const QualitySettings& settings) {
+  return fmt::format(
+      "double bias = {:.2f};\nQualityTerms weights = {};\nQualityTerms typical = {};\nfloat least = {:.2f}F;\n",
+      settings.bias, to_braces(settings.weights), to_braces(settings.typical), settings.least);
+}
+
+OrderedJson to_json(const Learnt& learnt) {
+  OrderedJson out = {{"scenes", learnt.scenes}, {"examples", learnt.examples}, {"right", learnt.right}};
+  out["bias"] = learnt.settings.bias;
+  out["weights"] = to_json(learnt.settings.weights);
+  out["typical"] = to_json(learnt.settings.typical);
+  out["least"] = learnt.settings.least;
+  out["published"] = OrderedJson::array();
+  for (int step = 1; step < kRoundSteps; ++step) {
+    const Published published = published_from(learnt.checked, round_quality(step));
+    out["published"].push_back({{"from", round_quality(step)},
+                                {"poses", published.poses},
+                                {"right", published.right},
+                                {"right_share", finite_or_null(published.right_share())}});
+  }
+  return out;
+}
+
+}  // namespace houghstream::quality

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/files/json_file.hpp"
+#include "pose/verification/quality.hpp"
+
+namespace houghstream::quality {
+
+/// A pose that was found in a scene, judged by the truth.
+struct Example {
+  std::string scene;
+  QualityTerms terms;
+  bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
+};
+
+/// Bias, weights and typical values of the examples; `least` is the default's. Throws InputError unless some are right
+/// and some are wrong.
+QualitySettings fit_quality(const std::vector<Example>& examples);
+
+/// A pose with the quality that a fit which has not seen its scene gives it.
+struct CheckedPose {
+  float quality = 0.0F;
+  bool is_right = false;
+};
+
+/// Every `parts`-th scene, in the order in which the examples bring them, is judged by a fit of the others, until all
+/// are. Throws InputError where there are fewer scenes than parts, and as fit_quality().
+std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, int parts);
+
+/// What is published from a quality on.
+struct Published {
+  int poses = 0;
+  int right = 0;
+  double right_share() const;  ///< NaN without poses
+};
+Published published_from(const std::vector<CheckedPose>& checked, float least);
+
+/// The smallest of 0.05, 0.1, ... 0.95 from which at least this share of the poses is right; nothing where none is.
+std::optional<float> least_quality(const std::vector<CheckedPose>& checked, double right_share);
+
+/// What hs-learn-quality learnt.
+struct Learnt {
+  int scenes = 0;
+  int examples = 0;
+  int right = 0;
+  QualitySettings settings;
+  std::vector<CheckedPose> checked;
+};
+
+/// fit_quality(), and its `least` by four parts of the scenes. Throws InputError as those, and where no quality is
+/// enough for 98 %.
+Learnt learn_quality(const std::vector<Example>& examples);
+
+/// The initialisers of QualitySettings' members in C++.
+std::string to_initialisers(const QualitySettings& settings);
+
+/// {"scenes", "examples", "right", "bias", "weights": {TERM: }, "typical": {TERM: }, "least", "published": [{"from",
+/// "poses", "right", "right_share"}]}; the last of scenes that the fit has not seen.
+OrderedJson to_json(const Learnt& learnt);
+
+}  // namespace houghstream::quality
