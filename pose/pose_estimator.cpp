@@ -56,7 +56,7 @@ ObjectPose estimate_one(const RgbdFrame& frame, const Detection& detection, cons
 
   const std::vector<RotationCandidate> rotations = rotation_clusters(detection.rotations, settings.initial);
   std::vector<PoseCandidate> candidates = place_candidates(frame, *model, detection.centre_camera, rotations, settings);
-  const std::vector<PoseCandidate> warm = earlier_candidates(frame.utime, detection, earlier, settings.warm_start);
+  const std::vector<PoseCandidate> warm = earlier_candidates(frame.id.utime, detection, earlier, settings.warm_start);
   candidates.insert(candidates.end(), warm.begin(), warm.end());
   if (candidates.empty()) return without(PoseStatus::kNoInitialPose);
 
@@ -96,14 +96,14 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
 
 ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections,
                                     const ObjectPoses& earlier) const {
-  if (frame.utime != detections.utime) {
-    throw std::logic_error(fmt::format("detections of frame {} given with frame {}", detections.utime, frame.utime));
+  if (frame.id != detections.frame) {
+    throw std::logic_error(
+        fmt::format("detections of frame {} given with frame {}", to_string(detections.frame), to_string(frame.id)));
   }
   check_frame(frame, "pose estimation");
   StageClock clock;
   ObjectPoses result;
-  result.utime = detections.utime;
-  result.source_channel = detections.source_channel;
+  result.frame = detections.frame;
   result.stages = detections.stages;
   const int count = static_cast<int>(detections.detections.size());
   result.poses.resize(detections.detections.size());

@@ -21,7 +21,7 @@ class PoseEstimator {
   PoseEstimator(PoseEstimator&&) noexcept;
 
   /// One ObjectPose per detection, in their order; stage times "pose.*" are appended to those of the detections.
-  /// The detections must be of this frame (same utime); throws std::logic_error otherwise.
+  /// The detections must be of this frame (same name); throws std::logic_error otherwise.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 
   /// The same with the poses of an earlier frame (warm start): they are candidates beside those of the votes, never the
