@@ -26,7 +26,7 @@ Detections Detector::detect(const RgbdFrame& frame) const {
   check_frame(frame, "detector");
   StageClock clock;
   Detections out;
-  out.utime = frame.utime;
+  out.frame = frame.id;
   for (Candidate& candidate : find_candidates(state_->forest, frame, settings, clock)) {
     if (candidate.detection.score >= settings.threshold) out.detections.push_back(std::move(candidate.detection));
   }

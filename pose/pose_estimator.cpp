@@ -26,8 +26,7 @@ struct Estimation {
 
 ObjectPoses undecided_poses(const Detections& detections) {
   ObjectPoses poses;
-  poses.utime = detections.utime;
-  poses.source_channel = detections.source_channel;
+  poses.frame = detections.frame;
   poses.stages = detections.stages;
   for (const Detection& detection : detections.detections) {
     ObjectPose pose;
@@ -129,8 +128,9 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
 
 ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections,
                                     const ObjectPoses& earlier) const {
-  if (frame.utime != detections.utime) {
-    throw std::logic_error(fmt::format("detections of frame {} given with frame {}", detections.utime, frame.utime));
+  if (frame.id != detections.frame) {
+    throw std::logic_error(
+        fmt::format("detections of frame {} given with frame {}", to_string(detections.frame), to_string(frame.id)));
   }
   check_frame(frame, "pose estimation");
   const PoseSettings& settings = state_->settings;
@@ -145,7 +145,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
 
   for_each_undecided([&](Estimation& it) { look_at_region(frame, settings, it); });
   clock.mark("pose.region");
-  for_each_undecided([&](Estimation& it) { find_candidates(frame.utime, earlier, settings, it); });
+  for_each_undecided([&](Estimation& it) { find_candidates(frame.id.utime, earlier, settings, it); });
   clock.mark("pose.candidates");
   for_each_undecided(
       [&](Estimation& it) { it.registered = register_candidates(*it.seen, it.candidates, settings.registration); });

@@ -28,7 +28,7 @@ class PoseEstimator {
 
   /// One ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice and pose.verification are appended to those of the detections.
-  /// The detections must be of this frame (same utime); throws std::logic_error otherwise, and InputError for a frame
+  /// The detections must be of this frame (same name); throws std::logic_error otherwise, and InputError for a frame
   /// that is none.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections) const;
 

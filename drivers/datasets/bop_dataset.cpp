@@ -129,7 +129,7 @@ RgbdFrame BopScene::read_frame(std::size_t index) const {
   const BopImage& image = images_.at(index);
   const fs::path depth_file = folder_ / "depth" / fmt::format("{:06d}.png", image.image_id);
   RgbdFrame frame;
-  frame.utime = dataset_utime(index);
+  frame.id.utime = dataset_utime(index);
   frame.camera = image.camera;
   frame.colour = read_colour_image(colour_file(folder_, image.image_id));
   // Missing depth is NaN, and stays NaN under the scale.

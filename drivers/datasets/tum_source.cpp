@@ -81,7 +81,7 @@ class TumSource : public FrameSource {
     const TumPair& pair = pairs_[index_++];
     constexpr double kMillimetresPerStep = 0.2;
     RgbdFrame frame;
-    frame.utime = pair.depth.utime;
+    frame.id.utime = pair.depth.utime;
     frame.camera = camera_;
     frame.colour = read_colour_image(pair.colour.file);
     frame.depth = depth_from_millimetres(read_depth_image(pair.depth.file)) * kMillimetresPerStep;

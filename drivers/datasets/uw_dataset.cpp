@@ -125,7 +125,7 @@ TrainingView read_view(const Instance& instance, const ViewName& name, const Cam
   view.source = prefix;
   view.class_name = instance.class_name;
   view.object_frame = fmt::format("{}_{}", instance.name, name.video);
-  view.frame.utime = dataset_utime(static_cast<std::size_t>(name.number));
+  view.frame.id.utime = dataset_utime(static_cast<std::size_t>(name.number));
   view.frame.colour = read_colour_image(prefix + "_crop.png");
   view.frame.depth = depth_from_millimetres(read_depth_image(prefix + "_depthcrop.png"));
   view.mask = read_mask_image(prefix + "_maskcrop.png");

@@ -76,7 +76,7 @@ std::vector<fs::path> list_frame_folders(const fs::path& folder) {
 
 RgbdFrame read_frame_pair(const FramePair& pair, const Camera& camera, std::int64_t utime) {
   RgbdFrame frame;
-  frame.utime = utime;
+  frame.id.utime = utime;
   frame.camera = camera;
   frame.colour = read_colour_image(pair.colour);
   frame.depth = depth_from_millimetres(read_depth_image(pair.depth));

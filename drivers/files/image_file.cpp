@@ -3,13 +3,14 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/image_decoding.hpp"
 
 namespace houghstream {
 namespace {
 
 cv::Mat read_image(const std::filesystem::path& file, int mode) {
   require(std::filesystem::is_regular_file(file), "{}: no such file, expected an image", file.string());
-  cv::Mat image = cv::imread(file.string(), mode);
+  cv::Mat image = decode_image_file(file, mode);
   require(!image.empty(), "{}: cannot be decoded, expected an image", file.string());
   return image;
 }

@@ -18,7 +18,7 @@ inline std::int64_t pairing_tolerance_us(const CameraMode& mode) {
 
 inline RgbdFrame frame_of_pair(const ImagePair& pair, const Camera& camera, std::int64_t utime) {
   RgbdFrame frame;
-  frame.utime = utime;
+  frame.id.utime = utime;
   frame.colour = pair.colour.image;
   frame.depth = depth_from_millimetres(pair.depth.image);
   frame.camera = camera;

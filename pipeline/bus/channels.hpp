@@ -10,9 +10,14 @@ inline const std::string kPoses = "HOUGHSTREAM_POSES";            ///< object_po
 inline const std::string kStatus = "HOUGHSTREAM_STATUS";          ///< status_t, 1 Hz, every process
 inline const std::string kPreview = "HOUGHSTREAM_PREVIEW";        ///< image_t, MJPEG below 100 kB
 
-/// "cereal_box" -> "CEREAL_BOX_TO_CAMERA", the channel of its rigid_transform_t. Anything but letters and digits
-/// becomes '_', and a long name is cut: LCM takes 63 bytes.
-std::string to_camera(const std::string& class_name);
+/// The channel of an object's rigid_transform_t: "cereal_box" -> "CEREAL_BOX_TO_CAMERA" where there is one camera, and
+/// with the channel of the camera's frames, where there are several, "cereal_box", "left-cam" ->
+/// "CEREAL_BOX_TO_LEFT_CAM". Anything but letters and digits becomes '_', and long names are cut: LCM takes 63 bytes.
+/// A camera's name that is cut ends with a number made of all of it, so that two cameras stay two.
+std::string to_camera(const std::string& class_name, const std::string& camera_channel = "");
+
+/// The camera's part of that.
+std::string camera_name(const std::string& camera_channel);
 
 }  // namespace houghstream::channel
 

@@ -10,8 +10,10 @@
 #include <mutex>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
@@ -33,22 +35,26 @@ std::string complete_url(const std::string& url) {
 }
 
 struct Subscription {
-  std::string channel;
+  ChannelPattern channels;
   LcmBus::Handler handler;
+  LimitedLines& complaints;
 };
 
 // Nothing thrown may cross LCM's callback, which is C.
-void call_handler(const Subscription& subscription, const std::string& channel, ByteView bytes) noexcept {
+void call_handler(const Subscription& subscription, const Arrival& arrival) noexcept {
   try {
-    subscription.handler({channel, bytes, std::chrono::steady_clock::now()});
+    if (subscription.channels.matches(arrival.channel)) subscription.handler(arrival);
   } catch (const std::exception& error) {
-    log_error("message on {} dropped: {}", channel, error.what());
+    const std::string line = fmt::format("message on {} dropped: {}", arrival.channel, error.what());
+    const std::optional<std::string> admitted = subscription.complaints.admit(arrival.channel, line, arrival.time);
+    if (admitted) log_line(LogLevel::kError, *admitted);
   }
 }
 
 void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* subscription) {
-  call_handler(*static_cast<const Subscription*>(subscription), channel,
-               {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+  const ByteView bytes{static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
+  call_handler(*static_cast<const Subscription*>(subscription),
+               {channel, bytes, std::chrono::steady_clock::now(), buffer->recv_utime});
 }
 
 struct LcmCloser {
@@ -59,6 +65,7 @@ struct LcmCloser {
 
 struct LcmBus::State {
   std::string url;
+  LimitedLines complaints;                // of handlers
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
   std::optional<LogReader> input_log;
   std::mutex output_mutex;
@@ -85,15 +92,20 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(s
   }
 }
 
-LcmBus::~LcmBus() = default;
+LcmBus::~LcmBus() {
+  const std::int64_t held_back = state_->complaints.held_back();
+  if (held_back > 0) log_error("{} more messages dropped", held_back);
+}
 
-void LcmBus::subscribe(const std::string& channel, Handler handler) {
-  state_->subscriptions.push_back({channel, std::move(handler)});
+void LcmBus::subscribe(const std::string& channels, Handler handler) {
+  state_->subscriptions.push_back({ChannelPattern(channels), std::move(handler), state_->complaints});
   if (is_log()) return;
   const BlockStopSignals block;
+  // LCM puts ^ and $ around it, which would belong to the first and the last alternative only.
+  const std::string whole = state_->subscriptions.back().channels.is_name() ? channels : "(" + channels + ")";
   lcm_subscription_t* subscription =
-      lcm_subscribe(state_->lcm.get(), channel.c_str(), on_message, &state_->subscriptions.back());
-  require(subscription != nullptr, "{}: cannot subscribe to {}; is there a multicast route?", state_->url, channel);
+      lcm_subscribe(state_->lcm.get(), whole.c_str(), on_message, &state_->subscriptions.back());
+  require(subscription != nullptr, "{}: cannot subscribe to {}; is there a multicast route?", state_->url, channels);
   lcm_subscription_set_queue_capacity(subscription, kQueueCapacity);
 }
 
@@ -101,10 +113,9 @@ bool LcmBus::handle(std::chrono::milliseconds timeout) {
   if (is_log()) {
     const std::optional<LogEvent> event = state_->input_log->next();
     if (!event) return false;
+    const ByteView bytes{event->data.data(), event->data.size()};
     for (const Subscription& subscription : state_->subscriptions) {
-      if (subscription.channel == event->channel) {
-        call_handler(subscription, event->channel, {event->data.data(), event->data.size()});
-      }
+      call_handler(subscription, {event->channel, bytes, std::chrono::steady_clock::now(), event->timestamp});
     }
     return true;
   }

@@ -11,11 +11,12 @@
 
 namespace houghstream {
 
-/// A message as it arrived; the bytes are valid during the handler's call only.
+/// A message as it arrived; valid during the handler's call only.
 struct Arrival {
   const std::string& channel;
   ByteView bytes;
   std::chrono::steady_clock::time_point time;
+  std::int64_t event_us = 0;  ///< when it was received, microseconds since the epoch; of a log, the event's time
 };
 
 /// Where messages come from and go to: an LCM network, or, for a file:// URL, a log that is read event by event and
@@ -30,9 +31,10 @@ class LcmBus {
   explicit LcmBus(const std::string& url, const std::string& output_log = "");
   ~LcmBus();
 
-  /// Calls `handler` for every message of the channel, from within handle(). What the handler throws is logged.
-  /// Throws InputError where the network cannot be used.
-  void subscribe(const std::string& channel, Handler handler);
+  /// Calls `handler` for every message of the channels (a ChannelPattern), from within handle(). What the handler
+  /// throws is logged, one line a second for each channel. Throws InputError where the network cannot be used, or the
+  /// pattern is none.
+  void subscribe(const std::string& channels, Handler handler);
 
   /// Network: waits for one message and handles it, or for `timeout`. Log: handles the next event. False at the end
   /// of a log. Throws InputError where the log is damaged.

@@ -24,11 +24,12 @@ void StatusReporter::count_received() {
   ++received_;
 }
 
-void StatusReporter::note_sequence(std::optional<std::int64_t> sequence) {
+void StatusReporter::note_sequence(std::optional<std::int64_t> sequence, const std::string& source) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!sequence) return;
-  if (last_sequence_ && *sequence > *last_sequence_) lost_ += *sequence - *last_sequence_ - 1;
-  last_sequence_ = sequence;
+  const auto [last, is_first] = last_sequences_.emplace(source, *sequence);
+  if (!is_first && *sequence > last->second) lost_ += *sequence - last->second - 1;
+  last->second = *sequence;
 }
 
 void StatusReporter::count_skipped(std::int64_t frames) {
@@ -44,21 +45,21 @@ void StatusReporter::count_processed(Clock::duration latency) {
   while (recent_.front().time < now - kLatencyWindow) recent_.pop_front();
 }
 
-void StatusReporter::count_refused(const std::string& reason) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++refused_;
-  }
-  note_error(reason);
+void StatusReporter::count_refused(const std::string& reason, const std::string& kind) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++refused_;
+  complain(kind, reason);
 }
 
-void StatusReporter::note_error(const std::string& reason) {
+void StatusReporter::note_bad_message(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  ++bad_messages_;
+  complain("other message", reason);
+}
+
+void StatusReporter::complain(const std::string& kind, const std::string& reason) {
   last_error_ = reason;
-  const Clock::time_point now = Clock::now();
-  if (last_complaint_ && now - *last_complaint_ < kPeriod) return;
-  last_complaint_ = now;
-  log_warning("{} ({} refused so far)", reason, refused_);
+  if (const auto line = complaints_.admit(kind, reason, Clock::now())) log_line(LogLevel::kWarning, *line);
 }
 
 void StatusReporter::remember_error(const std::string& reason) {
@@ -82,7 +83,7 @@ status_t StatusReporter::message() const {
   status.frames_received = received_;
   status.frames_processed = processed_;
   status.frames_skipped = skipped_;
-  status.frames_lost = last_sequence_ ? lost_ : -1;
+  status.frames_lost = last_sequences_.empty() ? -1 : lost_;
   status.frames_refused = refused_;
   status.latency_p50_ms = static_cast<float>(latency.p50);
   status.latency_p95_ms = static_cast<float>(latency.p95);
@@ -103,8 +104,10 @@ void StatusReporter::publish_if_due(LcmBus& bus) {
 std::string StatusReporter::summary() const {
   const status_t status = message();
   const std::string lost = status.frames_lost < 0 ? "unknown" : std::to_string(status.frames_lost);
-  return fmt::format("{} received, {} processed, {} skipped, {} lost, {} refused", status.frames_received,
-                     status.frames_processed, status.frames_skipped, lost, status.frames_refused);
+  std::string line = fmt::format("{} received, {} processed, {} skipped, {} lost, {} refused", status.frames_received,
+                                 status.frames_processed, status.frames_skipped, lost, status.frames_refused);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return bad_messages_ == 0 ? line : line + fmt::format("; {} other bad messages", bad_messages_);
 }
 
 }  // namespace houghstream

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <deque>
 #include <houghstream/status_t.hpp>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 
 namespace houghstream {
@@ -22,15 +24,16 @@ class StatusReporter {
   explicit StatusReporter(std::string process);
 
   void count_received();
-  /// The source's number of a frame that has arrived. A jump counts as lost frames; a step back is a new run.
-  void note_sequence(std::optional<std::int64_t> sequence);
+  /// The source's number of a frame that has arrived. A jump counts as lost frames; a step back is a new run. Each
+  /// source (a camera's channel) counts its own.
+  void note_sequence(std::optional<std::int64_t> sequence, const std::string& source = "");
   void count_skipped(std::int64_t frames);
   /// `latency` is from the frame's arrival in this process until its result was published.
   void count_processed(Clock::duration latency);
-  /// A frame that could not be worked on.
-  void count_refused(const std::string& reason);
-  /// Remembers the last error, and logs it, but no more than one a second.
-  void note_error(const std::string& reason);
+  /// A frame that could not be worked on. The error is remembered, and logged: one line a second of each `kind`.
+  void count_refused(const std::string& reason, const std::string& kind = "");
+  /// Another message than a frame that could not be understood: it is counted apart.
+  void note_bad_message(const std::string& reason);
   /// Remembers the last error, which somebody else has logged.
   void remember_error(const std::string& reason);
 
@@ -43,6 +46,8 @@ class StatusReporter {
   std::string summary() const;
 
  private:
+  void complain(const std::string& kind, const std::string& reason);
+
   struct Finished {
     Clock::time_point time;
     double latency_ms = 0.0;
@@ -55,11 +60,12 @@ class StatusReporter {
   std::int64_t skipped_ = 0;
   std::int64_t lost_ = 0;
   std::int64_t refused_ = 0;
-  std::optional<std::int64_t> last_sequence_;
+  std::int64_t bad_messages_ = 0;
+  std::map<std::string, std::int64_t> last_sequences_;  // by source
   std::string last_error_;
   std::deque<Finished> recent_;  // of the last few seconds
   Clock::time_point last_published_ = Clock::now();
-  std::optional<Clock::time_point> last_complaint_;
+  LimitedLines complaints_;
 };
 
 }  // namespace houghstream

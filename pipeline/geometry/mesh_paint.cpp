@@ -4,6 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/image_decoding.hpp"
 
 namespace houghstream {
 namespace {
@@ -15,7 +16,7 @@ bool is_textured(const MeshPart& part) {
 }
 
 cv::Mat read_texture(const fs::path& texture_file, const fs::path& file) {
-  cv::Mat texture = cv::imread(texture_file.string(), cv::IMREAD_COLOR);
+  cv::Mat texture = decode_image_file(texture_file, cv::IMREAD_COLOR);
   require(!texture.empty(), "{}: missing or unreadable, expected the texture of {}", texture_file.string(),
           file.string());
   return texture;

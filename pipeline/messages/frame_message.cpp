@@ -52,7 +52,7 @@ std::vector<std::uint8_t> encode_camera(const Camera& camera) {
 
 image_t empty_image(const RgbdFrame& frame) {
   image_t image{};
-  image.utime = frame.utime;
+  image.utime = frame.id.utime;
   image.width = frame.colour.cols;
   image.height = frame.colour.rows;
   return image;
@@ -183,15 +183,16 @@ FoundImages find_images(const images_t& message) {
   return found;
 }
 
-ImagePair decode_images(const images_t& message) {
+FrameImages decode_images(const images_t& message) {
   const FoundImages found = find_images(message);
   return {decode_colour(found.colour), decode_depth(found.depth, found.zipped_depth)};
 }
 
-RgbdFrame decode_frame(const images_t& message, const std::optional<Camera>& fallback_camera) {
+RgbdFrame decode_frame(const images_t& message, const std::string& channel,
+                       const std::optional<Camera>& fallback_camera) {
   const FoundImages found = find_images(message);
   RgbdFrame frame;
-  frame.utime = message.utime;
+  frame.id = {channel, message.utime};
   frame.camera = camera_or(message, fallback_camera);
   frame.stages = stages_of(message);
   parallel_for(2, 2, [&](int image) {
@@ -204,11 +205,11 @@ RgbdFrame decode_frame(const images_t& message, const std::optional<Camera>& fal
 
 /// What `decode` gives of a message; its errors name the frame.
 template <typename Decode>
-auto decode_named(const images_t& message, const Decode& decode) {
+auto decode_named(const FrameId& frame, const Decode& decode) {
   try {
     return decode();
   } catch (const InputError& error) {
-    fail("frame {}: {}", message.utime, error.what());
+    fail("frame {}: {}", to_string(frame), error.what());
   }
 }
 
@@ -217,7 +218,7 @@ auto decode_named(const images_t& message, const Decode& decode) {
 images_t to_message(const RgbdFrame& frame, const WireFormat& format, std::int64_t sequence) {
   check_frame(frame, "frame to send");
   images_t message{};
-  message.utime = frame.utime;
+  message.utime = frame.id.utime;
   message.n_images = 2;
   const std::int16_t depth_type = format.zip_depth ? images_t::DEPTH_MM_ZIPPED : images_t::DEPTH_MM;
   message.image_types = {images_t::LEFT, depth_type};
@@ -238,12 +239,13 @@ void add_sequence(images_t& message, std::int64_t sequence) {
   add_metadata(message, metadata::kSequence, {counter.begin(), counter.end()});
 }
 
-RgbdFrame frame_from_message(const images_t& message, const std::optional<Camera>& fallback_camera) {
-  return decode_named(message, [&] { return decode_frame(message, fallback_camera); });
+RgbdFrame frame_from_message(const images_t& message, const std::string& channel,
+                             const std::optional<Camera>& fallback_camera) {
+  return decode_named({channel, message.utime}, [&] { return decode_frame(message, channel, fallback_camera); });
 }
 
-ImagePair images_from_message(const images_t& message) {
-  return decode_named(message, [&] { return decode_images(message); });
+FrameImages images_from_message(const images_t& message) {
+  return decode_named({"", message.utime}, [&] { return decode_images(message); });
 }
 
 std::optional<Camera> camera_of(const images_t& message) {

@@ -33,17 +33,19 @@ void add_camera(houghstream::images_t& message, const Camera& camera);
 void add_sequence(houghstream::images_t& message, std::int64_t sequence);
 
 /// Finds colour (LEFT: RGB, BGR, RGBA, BGRA, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them
-/// and checks sizes. The camera comes from the metadata, else from `fallback_camera`, else the frame is refused.
-RgbdFrame frame_from_message(const houghstream::images_t& message, const std::optional<Camera>& fallback_camera);
+/// and checks sizes. `channel` is the one that the message came on: it is half of the frame's name. The camera comes
+/// from the metadata, else from `fallback_camera`, else the frame is refused.
+RgbdFrame frame_from_message(const houghstream::images_t& message, const std::string& channel,
+                             const std::optional<Camera>& fallback_camera);
 
 /// Colour and depth of a frame as they travel; equal sizes.
-struct ImagePair {
+struct FrameImages {
   cv::Mat colour;    ///< CV_8UC3, BGR
   cv::Mat depth_mm;  ///< CV_16UC1, 0 = none
 };
 
 /// What frame_from_message() finds, of frames without a camera too.
-ImagePair images_from_message(const houghstream::images_t& message);
+FrameImages images_from_message(const houghstream::images_t& message);
 
 /// The camera that the message carries, unchecked, if any. Throws InputError where its bytes are none.
 std::optional<Camera> camera_of(const houghstream::images_t& message);

@@ -156,8 +156,8 @@ ObjectPose pose_from_message(const object_pose_t& message) {
 
 detections_t to_message(const Detections& detections) {
   detections_t message{};
-  message.utime = detections.utime;
-  message.source_channel = detections.source_channel;
+  message.utime = detections.frame.utime;
+  message.source_channel = detections.frame.channel;
   for (const Detection& detection : detections.detections) {
     message.detections.push_back(detection_to_message(detection));
   }
@@ -169,20 +169,19 @@ detections_t to_message(const Detections& detections) {
 Detections detections_from_message(const detections_t& message) {
   try {
     Detections out;
-    out.utime = message.utime;
-    out.source_channel = message.source_channel;
+    out.frame = {message.source_channel, message.utime};
     for (const detection_t& detection : message.detections) out.detections.push_back(detection_from_message(detection));
     out.stages = stages_from(message.stages);
     return out;
   } catch (const InputError& error) {
-    fail("detections of frame {}: {}", message.utime, error.what());
+    fail("detections of frame {}: {}", to_string(FrameId{message.source_channel, message.utime}), error.what());
   }
 }
 
 object_poses_t to_message(const ObjectPoses& poses) {
   object_poses_t message{};
-  message.utime = poses.utime;
-  message.source_channel = poses.source_channel;
+  message.utime = poses.frame.utime;
+  message.source_channel = poses.frame.channel;
   for (const ObjectPose& pose : poses.poses) message.poses.push_back(pose_to_message(pose));
   message.n_poses = static_cast<std::int32_t>(message.poses.size());
   set_stages(message, poses.stages);
@@ -192,13 +191,12 @@ object_poses_t to_message(const ObjectPoses& poses) {
 ObjectPoses poses_from_message(const object_poses_t& message) {
   try {
     ObjectPoses out;
-    out.utime = message.utime;
-    out.source_channel = message.source_channel;
+    out.frame = {message.source_channel, message.utime};
     for (const object_pose_t& pose : message.poses) out.poses.push_back(pose_from_message(pose));
     out.stages = stages_from(message.stages);
     return out;
   } catch (const InputError& error) {
-    fail("poses of frame {}: {}", message.utime, error.what());
+    fail("poses of frame {}: {}", to_string(FrameId{message.source_channel, message.utime}), error.what());
   }
 }
 

@@ -108,6 +108,22 @@ std::int64_t read_utime(ByteView bytes, const std::string& source) {
   return reader.read_int64();
 }
 
+FrameId read_result_frame(ByteView bytes, const std::string& source) {
+  WireReader reader(bytes, source);
+  const std::int64_t fingerprint = reader.read_int64();
+  require(fingerprint == detections_t::getHash() || fingerprint == object_poses_t::getHash(),
+          "{}: message of fingerprint {:016x}, expected detections_t or object_poses_t", source,
+          static_cast<std::uint64_t>(fingerprint));
+  FrameId frame;
+  frame.utime = reader.read_int64();
+  frame.channel = reader.read_string();
+  return frame;
+}
+
+bool is_frame_message(ByteView bytes) {
+  return bytes.size >= 8 && WireReader(bytes, images_t::getTypeName()).read_int64() == images_t::getHash();
+}
+
 std::int64_t parse_sequence(ByteView text) {
   const std::string shown(reinterpret_cast<const char*>(text.data), std::min<std::size_t>(text.size, 24));
   std::int64_t sequence = -1;

@@ -7,6 +7,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/wire_reader.hpp"
+#include "pipeline/types/frame_id.hpp"
 
 // What lcm-gen's decoders do not check: they believe every count, and a damaged one makes them ask for gigabytes.
 
@@ -23,6 +24,13 @@ FrameHeader read_frame_header(ByteView bytes);
 
 /// utime of any encoded message of this project that names a frame by it: it stands right after the fingerprint.
 std::int64_t read_utime(ByteView bytes, const std::string& source);
+
+/// The frame that an encoded detections_t or object_poses_t is about, without decoding or checking the rest. Throws
+/// InputError, naming `source`, where the message is of another type or cut.
+FrameId read_result_frame(ByteView bytes, const std::string& source);
+
+/// Whether the bytes begin with the fingerprint of images_t: all that is asked of what a pattern of channels brings.
+bool is_frame_message(ByteView bytes);
 
 /// A frame counter as it stands in the metadata, decimal text. Throws InputError.
 std::int64_t parse_sequence(ByteView text);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
@@ -11,14 +12,16 @@
 namespace houghstream {
 
 struct DetectProcessOptions {
-  std::string process = "hs-detect";  ///< its name in status_t
-  std::string frame_channel = "OPENNI_FRAME";
-  std::optional<Camera> camera;  ///< for frames that do not bring their own
+  std::string process = "hs-detect";             ///< its name in status_t
+  std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
+  std::optional<Camera> camera;                  ///< for frames that do not bring their own
+  bool keep_frames = false;                      ///< of a log: copies the frames' events to the output log too
 };
 
-/// Receives frames and publishes `detect`'s result for each one that is worked on: on a network always the newest,
-/// from a log every one. A frame that cannot be understood is counted, reported and dropped. Returns as
-/// run_process_loop does.
+/// Receives frames and publishes `detect`'s result for each one that is worked on: on a network always the newest of
+/// each camera, the cameras in turn; from a log every one. Results bear the frame's name, whatever `detect` calls them.
+/// A frame that cannot be understood is counted, reported and dropped; where the channels are a pattern, what is no
+/// images_t is none. Throws InputError where frames are to be kept without a log; returns as run_process_loop does.
 void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
                         const std::function<Detections(const RgbdFrame&)>& detect);
 

@@ -5,42 +5,48 @@
 
 namespace houghstream {
 
-void PairInbox::put_frame(std::int64_t utime, std::vector<std::uint8_t> bytes) {
+void PairInbox::put_frame(const FrameId& id, std::vector<std::uint8_t> bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    frames_.push_back({utime, std::move(bytes)});
-    if (frames_.size() > kHistory) frames_.pop_front();
-    ++frames_seen_;
-    fresh_ = newest_first_;
-    drop_hopeless();
+    Camera& camera = cameras_[id.channel];
+    if (camera.find_frame(id) != nullptr) detectors_.forget(id);
+    camera.frames.push_back({id, std::move(bytes)});
+    if (camera.frames.size() > kHistory) camera.frames.pop_front();
+    ++camera.frames_seen;
+    camera.fresh = newest_first_;
+    drop_hopeless(camera);
   }
   changed_.notify_one();
 }
 
-void PairInbox::put_detections(std::int64_t utime, std::vector<std::uint8_t> bytes) {
+void PairInbox::put_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    waiting_.push_back({utime, std::move(bytes), std::chrono::steady_clock::now(), frames_seen_});
-    drop_hopeless();
+    Camera& camera = cameras_[id.channel];
+    detectors_.note_result(id);
+    camera.waiting.push_back({id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen});
+    drop_hopeless(camera);
   }
   changed_.notify_one();
 }
 
-std::optional<FramePair> PairInbox::take(std::chrono::milliseconds timeout) {
+std::optional<PairedMessages> PairInbox::take(std::chrono::milliseconds timeout) {
   std::unique_lock<std::mutex> lock(mutex_);
-  std::optional<std::size_t> found;
+  Camera* next = nullptr;
   changed_.wait_for(lock, timeout, [&] {
-    found = next_complete();
-    return found.has_value() || fresh_;
+    next = next_camera();
+    return next != nullptr || any_fresh();
   });
-  if (!found) return std::nullopt;
-  return take_pair(*found);
+  if (next == nullptr) return std::nullopt;
+  return take_pair(*next);
 }
 
 std::optional<ArrivedFrame> PairInbox::take_fresh() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!std::exchange(fresh_, false)) return std::nullopt;
-  return frames_.back();
+  for (auto& [channel, camera] : cameras_) {
+    if (std::exchange(camera.fresh, false)) return camera.frames.back();
+  }
+  return std::nullopt;
 }
 
 PairInbox::Dropped PairInbox::take_dropped() {
@@ -50,50 +56,81 @@ PairInbox::Dropped PairInbox::take_dropped() {
 
 void PairInbox::give_up_waiting() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const Waiting& waiting : waiting_) {
-    if (find_frame(waiting.utime) == nullptr) {
-      dropped_.without_frame.push_back(waiting.utime);
-    } else {
-      ++dropped_.skipped;
+  for (auto& [channel, camera] : cameras_) {
+    for (const Waiting& waiting : camera.waiting) {
+      if (camera.find_frame(waiting.id) == nullptr) {
+        dropped_.without_frame.push_back(waiting.id);
+      } else {
+        ++dropped_.skipped;
+      }
     }
+    camera.waiting.clear();
   }
-  waiting_.clear();
 }
 
-const ArrivedFrame* PairInbox::find_frame(std::int64_t utime) const {
+const ArrivedFrame* PairInbox::Camera::find_frame(const FrameId& id) const {
+  const auto found = std::find_if(frames.rbegin(), frames.rend(), [&](const ArrivedFrame& f) { return f.id == id; });
+  return found == frames.rend() ? nullptr : &*found;
+}
+
+std::optional<std::size_t> PairInbox::Camera::first_complete() const {
   const auto found =
-      std::find_if(frames_.begin(), frames_.end(), [&](const ArrivedFrame& f) { return f.utime == utime; });
-  return found == frames_.end() ? nullptr : &*found;
+      std::find_if(waiting.begin(), waiting.end(), [&](const Waiting& w) { return find_frame(w.id) != nullptr; });
+  if (found == waiting.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - waiting.begin());
 }
 
-std::optional<std::size_t> PairInbox::next_complete() const {
-  for (std::size_t i = 0; i < waiting_.size(); ++i) {
-    const std::size_t index = newest_first_ ? waiting_.size() - 1 - i : i;
-    if (find_frame(waiting_[index].utime) != nullptr) return index;
+// The camera with a pair that has its turn: the one served longest ago, or, in a log, the one whose detections came
+// first.
+PairInbox::Camera* PairInbox::next_camera() {
+  Camera* next = nullptr;
+  std::int64_t next_rank = 0;
+  for (auto& [channel, camera] : cameras_) {
+    if (newest_first_) pass_over_older(channel, camera);
+    const std::optional<std::size_t> first = camera.first_complete();
+    if (!first) continue;
+    const std::int64_t rank = newest_first_ ? camera.turn : camera.waiting[*first].number;
+    if (next != nullptr && rank >= next_rank) continue;
+    next = &camera;
+    next_rank = rank;
   }
-  return std::nullopt;
+  return next;
 }
 
-void PairInbox::drop_hopeless() {
+// Of each detector of the camera the newest complete result stays; what came before these is given up, since results
+// do not say which detector they are of.
+void PairInbox::pass_over_older(const std::string& channel, Camera& camera) {
+  int left = detectors_.of(channel);
+  auto oldest = camera.waiting.end();
+  while (left > 0 && oldest != camera.waiting.begin()) {
+    --oldest;
+    if (camera.find_frame(oldest->id) != nullptr) --left;
+  }
+  if (left > 0) return;
+  dropped_.skipped += oldest - camera.waiting.begin();
+  camera.waiting.erase(camera.waiting.begin(), oldest);
+}
+
+void PairInbox::drop_hopeless(Camera& camera) {
   // The second condition bounds memory where detections come and frames do not.
-  while (!waiting_.empty() && find_frame(waiting_.front().utime) == nullptr &&
-         (frames_seen_ - waiting_.front().frames_before > kWait || waiting_.size() > kHistory)) {
-    dropped_.without_frame.push_back(waiting_.front().utime);
-    waiting_.pop_front();
+  while (!camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
+         (camera.frames_seen - camera.waiting.front().frames_before > kWait || camera.waiting.size() > kHistory)) {
+    dropped_.without_frame.push_back(camera.waiting.front().id);
+    camera.waiting.pop_front();
   }
 }
 
-FramePair PairInbox::take_pair(std::size_t index) {
-  const auto chosen = waiting_.begin() + static_cast<std::ptrdiff_t>(index);
-  if (chosen->utime == frames_.back().utime) fresh_ = false;
-  FramePair pair{find_frame(chosen->utime)->bytes, std::move(chosen->bytes), chosen->arrival};
-  if (newest_first_) {
-    dropped_.skipped += static_cast<std::int64_t>(index);
-    waiting_.erase(waiting_.begin(), chosen + 1);
-  } else {
-    waiting_.erase(chosen);
-  }
+PairedMessages PairInbox::take_pair(Camera& camera) {
+  const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
+  if (chosen->id == camera.frames.back().id) camera.fresh = false;
+  PairedMessages pair{chosen->id, camera.find_frame(chosen->id)->bytes, std::move(chosen->bytes), chosen->arrival};
+  camera.turn = ++turns_;
+  camera.waiting.erase(chosen);
   return pair;
+}
+
+bool PairInbox::any_fresh() const {
+  return std::any_of(cameras_.begin(), cameras_.end(), [](const auto& entry) { return entry.second.fresh; });
 }
 
 }  // namespace houghstream

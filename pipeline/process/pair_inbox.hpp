@@ -4,51 +4,60 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "pipeline/process/detector_count.hpp"
+#include "pipeline/types/frame_id.hpp"
 
 namespace houghstream {
 
-/// Encoded detections with the encoded frame of the same utime.
-struct FramePair {
+/// An encoded frame.
+struct ArrivedFrame {
+  FrameId id;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Encoded detections with the encoded frame that they were found in.
+struct PairedMessages {
+  FrameId id;
   std::vector<std::uint8_t> frame;
   std::vector<std::uint8_t> detections;
   std::chrono::steady_clock::time_point arrival;  ///< of the detections
 };
 
-/// An encoded frame.
-struct ArrivedFrame {
-  std::int64_t utime = 0;
-  std::vector<std::uint8_t> bytes;
-};
-
-/// Brings detections together with their own frame, whichever comes first. Nothing is decoded. Ages are counted in
-/// frames, not in seconds, so that a log gives the same pairs at any speed.
+/// Brings detections together with their own frame, whichever comes first, for any number of cameras and of detectors
+/// on each. Nothing is decoded. Ages are counted in frames of the camera, not in seconds, so that a log gives the same
+/// pairs at any speed. May be used from any thread.
 class PairInbox {
  public:
-  /// Frames that are kept for detections still to come.
+  /// Frames of each camera that are kept for detections still to come.
   static constexpr std::size_t kHistory = 64;
-  /// Detections whose frame is not here wait for this many further frames, then are given up.
+  /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
   static constexpr std::int64_t kWait = 30;
 
-  /// `newest_first`: take() passes over older detections; otherwise everything is worked on in turn.
+  /// `newest_first`: take() serves the cameras in turn, and passes over older detections of a camera: of each of its
+  /// detectors one result stays. Otherwise everything is worked on in the order of arrival.
   explicit PairInbox(bool newest_first) : newest_first_(newest_first) {}
 
-  void put_frame(std::int64_t utime, std::vector<std::uint8_t> bytes);
-  void put_detections(std::int64_t utime, std::vector<std::uint8_t> bytes);
+  void put_frame(const FrameId& id, std::vector<std::uint8_t> bytes);
+  /// `id` is the frame that they were found in.
+  void put_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
-  std::optional<FramePair> take(std::chrono::milliseconds timeout);
+  std::optional<PairedMessages> take(std::chrono::milliseconds timeout);
 
-  /// The newest frame, where `newest_first`, and where neither it nor its pair has been taken: there is time to decode
-  /// it while its detections are on the way. It stays here for them.
+  /// The newest frame of a camera, where `newest_first`, and where neither it nor its pair has been taken: there is
+  /// time to decode it while its detections are on the way. It stays here for them.
   std::optional<ArrivedFrame> take_fresh();
 
   /// What was dropped since the last call.
   struct Dropped {
-    std::int64_t skipped = 0;                 ///< passed over for newer ones
-    std::vector<std::int64_t> without_frame;  ///< utimes of detections whose frame never came
+    std::int64_t skipped = 0;            ///< passed over for newer ones
+    std::vector<FrameId> without_frame;  ///< of detections whose frame never came
   };
   Dropped take_dropped();
 
@@ -57,24 +66,36 @@ class PairInbox {
 
  private:
   struct Waiting {
-    std::int64_t utime = 0;
+    FrameId id;
     std::vector<std::uint8_t> bytes;
     std::chrono::steady_clock::time_point arrival;
-    std::int64_t frames_before = 0;  // frames that had arrived when it did
+    std::int64_t number = 0;         // in the order of arrival, of all cameras
+    std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
+  };
+  struct Camera {
+    std::deque<ArrivedFrame> frames;  // the last ones
+    std::deque<Waiting> waiting;      // detections in the order of arrival
+    std::int64_t frames_seen = 0;
+    bool fresh = false;     // the last frame may be taken ahead
+    std::int64_t turn = 0;  // when it was served last
+
+    const ArrivedFrame* find_frame(const FrameId& id) const;
+    std::optional<std::size_t> first_complete() const;
   };
 
-  const ArrivedFrame* find_frame(std::int64_t utime) const;
-  std::optional<std::size_t> next_complete() const;
-  void drop_hopeless();
-  FramePair take_pair(std::size_t index);
+  Camera* next_camera();
+  void pass_over_older(const std::string& channel, Camera& camera);
+  void drop_hopeless(Camera& camera);
+  PairedMessages take_pair(Camera& camera);
+  bool any_fresh() const;
 
   bool newest_first_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<ArrivedFrame> frames_;
-  bool fresh_ = false;  // the last of them
-  std::deque<Waiting> waiting_;
-  std::int64_t frames_seen_ = 0;
+  std::map<std::string, Camera> cameras_;  // by channel
+  DetectorCount detectors_;
+  std::int64_t arrivals_ = 0;
+  std::int64_t turns_ = 0;
   Dropped dropped_;
 };
 

@@ -1,15 +1,21 @@
 #include "pipeline/process/pose_process.hpp"
 
+#include <fmt/ranges.h>
+
+#include <atomic>
+#include <map>
+#include <set>
+
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/process/model_check.hpp"
 #include "pipeline/process/pair_inbox.hpp"
+#include "pipeline/process/pose_memory.hpp"
 #include "pipeline/process/process_loop.hpp"
 
 namespace houghstream {
 namespace {
-
-using Estimate = std::function<ObjectPoses(const RgbdFrame&, const Detections&)>;
 
 std::vector<std::uint8_t> copy(ByteView bytes) {
   return {bytes.data, bytes.data + bytes.size};
@@ -19,105 +25,178 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
-void receive_frame(const Arrival& arrival, StatusReporter& status, PairInbox& inbox) {
-  try {
-    const FrameHeader header = read_frame_header(arrival.bytes);
-    status.note_sequence(header.sequence);
-    inbox.put_frame(header.utime, copy(arrival.bytes));
-  } catch (const InputError& error) {
-    status.note_error(error.what());
-  }
-}
-
-void receive_detections(const Arrival& arrival, StatusReporter& status, PairInbox& inbox) {
-  status.count_received();
-  try {
-    check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
-    inbox.put_detections(read_utime(arrival.bytes, arrival.channel), copy(arrival.bytes));
-  } catch (const InputError& error) {
-    status.count_refused(error.what());
-  }
-}
-
 /// A frame, and how long it took to decode.
 struct DecodedFrame {
   RgbdFrame frame;
   StageTime decoding;
 };
 
-DecodedFrame decode(const std::vector<std::uint8_t>& bytes, const std::optional<Camera>& camera) {
+DecodedFrame decode(const std::vector<std::uint8_t>& bytes, const std::string& channel,
+                    const std::optional<Camera>& camera) {
   StageClock clock;
-  RgbdFrame frame = frame_from_message(decode_message<images_t>(view(bytes)), camera);
+  RgbdFrame frame = frame_from_message(decode_message<images_t>(view(bytes)), channel, camera);
   clock.mark("pose.decode");
   return {std::move(frame), clock.times().front()};
 }
 
-/// The newest frame, decoded while its detections are on the way. What cannot be understood is told when they come.
-std::optional<DecodedFrame> decode_ahead(PairInbox& inbox, const std::optional<Camera>& camera) {
-  const std::optional<ArrivedFrame> fresh = inbox.take_fresh();
-  if (!fresh) return std::nullopt;
-  try {
-    return decode(fresh->bytes, camera);
-  } catch (const InputError&) {
-    return std::nullopt;
+class PoseProcess {
+ public:
+  PoseProcess(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate)
+      : bus_(bus),
+        options_(options),
+        estimate_(estimate),
+        channels_(options.frame_channels),
+        status_(options.process),
+        inbox_(!bus.is_log()),
+        models_(options.models),
+        several_cameras_(!channels_.is_name()) {}
+
+  void run() {
+    bus_.subscribe(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
+    bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
+    log_info("ready: frames from {}, detections from {} at {}", options_.frame_channels, channel::kDetections,
+             bus_.url());
+    run_process_loop(bus_, status_, [this](std::chrono::milliseconds timeout) { return step(timeout); });
+    inbox_.give_up_waiting();
+    count_dropped();
+    warn(models_.at_end());
+    end_process(bus_, status_);
+    tell_missing_frames();
   }
-}
 
-ObjectPoses estimate_pair(const FramePair& pair, const std::optional<DecodedFrame>& ahead,
-                          const std::optional<Camera>& camera, const Estimate& estimate) {
-  Detections detections = detections_from_message(decode_message<detections_t>(view(pair.detections)));
-  if (detections.detections.empty()) return {detections.utime, detections.source_channel, {}, detections.stages};
-  const bool is_ahead = ahead && ahead->frame.utime == detections.utime;
-  const DecodedFrame decoded = is_ahead ? *ahead : decode(pair.frame, camera);
-  detections.stages.push_back(decoded.decoding);
-  ObjectPoses poses = estimate(decoded.frame, detections);
-  poses.source_channel = detections.source_channel;
-  return poses;
-}
-
-void publish(LcmBus& bus, const ObjectPoses& poses) {
-  bus.publish(channel::kPoses, to_message(poses));
-  for (const ObjectPose& pose : poses.poses) {
-    if (!pose.T_camera_object) continue;
-    bus.publish(channel::to_camera(pose.class_name), to_message(poses.utime, *pose.T_camera_object));
+ private:
+  void receive_frame(const Arrival& arrival) {
+    if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
+    try {
+      const FrameHeader header = read_frame_header(arrival.bytes);
+      status_.note_sequence(header.sequence, arrival.channel);
+      inbox_.put_frame({arrival.channel, header.utime}, copy(arrival.bytes));
+    } catch (const InputError& error) {
+      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
+    }
   }
-}
 
-void count_dropped(PairInbox& inbox, StatusReporter& status) {
-  const PairInbox::Dropped dropped = inbox.take_dropped();
-  status.count_skipped(dropped.skipped);
-  for (const std::int64_t utime : dropped.without_frame) {
-    status.count_refused(fmt::format("detections of frame {}: the frame itself has not come", utime));
+  void receive_detections(const Arrival& arrival) {
+    try {
+      check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
+      const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
+      sources_.insert(frame.channel);
+      ++detections_;
+      if (!channels_.matches(frame.channel)) {
+        note_other_camera(frame.channel);
+        return;
+      }
+      status_.count_received();
+      inbox_.put_detections(frame, copy(arrival.bytes));
+    } catch (const InputError& error) {
+      status_.count_received();
+      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
+    }
   }
-}
 
-}  // namespace
+  void note_other_camera(const std::string& channel) {
+    ++others_;
+    if (several_cameras_.exchange(true)) return;
+    log_info("detections of frames on {} are heard too: transforms go to <OBJECT>_TO_{}", channel,
+             channel::camera_name(options_.frame_channels));
+  }
 
-void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const Estimate& estimate) {
-  StatusReporter status(options.process);
-  PairInbox inbox(!bus.is_log());
-  bus.subscribe(options.frame_channel, [&](const Arrival& arrival) { receive_frame(arrival, status, inbox); });
-  bus.subscribe(channel::kDetections, [&](const Arrival& arrival) { receive_detections(arrival, status, inbox); });
-  log_info("ready: frames from {}, detections from {} at {}", options.frame_channel, channel::kDetections, bus.url());
-  std::optional<DecodedFrame> ahead;
-  run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
-    const std::optional<FramePair> pair = inbox.take(timeout);
-    count_dropped(inbox, status);
+  bool step(std::chrono::milliseconds timeout) {
+    const std::optional<PairedMessages> pair = inbox_.take(timeout);
+    count_dropped();
     if (!pair) {
-      if (std::optional<DecodedFrame> newer = decode_ahead(inbox, options.camera)) ahead = std::move(newer);
+      decode_ahead();
       return false;
     }
     try {
-      publish(bus, estimate_pair(*pair, ahead, options.camera, estimate));
-      status.count_processed(std::chrono::steady_clock::now() - pair->arrival);
+      publish(poses_of(*pair));
+      status_.count_processed(std::chrono::steady_clock::now() - pair->arrival);
     } catch (const std::exception& error) {
-      status.count_refused(error.what());
+      status_.count_refused(error.what(), "work");
     }
     return true;
-  });
-  inbox.give_up_waiting();
-  count_dropped(inbox, status);
-  end_process(bus, status);
+  }
+
+  // A camera's newest frame is decoded while its detections are on the way. What cannot be understood is told when they
+  // come.
+  void decode_ahead() {
+    const std::optional<ArrivedFrame> fresh = inbox_.take_fresh();
+    if (!fresh) return;
+    try {
+      ahead_[fresh->id.channel] = decode(fresh->bytes, fresh->id.channel, options_.camera);
+    } catch (const InputError&) {
+    }
+  }
+
+  ObjectPoses poses_of(const PairedMessages& pair) {
+    Detections detections = detections_from_message(decode_message<detections_t>(view(pair.detections)));
+    if (detections.detections.empty()) return {detections.frame, {}, detections.stages};
+    const auto ahead = ahead_.find(pair.id.channel);
+    const bool is_ahead = ahead != ahead_.end() && ahead->second.frame.id == pair.id;
+    const DecodedFrame decoded = is_ahead ? ahead->second : decode(pair.frame, pair.id.channel, options_.camera);
+    detections.stages.push_back(decoded.decoding);
+    warn(models_.note(detections));
+    ObjectPoses poses = estimate_(decoded.frame, detections, memory_.before(detections));
+    poses.frame = pair.id;
+    memory_.keep(poses);
+    return poses;
+  }
+
+  void publish(const ObjectPoses& poses) {
+    bus_.publish(channel::kPoses, to_message(poses));
+    const std::string camera = several_cameras_ ? poses.frame.channel : "";
+    for (const ObjectPose& pose : poses.poses) {
+      if (!pose.T_camera_object) continue;
+      bus_.publish(channel::to_camera(pose.class_name, camera), to_message(poses.frame.utime, *pose.T_camera_object));
+    }
+  }
+
+  static void warn(const std::optional<std::string>& words) {
+    if (words) log_warning("{}", *words);
+  }
+
+  void count_dropped() {
+    const PairInbox::Dropped dropped = inbox_.take_dropped();
+    status_.count_skipped(dropped.skipped);
+    without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
+    for (const FrameId& frame : dropped.without_frame) {
+      status_.count_refused(fmt::format("detections of frame {}: the frame itself has not come", to_string(frame)),
+                            "no frame");
+    }
+  }
+
+  void tell_missing_frames() const {
+    // On a network another process may work on other cameras' detections; of a log it is said.
+    const std::int64_t all = bus_.is_log() ? detections_ : detections_ - others_;
+    const std::int64_t missing = bus_.is_log() ? without_frame_ + others_ : without_frame_;
+    if (missing == 0) return;
+    const std::string words = fmt::format("of {} detections_t {} had no frame on {}; they are of frames on {}", all,
+                                          missing, options_.frame_channels, fmt::join(sources_, ", "));
+    require(!bus_.is_log() || missing < all, "{}: {}; hs-detect --keep-frames keeps them", bus_.url(), words);
+    log_warning("{}", words);
+  }
+
+  LcmBus& bus_;
+  const PoseProcessOptions& options_;
+  const EstimatePoses& estimate_;
+  ChannelPattern channels_;
+  StatusReporter status_;
+  PairInbox inbox_;
+  std::map<std::string, DecodedFrame> ahead_;  // by channel
+  PoseMemory memory_;
+  ModelCheck models_;
+  // What the receiving thread has seen.
+  std::set<std::string> sources_;
+  std::atomic<bool> several_cameras_;
+  std::atomic<std::int64_t> detections_{0};
+  std::atomic<std::int64_t> others_{0};  // of them, of other cameras' frames
+  std::int64_t without_frame_ = 0;       // of the rest
+};
+
+}  // namespace
+
+void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate) {
+  PoseProcess(bus, options, estimate).run();
 }
 
 }  // namespace houghstream

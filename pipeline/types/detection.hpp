@@ -2,11 +2,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
+#include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/stage_time.hpp"
 
 namespace houghstream {
@@ -29,10 +29,9 @@ struct Detection {
   std::vector<RotationVote> rotations;                      ///< heaviest first, capped
 };
 
-/// All detections of one frame, strongest first.
+/// What one detector found in one frame, strongest first.
 struct Detections {
-  std::int64_t utime = 0;  ///< of the source frame
-  std::string source_channel;
+  FrameId frame;  ///< that they were found in
   std::vector<Detection> detections;
   std::vector<StageTime> stages;
 };

@@ -1,18 +1,18 @@
 #pragma once
 
-#include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "pipeline/types/camera.hpp"
+#include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/stage_time.hpp"
 
 namespace houghstream {
 
 /// An RGB-D image pair, depth registered to colour.
 struct RgbdFrame {
-  std::int64_t utime = 0;         ///< capture time, microseconds since the epoch; names the frame in every result
+  FrameId id;                     ///< its name in every result
   cv::Mat colour;                 ///< CV_8UC3, BGR
   cv::Mat depth;                  ///< CV_32FC1, metres along the optical axis, NaN = none; same size as colour
   Camera camera;                  ///< of both images

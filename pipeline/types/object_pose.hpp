@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/stage_time.hpp"
 
 namespace houghstream {
@@ -32,7 +33,7 @@ struct ObjectPose {
   int class_id = 0;
   std::string class_name;
   float detection_score = 0.0F;
-  int detection_index = -1;  ///< in the Detections of the same utime
+  int detection_index = -1;  ///< in the Detections that the poses answer
   PoseStatus status = PoseStatus::kInvalid;
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< present exactly when status is kValid
   bool converged = false;
@@ -45,10 +46,9 @@ struct ObjectPose {
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
 };
 
-/// All poses of one frame, in the order of its detections.
+/// The poses of one detector's detections in one frame, in their order.
 struct ObjectPoses {
-  std::int64_t utime = 0;  ///< of the source frame
-  std::string source_channel;
+  FrameId frame;  ///< that of the detections
   std::vector<ObjectPose> poses;
   std::vector<StageTime> stages;
 };

@@ -134,7 +134,7 @@ std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::v
 std::vector<PoseCandidate> earlier_candidates(std::int64_t utime, const Detection& detection,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<PoseCandidate> candidates;
-  const double age_s = 1e-6 * static_cast<double>(utime - earlier.utime);
+  const double age_s = 1e-6 * static_cast<double>(utime - earlier.frame.utime);
   if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return candidates;
   for (const ObjectPose& pose : earlier.poses) {
     if (!pose.T_camera_object || pose.class_name != detection.class_name) continue;

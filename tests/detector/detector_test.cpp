@@ -27,12 +27,12 @@ Detections detect(const RgbdFrame& frame, int threads) {
 
 void expect_tile(int kind, double u, double v, double distance) {
   RgbdFrame frame = toy::room(77);
-  frame.utime = 123456;
+  frame.id.utime = 123456;
   const cv::Mat mask = toy::put_tile(kind, u, v, distance, frame);
   const Detections found = detect(frame, 2);
   ASSERT_FALSE(found.detections.empty());
   const Detection& best = found.detections.front();
-  EXPECT_EQ(found.utime, 123456);
+  EXPECT_EQ(found.frame.utime, 123456);
   EXPECT_EQ(best.class_id, kind + 1);
   EXPECT_EQ(best.class_name, kind == 0 ? "stripes" : "rings");
   EXPECT_GT(box_iou(best.box_px, cv::Rect2f(cv::boundingRect(mask))), 0.5F);

@@ -34,8 +34,8 @@ TEST(FrameSource, BopGivesItsFramesAndEnds) {
   writer.finish();
   const auto source = open_frame_source("bop:" + folder.string());
   EXPECT_EQ(source->rate_hz(), 30.0);
-  EXPECT_EQ(source->next()->utime, dataset_utime(0));
-  EXPECT_EQ(source->next()->utime, dataset_utime(1));
+  EXPECT_EQ(source->next()->id.utime, dataset_utime(0));
+  EXPECT_EQ(source->next()->id.utime, dataset_utime(1));
   EXPECT_FALSE(source->next().has_value());
   EXPECT_FALSE(source->next().has_value());
 }

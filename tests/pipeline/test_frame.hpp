@@ -10,7 +10,7 @@ namespace houghstream {
 /// A small frame with a smooth picture, a slope of depth in whole millimetres, and holes.
 inline RgbdFrame make_test_frame(std::int64_t utime, int width = 64, int height = 48) {
   RgbdFrame frame;
-  frame.utime = utime;
+  frame.id.utime = utime;
   frame.camera = {width, height, 0.9 * width, 0.9 * width, 0.5 * width, 0.5 * height};
   frame.colour.create(height, width, CV_8UC3);
   frame.depth.create(height, width, CV_32FC1);

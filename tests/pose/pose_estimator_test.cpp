@@ -33,7 +33,7 @@ PoseEstimator estimator_for(const std::string& name, const Mesh& mesh, PoseSetti
 
 Detections only(const Detection& detection) {
   Detections detections;
-  detections.utime = 1000;
+  detections.frame.utime = 1000;
   detections.detections = {detection};
   return detections;
 }
@@ -109,7 +109,7 @@ ObjectPoses earlier_pose(const std::string& name, const Eigen::Isometry3d& T_cam
   pose.status = PoseStatus::kValid;
   pose.T_camera_object = T_camera_object;
   ObjectPoses poses;
-  poses.utime = utime;
+  poses.frame.utime = utime;
   poses.poses = {pose};
   return poses;
 }
@@ -174,16 +174,16 @@ TEST(PoseEstimator, MissingInputGivesAReasonAndNoPose) {
   RgbdFrame blind = scene.frame;
   blind.depth.setTo(std::nanf(""));
   EXPECT_EQ(estimator.estimate(blind, only(good)).poses.at(0).status, PoseStatus::kTooFewPoints);
-  EXPECT_TRUE(estimator.estimate(scene.frame, Detections{1000, "", {}, {}}).poses.empty());
+  EXPECT_TRUE(estimator.estimate(scene.frame, Detections{{"", 1000}, {}, {}}).poses.empty());
 }
 
 TEST(PoseEstimator, DetectionsOfAnotherFrameAndBrokenFramesAreRefused) {
   StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   const PoseEstimator estimator = estimator_for("mug", mug());
   Detections detections = only(detection_of("mug", scene.object, scene.truth, 5));
-  detections.utime = 1001;
+  detections.frame.utime = 1001;
   EXPECT_THROW(estimator.estimate(scene.frame, detections), std::logic_error);
-  detections.utime = 1000;
+  detections.frame.utime = 1000;
   scene.frame.depth = scene.frame.depth.colRange(0, 320);
   EXPECT_THROW(estimator.estimate(scene.frame, detections), InputError);
   EXPECT_THROW(PoseEstimator({{"nothing", Mesh()}}, PoseSettings()), InputError);

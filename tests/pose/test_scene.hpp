@@ -91,7 +91,7 @@ inline Eigen::Isometry3d standing(double azimuth_deg, double pitch_deg, double d
 /// The depth of the items with noise growing as z^2 (1.4 mm at 1 m) and 2 % of the pixels lost.
 inline RgbdFrame noisy_frame(const std::vector<RenderItem>& items, std::uint64_t seed) {
   RgbdFrame frame;
-  frame.utime = 1000;
+  frame.id.utime = 1000;
   frame.camera = kCamera;
   frame.colour = cv::Mat(kCamera.height, kCamera.width, CV_8UC3, cv::Scalar(90, 90, 90));
   frame.depth = render_geometry(items, kCamera).depth;

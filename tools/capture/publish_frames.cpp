@@ -37,9 +37,9 @@ class FrameFeed {
     if (!frame && stop_requested()) return std::nullopt;
     require(frame.has_value() || count_ > 0, "the source has no frames");
     if (!frame) return std::nullopt;
-    frame->utime += offset_us_;
-    if (count_ == 0) first_utime_ = frame->utime;
-    last_utime_ = frame->utime;
+    frame->id.utime += offset_us_;
+    if (count_ == 0) first_utime_ = frame->id.utime;
+    last_utime_ = frame->id.utime;
     ++count_;
     return frame;
   }
@@ -135,7 +135,7 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
     status.count_received();
     const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
     if (!feed.is_live()) pace.wait();
-    bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->utime);
+    bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->id.utime);
     status.count_processed(Clock::now() - read);
     ++result.frames;
     result.bytes += static_cast<std::int64_t>(bytes.size());
@@ -153,7 +153,7 @@ CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& sett
   while (const std::optional<RgbdFrame> frame = feed.next()) {
     const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
     const std::int64_t since_first = std::llround(static_cast<double>(result.frames) * feed.period_us());
-    log.write(feed.is_live() ? frame->utime : feed.first_utime() + since_first, settings.channel,
+    log.write(feed.is_live() ? frame->id.utime : feed.first_utime() + since_first, settings.channel,
               {bytes.data(), bytes.size()});
     ++result.frames;
     result.bytes += static_cast<std::int64_t>(bytes.size());

@@ -28,6 +28,14 @@ void add_lcm_url_option(CommandLine& line, std::string& url) {
   line.add_option("-l,--lcm-url", url, "LCM URL; default $LCM_DEFAULT_URL, else udpm with ttl=0");
 }
 
+CommandOption add_frame_channels_option(CommandLine& line, std::string& channels) {
+  return line
+      .add_option("-c,--channel", channels,
+                  "channels of the cameras' frames, on the bus or in a log: a regular expression for the whole "
+                  "name, for instance 'LEFT|RIGHT'")
+      .capture_default_str();
+}
+
 void add_model_options(CommandLine& line, std::string& models, double& unit_m) {
   line.add_option("--models", models,
                   "models/ folder of a BOP dataset or of hs-fuse, or a folder of NAME.ply, NAME.obj");

@@ -14,6 +14,9 @@ int run_tool(CommandLine& line, int argc, char** argv, const std::function<void(
 /// The option -l, --lcm-url, the same for every process.
 void add_lcm_url_option(CommandLine& line, std::string& url);
 
+/// The option -c, --channel of every tool that takes frames off the bus or out of a log: a ChannelPattern.
+CommandOption add_frame_channels_option(CommandLine& line, std::string& channels);
+
 /// The options --models and --model-unit of tools that read models; `unit_m` becomes the unit's length in metres.
 void add_model_options(CommandLine& line, std::string& models, double& unit_m);
 

@@ -8,7 +8,9 @@
 
 int main(int argc, char** argv) {
   using namespace houghstream;
-  CommandLine app("Finds the taught objects in every newest RGB-D frame and publishes detections_t", "hs-detect");
+  CommandLine app(
+      "Finds the taught objects in the newest RGB-D frame of each camera in turn and publishes detections_t",
+      "hs-detect");
   std::string forest_file;
   std::string camera;
   std::string url;
@@ -18,8 +20,10 @@ int main(int argc, char** argv) {
   app.add_option("--forest", forest_file, "forest file of hs-train").required();
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   add_search_options(app, search);
-  app.add_option("-c,--channel", options.frame_channel, "channel of the frames").capture_default_str();
+  add_frame_channels_option(app, options.frame_channels);
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
+  app.add_flag("--keep-frames", options.keep_frames,
+               "with --output-log: write the frames too, each before its result, so that hs-pose can work on that log");
   add_lcm_url_option(app, url);
 
   return run_tool(app, argc, argv, [&] {

@@ -18,6 +18,7 @@ using namespace houghstream;
 struct EvaluateOptions {
   std::string scene;
   std::string log;
+  std::string channel = ".*";
   std::string forest;
   std::string models;
   std::string latency;
@@ -73,11 +74,10 @@ void run(const EvaluateOptions& options) {
       options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
   const PublishedResults results =
       options.log.empty() ? run_in_process(scene, *forest, options.search.settings_for(*forest), options.every, meshes)
-                          : read_result_log(options.log);
+                          : read_result_log(options.log, options.channel);
   const std::string source = options.log.empty() ? options.scene : options.log;
   frames = every_nth(std::move(frames), options.every);
-  add_detections(frames, results.detections, source);
-  add_poses(frames, results.poses, source);
+  add_results(frames, results, source);
   const Evaluation evaluation = measure(options, scene, frames, classes, meshes);
   std::optional<Latencies> latencies;
   if (!options.latency.empty()) latencies = read_latencies(options.latency);
@@ -92,6 +92,9 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--scene", options.scene, "BOP scene folder with the truth; without objects, every detection is false")
       .required();
   app.add_option("--log", options.log, "LCM log with published results");
+  add_frame_channels_option(app, options.channel)
+      .description(
+          "with --log: results of frames on these channels, a regular expression for the whole name; one camera's");
   app.add_option("--forest", options.forest, "forest: detects in-process without --log, and names the classes");
   app.add_option("--models", options.models, "models/ of the scene: measures poses (in-process: estimates them)");
   app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")

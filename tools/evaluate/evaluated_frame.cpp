@@ -1,23 +1,40 @@
 #include "tools/evaluate/evaluated_frame.hpp"
 
+#include <set>
+#include <utility>
+
 #include "pipeline/base/checks.hpp"
+#include "pipeline/types/frame_results.hpp"
 
 namespace houghstream {
 namespace {
 
-/// Gives each result to the frame of its utime.
-template <typename Result>
-void place(std::vector<EvaluatedFrame>& frames, const std::vector<Result>& results,
-           std::optional<Result> EvaluatedFrame::*slot, const std::string& source) {
-  std::map<std::int64_t, EvaluatedFrame*> by_utime;
-  for (EvaluatedFrame& frame : frames) by_utime[frame.utime] = &frame;
-  for (const Result& result : results) {
-    const auto found = by_utime.find(result.utime);
-    require(found != by_utime.end(), "{}: result of utime {}, which is no frame of the scene", source, result.utime);
-    std::optional<Result>& place = found->second->*slot;
-    require(!place.has_value(), "{}: two results of utime {}, expected one per frame", source, result.utime);
-    place = result;
+/// Detectors of the same object would count each thing twice.
+void check_classes(const FrameResults& results, const std::string& where) {
+  std::set<std::string> earlier;
+  for (const FrameResult& result : results.results()) {
+    std::set<std::string> own;
+    for (const Detection& detection : result.detections.detections) own.insert(detection.class_name);
+    for (const std::string& name : own) {
+      require(earlier.insert(name).second,
+              "{}: two results hold '{}', expected detectors of different objects, or one run", where, name);
+    }
   }
+}
+
+void check_poses(const FrameResults& results, const std::string& where) {
+  if (results.results().empty() || results.unmatched().empty()) return;
+  const ObjectPoses& poses = results.unmatched().front();
+  fail("{}: poses of {} objects, '{}' among them, answer none of the frame's {} results", where, poses.poses.size(),
+       poses.poses.empty() ? "" : poses.poses.front().class_name, results.results().size());
+}
+
+/// All that was published, by the frames' times; all of it is of one camera.
+std::map<std::int64_t, FrameResults> by_utime(const PublishedResults& published) {
+  std::map<std::int64_t, FrameResults> results;
+  for (const Detections& detections : published.detections) results[detections.frame.utime].add(detections);
+  for (const ObjectPoses& poses : published.poses) results[poses.frame.utime].add(poses);
+  return results;
 }
 
 }  // namespace
@@ -38,21 +55,20 @@ std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int
   return frames;
 }
 
-void add_detections(std::vector<EvaluatedFrame>& frames, const std::vector<Detections>& results,
-                    const std::string& source) {
-  place(frames, results, &EvaluatedFrame::detections, source);
-}
-
-void add_poses(std::vector<EvaluatedFrame>& frames, const std::vector<ObjectPoses>& results,
-               const std::string& source) {
-  place(frames, results, &EvaluatedFrame::poses, source);
-  for (const EvaluatedFrame& frame : frames) {
-    if (!frame.poses || !frame.detections) continue;
-    const int count = static_cast<int>(frame.detections->detections.size());
-    for (const ObjectPose& pose : frame.poses->poses) {
-      require(pose.detection_index >= 0 && pose.detection_index < count,
-              "{}: pose of detection {} at utime {}, which has {} detections", source, pose.detection_index,
-              frame.utime, count);
+void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& published, const std::string& source) {
+  std::map<std::int64_t, EvaluatedFrame*> frame_at;
+  for (EvaluatedFrame& frame : frames) frame_at[frame.utime] = &frame;
+  for (const auto& [utime, results] : by_utime(published)) {
+    const auto frame = frame_at.find(utime);
+    require(frame != frame_at.end(), "{}: result of utime {}, which is no frame of the scene", source, utime);
+    const std::string where = fmt::format("{}: utime {}", source, utime);
+    check_classes(results, where);
+    check_poses(results, where);
+    if (std::optional<FrameResult> all = results.joined()) {
+      frame->second->detections = std::move(all->detections);
+      frame->second->poses = std::move(all->poses);
+    } else {
+      frame->second->poses = results.unmatched().front();
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "tools/evaluate/result_log.hpp"
 
 namespace houghstream {
 
@@ -23,18 +24,17 @@ struct EvaluatedFrame {
   std::int64_t utime = 0;
   std::size_t image = 0;  ///< position in the scene's images
   std::vector<NamedObject> objects;
-  std::optional<Detections> detections;  ///< nothing where the frame was skipped or lost
+  std::optional<Detections> detections;  ///< all detectors'; nothing where the frame was skipped or lost
   std::optional<ObjectPoses> poses;      ///< likewise
 };
 
 /// The truth of a scene, frame by frame, with the utimes of its frames. Objects without a name are "object_N".
 std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int, std::string>& names);
 
-/// Puts results beside the truth of the same utime. Throws InputError naming `source` for a result of an unknown
-/// frame, a second result of one frame, and poses whose detection does not exist.
-void add_detections(std::vector<EvaluatedFrame>& frames, const std::vector<Detections>& results,
-                    const std::string& source);
-void add_poses(std::vector<EvaluatedFrame>& frames, const std::vector<ObjectPoses>& results, const std::string& source);
+/// Puts the results of one camera beside the truth of the same time, those of several detectors of one frame joined.
+/// Throws InputError naming `source` for a result of an unknown frame, two results of one frame that share a class but
+/// not what they found, and poses of no result of their frame.
+void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& published, const std::string& source);
 
 /// Frames 0, N, 2N ...
 std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int every);

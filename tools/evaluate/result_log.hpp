@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "pipeline/types/detection.hpp"
@@ -14,8 +15,9 @@ struct PublishedResults {
   std::vector<ObjectPoses> poses;
 };
 
-/// Reads all results of an LCM log; other channels are passed over. Throws InputError when the log or a message in it
-/// is damaged, or when it holds no detections at all.
-PublishedResults read_result_log(const std::filesystem::path& log_file);
+/// Reads the results of one camera's frames in an LCM log; other channels are passed over. `frame_channels` (a
+/// ChannelPattern) says which camera's. Throws InputError when the log or a message in it is damaged, when it holds no
+/// detections at all, or those of several cameras, since a scene is what one camera saw.
+PublishedResults read_result_log(const std::filesystem::path& log_file, const std::string& frame_channels = ".*");
 
 }  // namespace houghstream

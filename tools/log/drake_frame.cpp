@@ -3,6 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/image_decoding.hpp"
 #include "pipeline/messages/codecs.hpp"
 #include "pipeline/types/frame.hpp"
 #include "tools/log/foreign_frames.hpp"
@@ -59,9 +60,23 @@ std::vector<std::uint8_t> unpacked(const DrakeImage& image, std::int64_t pixel_b
   return bytes_of(image.data);
 }
 
+/// Width and height as a PNG's first chunk states them.
+cv::Size png_size(ByteView png) {
+  constexpr std::size_t kBefore = 16;  // signature, the chunk's length and name
+  require(png.size >= kBefore + 8, "PNG of {} bytes, expected a header", png.size);
+  WireReader reader({png.data + kBefore, 8}, "PNG");
+  const std::int32_t width = reader.read_int32();
+  return {width, reader.read_int32()};
+}
+
 cv::Mat decode_png(const DrakeImage& image, int type) {
-  const cv::Mat bytes(1, static_cast<int>(image.data.size), CV_8UC1, const_cast<std::uint8_t*>(image.data.data));
-  cv::Mat decoded = cv::imdecode(bytes, type == CV_8UC3 ? cv::IMREAD_COLOR : cv::IMREAD_UNCHANGED);
+  check_image_size(image.width, image.height);
+  const cv::Size size = png_size(image.data);  // asked before memory is taken for it
+  require(size.width == image.width && size.height == image.height, "PNG of {}x{} pixels, expected {}x{}", size.width,
+          size.height, image.width, image.height);
+  cv::Mat decoded =
+      decode_image(image.data.data, image.data.size, type == CV_8UC3 ? cv::IMREAD_COLOR : cv::IMREAD_UNCHANGED);
+  require(!decoded.empty(), "PNG of {} bytes cannot be decoded", image.data.size);
   require(decoded.type() == type && decoded.cols == image.width && decoded.rows == image.height,
           "PNG of {}x{} pixels and OpenCV type {}, expected {}x{} of type {}", decoded.cols, decoded.rows,
           decoded.type(), image.width, image.height, type);

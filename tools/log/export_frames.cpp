@@ -31,7 +31,7 @@ std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folde
   const auto write = [&](const RecordedFrame& recorded) {
     RgbdFrame frame;
     try {
-      frame = frame_from_message(recorded.message, settings.camera);
+      frame = frame_from_message(recorded.message, recorded.channel, settings.camera);
     } catch (const InputError& error) {
       losses.note_refused(error.what());
       return false;
@@ -52,7 +52,7 @@ std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& fold
   list << "frame,utime,timestamp\n";
   std::int64_t index = 0;
   const auto write = [&](const RecordedFrame& recorded) {
-    const ImagePair images = images_from_message(recorded.message);
+    const FrameImages images = images_from_message(recorded.message);
     const std::string name = fmt::format("{:06d}", index++);
     write_png(images.colour, folder / (name + "_color.png"));
     write_png(images.depth_mm, folder / (name + "_depth.png"));

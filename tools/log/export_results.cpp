@@ -3,51 +3,51 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "pipeline/types/frame_results.hpp"
 
 namespace houghstream {
 namespace {
 
-/// What was found in one frame.
-struct FrameResults {
-  Detections detections;
-  ObjectPoses poses;  ///< empty where none were published for the frame
-};
-
-/// By the frames' times. A frame's last message counts, so that a log of several runs stays readable.
-std::map<std::int64_t, FrameResults> read_results(const std::filesystem::path& log_file, LossAccount& losses) {
-  std::map<std::int64_t, FrameResults> results;
-  std::map<std::int64_t, ObjectPoses> poses;
+/// All frames of the log, of all cameras, in the order of time; for each what its detectors found, joined.
+std::vector<FrameResult> read_results(const std::filesystem::path& log_file, LossAccount& losses) {
+  std::map<FrameId, FrameResults> found;
   GoodEvents events(log_file, losses);
   while (const std::optional<LogEvent> event = events.next()) {
     const ByteView bytes{event->data.data(), event->data.size()};
     try {
       if (event->channel == channel::kDetections) {
-        Detections found = detections_from_message(decode_message<detections_t>(bytes));
-        results[found.utime].detections = std::move(found);
+        Detections detections = detections_from_message(decode_message<detections_t>(bytes));
+        found[detections.frame].add(std::move(detections));
       } else if (event->channel == channel::kPoses) {
-        ObjectPoses found = poses_from_message(decode_message<object_poses_t>(bytes));
-        poses[found.utime] = std::move(found);
+        ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(bytes));
+        found[poses.frame].add(std::move(poses));
       }
     } catch (const InputError& error) {
       losses.note_refused(error.what());
     }
   }
-  require(!results.empty(), "{}: no message on {}, expected results", log_file.string(), channel::kDetections);
-  for (auto& [utime, found] : poses) {
-    const auto frame = results.find(utime);
-    if (frame != results.end()) frame->second.poses = std::move(found);
+  std::vector<FrameResult> results;
+  for (const auto& [frame, all] : found) {
+    if (std::optional<FrameResult> joined = all.joined()) results.push_back(std::move(*joined));
+    for (std::size_t i = 0; i < all.unmatched().size(); ++i) {
+      losses.note_refused(fmt::format("poses of frame {}, of no detections in the log", to_string(frame)));
+    }
   }
+  require(!results.empty(), "{}: no message on {}, expected results", log_file.string(), channel::kDetections);
   return results;
 }
 
-const ObjectPose* pose_of(const FrameResults& frame, std::size_t detection) {
-  for (const ObjectPose& pose : frame.poses.poses) {
+const ObjectPose* pose_of(const FrameResult& frame, std::size_t detection) {
+  if (!frame.poses) return nullptr;
+  for (const ObjectPose& pose : frame.poses->poses) {
     if (pose.detection_index == static_cast<int>(detection)) return &pose;
   }
   return nullptr;
@@ -79,9 +79,9 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-std::string row(const FrameResults& frame, std::size_t index) {
+std::string row(const FrameResult& frame, std::size_t index) {
   const Detection& d = frame.detections.detections[index];
-  std::string text = fmt::format("{},{},{},{},{}", frame.detections.utime, quoted(frame.detections.source_channel),
+  std::string text = fmt::format("{},{},{},{},{}", frame.detections.frame.utime, quoted(frame.detections.frame.channel),
                                  index, d.class_id, quoted(d.class_name));
   for (const float value : {d.score, d.box_px.x, d.box_px.y, d.box_px.width, d.box_px.height, d.centre_camera.x(),
                             d.centre_camera.y(), d.centre_camera.z()}) {
@@ -106,8 +106,8 @@ OrderedJson pose_json(const ObjectPose* pose) {
   return json;
 }
 
-OrderedJson frame_json(const FrameResults& frame) {
-  OrderedJson json = {{"utime", frame.detections.utime}, {"source_channel", frame.detections.source_channel}};
+OrderedJson frame_json(const FrameResult& frame) {
+  OrderedJson json = {{"utime", frame.detections.frame.utime}, {"source_channel", frame.detections.frame.channel}};
   json["detections"] = OrderedJson::array();
   for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) {
     const Detection& d = frame.detections.detections[i];
@@ -120,10 +120,11 @@ OrderedJson frame_json(const FrameResults& frame) {
          {"pose", pose_json(pose_of(frame, i))}});
   }
   // The poses' stages begin with the detections'.
-  const bool posed = !frame.poses.stages.empty();
+  const bool posed = frame.poses && !frame.poses->stages.empty();
   json["stages_us"] = OrderedJson::object();
-  for (const StageTime& stage : posed ? frame.poses.stages : frame.detections.stages) {
-    json["stages_us"][stage.stage] = stage.duration_us;
+  for (const StageTime& stage : posed ? frame.poses->stages : frame.detections.stages) {
+    OrderedJson& sum = json["stages_us"][stage.stage];  // several detectors say of the same stage what each one took
+    sum = (sum.is_null() ? 0 : sum.get<std::int64_t>()) + stage.duration_us;
   }
   return json;
 }
@@ -132,11 +133,11 @@ OrderedJson frame_json(const FrameResults& frame) {
 
 std::int64_t export_results_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                                 LossAccount& losses) {
-  const std::map<std::int64_t, FrameResults> results = read_results(log_file, losses);
+  const std::vector<FrameResult> results = read_results(log_file, losses);
   std::ofstream out(out_file);
   out << "utime,source_channel,detection,class_id,class_name,score,box_x,box_y,box_width,box_height,"
          "centre_x,centre_y,centre_z,pose_status,x,y,z,qw,qx,qy,qz,quality\n";
-  for (const auto& [utime, frame] : results) {
+  for (const FrameResult& frame : results) {
     for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) out << row(frame, i) << '\n';
   }
   out.close();
@@ -146,10 +147,10 @@ std::int64_t export_results_csv(const std::filesystem::path& log_file, const std
 
 std::int64_t export_results_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                                  LossAccount& losses) {
-  const std::map<std::int64_t, FrameResults> results = read_results(log_file, losses);
+  const std::vector<FrameResult> results = read_results(log_file, losses);
   OrderedJson json;
   json["frames"] = OrderedJson::array();
-  for (const auto& [utime, frame] : results) json["frames"].push_back(frame_json(frame));
+  for (const FrameResult& frame : results) json["frames"].push_back(frame_json(frame));
   write_json(json, out_file);
   return static_cast<std::int64_t>(results.size());
 }

@@ -1,25 +1,12 @@
 #include "tools/log/filter_log.hpp"
 
-#include <regex>
-
 #include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channel_pattern.hpp"
 
 namespace houghstream {
-namespace {
-
-std::regex channel_expression(const std::string& text) {
-  try {
-    return std::regex(text);
-  } catch (const std::regex_error& error) {
-    fail("channels '{}': {}, expected a regular expression", text, error.what());
-  }
-}
-
-}  // namespace
-
 std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& filter,
                         const std::filesystem::path& out_file, LossAccount& losses) {
-  const std::regex channels = channel_expression(filter.channels);
+  const ChannelPattern channels(filter.channels);
   std::error_code no_such_file;
   require(!std::filesystem::equivalent(log_file, out_file, no_such_file),
           "{}: is the log itself, expected another file to write", out_file.string());
@@ -31,7 +18,7 @@ std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& 
     if (!first) first = event->timestamp;
     const double time_s = static_cast<double>(event->timestamp - *first) * 1e-6;
     if (time_s < filter.start_s || time_s > filter.end_s) continue;
-    if (std::regex_match(event->channel, channels) == filter.others) continue;
+    if (channels.matches(event->channel) == filter.others) continue;
     if (!out) out.emplace(out_file);
     out->write(event->timestamp, event->channel, {event->data.data(), event->data.size()});
     ++kept;

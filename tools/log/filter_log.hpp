@@ -11,7 +11,7 @@ namespace houghstream {
 struct LogFilter {
   double start_s = 0.0;  ///< seconds since the log's first event
   double end_s = std::numeric_limits<double>::infinity();
-  std::string channels = ".*";  ///< regular expression that the whole name matches
+  std::string channels = ".*";  ///< a ChannelPattern
   bool others = false;          ///< keep the channels that do not match instead
 };
 

@@ -36,7 +36,9 @@ CommandLine add_filter(CommandLine& app, Options& options) {
   filter.add_option("out", options.out, "LCM log to write").required();
   filter.add_option("-s,--start", options.filter.start_s, "seconds since the log's first event");
   filter.add_option("-e,--end", options.filter.end_s, "seconds since the log's first event");
-  filter.add_option("-c,--channels", options.filter.channels, "regular expression for the whole name")
+  filter
+      .add_option("-c,--channel,--channels", options.filter.channels,
+                  "channels: a regular expression for the whole name")
       .capture_default_str();
   filter.add_flag("-i,--invert", options.filter.others, "keep the channels that do not match");
   return filter;
@@ -47,8 +49,9 @@ CommandLine add_import(CommandLine& app, Options& options) {
   import.add_option("source", options.in, kSources).required();
   import.add_option("out", options.out, "LCM log to write").required();
   import.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
-  import.add_option("--from-channel", options.recording.channel, "channel to read; default: the first with frames");
-  import.add_option("-c,--channel", options.channel, "channel to write").capture_default_str();
+  import.add_option("--from-channel", options.recording.channel,
+                    "the one channel to read; default: the first with frames");
+  import.add_option("-c,--channel", options.channel, "the one channel to write").capture_default_str();
   return import;
 }
 
@@ -59,7 +62,8 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
   part.add_option("out", options.out, frames ? "folder to write" : "file to write").required();
   if (!frames) return part;
   part.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
-  part.add_option("--from-channel", options.recording.channel, "channel to read; default: the first with frames");
+  part.add_option("--from-channel", options.recording.channel,
+                  "the one channel to read; default: the first with frames");
   return part;
 }
 
@@ -81,8 +85,9 @@ int main(int argc, char** argv) {
   exporter.require_subcommand();
   const CommandLine bop = add_export(exporter, "bop", "frames as a BOP scene folder", options);
   const CommandLine png = add_export(exporter, "png", "frames as NNNNNN_color.png, NNNNNN_depth.png", options);
-  const CommandLine csv = add_export(exporter, "csv", "detections and poses, one row each", options);
-  add_export(exporter, "json", "detections and poses by frame, with stage times", options);
+  const CommandLine csv =
+      add_export(exporter, "csv", "detections and poses of all cameras and detectors, one row each", options);
+  add_export(exporter, "json", "detections and poses of all cameras and detectors by frame, with stage times", options);
 
   return run_tool(app, argc, argv, [&] {
     LossAccount losses;

@@ -1,12 +1,16 @@
 #include "tools/log/recording.hpp"
 
+#include <fmt/ranges.h>
+
 #include <houghstream/drake_image_array_t.hpp>
 #include <houghstream/kinect_frame_msg_t.hpp>
 #include <memory>
+#include <set>
 
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tools/log/foreign_frames.hpp"
@@ -42,7 +46,7 @@ images_t images_of(ByteView bytes) {
 
 /// Gives it the camera that it lacks; throws InputError unless it is a frame with images that can be decoded.
 void complete(images_t& message, const RecordingSettings& settings, std::int64_t sequence) {
-  const ImagePair images = images_from_message(message);
+  const FrameImages images = images_from_message(message);
   if (settings.camera && !camera_of(message)) {
     require(images.colour.cols == settings.camera->width && images.colour.rows == settings.camera->height,
             "frame {}: {}x{} pixels, the camera given has {}x{}", message.utime, images.colour.cols, images.colour.rows,
@@ -55,14 +59,14 @@ void complete(images_t& message, const RecordingSettings& settings, std::int64_t
 class LogRecording {
  public:
   LogRecording(const RecordingSettings& settings, LossAccount& losses)
-      : settings_(settings), losses_(losses), events_(settings.source, losses) {}
+      : settings_(settings), is_first_(settings.channel.empty()), losses_(losses), events_(settings.source, losses) {}
 
   std::optional<RecordedFrame> next() {
     while (std::optional<LogEvent> event = events_.next()) {
       const ByteView bytes{event->data.data(), event->data.size()};
       if (!is_wanted(*event, bytes)) continue;
       try {
-        RecordedFrame frame{event->timestamp, images_of(bytes)};
+        RecordedFrame frame{event->timestamp, images_of(bytes), event->channel};
         complete(frame.message, settings_, sequence_++);
         return frame;
       } catch (const InputError& error) {
@@ -71,16 +75,25 @@ class LogRecording {
     }
     require(sequence_ > 0, "{}: no frames {}", settings_.source,
             settings_.channel.empty() ? "on any channel" : "on channel " + settings_.channel);
+    if (!others_.empty() && is_first_) {
+      log_warning("{}: frames of {} only; those on {} are left out, --from-channel chooses", settings_.source,
+                  settings_.channel, fmt::join(others_, ", "));
+    }
+    others_.clear();
     return std::nullopt;
   }
 
  private:
   bool is_wanted(const LogEvent& event, ByteView bytes) {
-    if (settings_.channel.empty() && is_frame_type(fingerprint_of(bytes))) settings_.channel = event.channel;
+    const bool is_frame = is_frame_type(fingerprint_of(bytes));
+    if (settings_.channel.empty() && is_frame) settings_.channel = event.channel;
+    if (is_frame && event.channel != settings_.channel) others_.insert(event.channel);
     return event.channel == settings_.channel;
   }
 
   RecordingSettings settings_;
+  bool is_first_;  // nobody chose the channel
+  std::set<std::string> others_;
   LossAccount& losses_;
   GoodEvents events_;
   std::int64_t sequence_ = 0;
@@ -97,7 +110,7 @@ class KlgRecording {
     while (std::optional<images_t> message = read()) {
       try {
         complete(*message, settings_, sequence_++);
-        return RecordedFrame{message->utime, std::move(*message)};
+        return RecordedFrame{message->utime, std::move(*message), ""};
       } catch (const InputError& error) {
         losses_.note_refused(error.what());
       }
@@ -133,7 +146,7 @@ class SourceRecording {
     if (!frame) return std::nullopt;
     WireFormat lossless;
     lossless.jpeg = false;
-    return RecordedFrame{frame->utime, to_message(*frame, lossless, sequence_++)};
+    return RecordedFrame{frame->id.utime, to_message(*frame, lossless, sequence_++), ""};
   }
 
  private:

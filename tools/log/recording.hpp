@@ -14,6 +14,7 @@ namespace houghstream {
 struct RecordedFrame {
   std::int64_t timestamp = 0;  ///< when it was received or taken, microseconds since the epoch
   images_t message;
+  std::string channel;  ///< that it came on; empty unless it is of a log
 };
 
 /// The next frame of a recording, or nothing at its end.

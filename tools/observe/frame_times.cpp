@@ -47,20 +47,20 @@ json utime_if_any(const std::optional<FrameTimes::Time>& time) {
 
 }  // namespace
 
-void FrameTimes::note_frame(std::int64_t utime, Time time) {
-  rows_[utime].frame = rows_[utime].frame.value_or(time);
+void FrameTimes::note_frame(const FrameId& frame, Time time) {
+  rows_[frame].frame = rows_[frame].frame.value_or(time);
 }
 
-void FrameTimes::note_detections(std::int64_t utime, Time time) {
-  rows_[utime].detections = rows_[utime].detections.value_or(time);
+void FrameTimes::note_detections(const FrameId& frame, Time time) {
+  rows_[frame].detections = rows_[frame].detections.value_or(time);
 }
 
-void FrameTimes::note_poses(std::int64_t utime, Time time) {
-  rows_[utime].poses = rows_[utime].poses.value_or(time);
+void FrameTimes::note_poses(const FrameId& frame, Time time) {
+  rows_[frame].poses = rows_[frame].poses.value_or(time);
 }
 
 void FrameTimes::note_status(const status_t& status) {
-  processes_[status.process] = status;
+  processes_[{status.process, status.pid}] = status;
 }
 
 std::size_t FrameTimes::frames() const {
@@ -69,7 +69,7 @@ std::size_t FrameTimes::frames() const {
 
 std::optional<FrameTimes::Time> FrameTimes::start() const {
   std::optional<Time> first;
-  for (const auto& [utime, row] : rows_) {
+  for (const auto& [id, row] : rows_) {
     for (const auto& time : {row.frame, row.detections, row.poses}) {
       if (time) first = std::min(first.value_or(*time), *time);
     }
@@ -82,16 +82,17 @@ std::string FrameTimes::csv() const {
   const auto cell = [&](const std::optional<Time>& time) {
     return time ? fmt::format("{:.6f}", seconds(*time - *zero)) : std::string();
   };
-  std::string text = "utime,t_frame,t_detections,t_poses\n";
-  for (const auto& [utime, row] : rows_) {
-    text += fmt::format("{},{},{},{}\n", utime, cell(row.frame), cell(row.detections), cell(row.poses));
+  std::string text = "utime,channel,t_frame,t_detections,t_poses\n";
+  for (const auto& [id, row] : rows_) {
+    text +=
+        fmt::format("{},{},{},{},{}\n", id.utime, id.channel, cell(row.frame), cell(row.detections), cell(row.poses));
   }
   return text;
 }
 
 std::vector<double> FrameTimes::latencies_ms(std::optional<Time> Row::*from, std::optional<Time> Row::*to) const {
   std::vector<double> latencies;
-  for (const auto& [utime, row] : rows_) {
+  for (const auto& [id, row] : rows_) {
     if (row.*from && row.*to) latencies.push_back(seconds(*(row.*to) - *(row.*from)) * 1e3);
   }
   return latencies;
@@ -103,7 +104,7 @@ std::int64_t FrameTimes::count(std::optional<Time> Row::*what) const {
 
 double FrameTimes::rate_hz(std::optional<Time> Row::*what) const {
   std::vector<Time> times;
-  for (const auto& [utime, row] : rows_) {
+  for (const auto& [id, row] : rows_) {
     if (row.*what) times.push_back(*(row.*what));
   }
   if (times.size() < 2) return std::numeric_limits<double>::quiet_NaN();
@@ -111,9 +112,20 @@ double FrameTimes::rate_hz(std::optional<Time> Row::*what) const {
   return static_cast<double>(times.size() - 1) / seconds(*last - *first);
 }
 
+std::map<std::string, status_t> FrameTimes::named_processes() const {
+  std::map<std::string, int> count;
+  for (const auto& [key, status] : processes_) ++count[key.first];
+  std::map<std::string, status_t> named;
+  for (const auto& [key, status] : processes_) {
+    named[count[key.first] == 1 ? key.first : fmt::format("{} {}", key.first, key.second)] = status;
+  }
+  return named;
+}
+
 json FrameTimes::account(std::int64_t sent) const {
-  const auto found = processes_.find(kDetector);
-  if (found == processes_.end()) return nullptr;
+  const std::map<std::string, status_t> named = named_processes();
+  const auto found = named.find(kDetector);
+  if (found == named.end()) return nullptr;
   const status_t& detector = found->second;
   const std::int64_t lost = sent - detector.frames_received;
   const std::int64_t unaccounted =
@@ -129,7 +141,7 @@ json FrameTimes::account(std::int64_t sent) const {
 
 json FrameTimes::summary(const std::optional<std::int64_t>& sent) const {
   json processes = json::object();
-  for (const auto& [name, status] : processes_) processes[name] = to_json(status);
+  for (const auto& [name, status] : named_processes()) processes[name] = to_json(status);
   return {{"start_utime", utime_if_any(start())},
           {"frames_sent", sent ? json(*sent) : json(nullptr)},
           {"frames_received", count(&Row::frame)},

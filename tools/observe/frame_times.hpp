@@ -7,31 +7,35 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "pipeline/types/frame_id.hpp"
 
 namespace houghstream {
 
-/// When each frame, its detections and its poses arrived, on one clock, and what the processes said last.
+/// When each camera's frames, their detections and their poses arrived, on one clock, and what the processes said last.
 class FrameTimes {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// The first arrival counts; utime names the frame.
-  void note_frame(std::int64_t utime, Time time);
-  void note_detections(std::int64_t utime, Time time);
-  void note_poses(std::int64_t utime, Time time);
+  /// The first arrival counts: where several detectors work on a camera's frames, the first one's.
+  void note_frame(const FrameId& frame, Time time);
+  void note_detections(const FrameId& frame, Time time);
+  void note_poses(const FrameId& frame, Time time);
   void note_status(const status_t& status);
 
   std::size_t frames() const;
 
-  /// One row for each frame in the order of utimes: utime, t_frame, t_detections, t_poses; seconds since the first
-  /// arrival, empty where it has not come.
+  /// One row for each frame in the order of utimes: utime, channel, t_frame, t_detections, t_poses; seconds since the
+  /// first arrival, empty where it has not come.
   std::string csv() const;
 
   /// `sent`: how many frames were published, where it is known. `start_utime`: the csv's zero, microseconds since the
   /// epoch. Counts, rate, latency percentiles in milliseconds
   /// (detect: frame to detections; pose: detections to poses; total: frame to poses), the last status of each
-  /// process, and the account sent = detected + skipped + refused + lost of the process that detects.
+  /// process (by name, with the process id where several have one name), and the account sent = detected + skipped +
+  /// refused + lost of the process that detects; null unless there is exactly one.
   nlohmann::json summary(const std::optional<std::int64_t>& sent) const;
 
  private:
@@ -47,8 +51,11 @@ class FrameTimes {
   std::optional<Time> start() const;
   nlohmann::json account(std::int64_t sent) const;
 
-  std::map<std::int64_t, Row> rows_;
-  std::map<std::string, status_t> processes_;
+  /// The last status of each process, by what the summary calls it.
+  std::map<std::string, status_t> named_processes() const;
+
+  std::map<FrameId, Row> rows_;
+  std::map<std::pair<std::string, std::int32_t>, status_t> processes_;  // by name and process id
 };
 
 }  // namespace houghstream

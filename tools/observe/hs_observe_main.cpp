@@ -3,6 +3,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "tools/common/tool_main.hpp"
@@ -15,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 struct ObserveOptions {
   std::string url;
-  std::string frame_channel = channel::kFrame;
+  std::string frame_channels = channel::kFrame;
   std::string out;
   std::string csv;
   double duration_s = 1e9;
@@ -35,14 +36,21 @@ void observe(const ObserveOptions& options) {
   LcmBus bus(options.url);
   FrameTimes times;
   Clock::time_point last = Clock::now();
-  // Only the utime is read: the observer must cost the observed next to nothing.
-  const auto stamp = [&](const std::string& name, void (FrameTimes::*note)(std::int64_t, FrameTimes::Time)) {
+  // Only the frame's name is read: the observer must cost the observed next to nothing.
+  const ChannelPattern channels(options.frame_channels);
+  bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
+    if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
+    times.note_frame({arrival.channel, read_utime(arrival.bytes, arrival.channel)}, arrival.time);
+    last = arrival.time;
+  });
+  const auto stamp = [&](const std::string& name, void (FrameTimes::*note)(const FrameId&, FrameTimes::Time)) {
     bus.subscribe(name, [&, note](const Arrival& arrival) {
-      (times.*note)(read_utime(arrival.bytes, arrival.channel), arrival.time);
+      const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
+      if (!channels.matches(frame.channel)) return;
+      (times.*note)(frame, arrival.time);
       last = arrival.time;
     });
   };
-  stamp(options.frame_channel, &FrameTimes::note_frame);
   stamp(channel::kDetections, &FrameTimes::note_detections);
   stamp(channel::kPoses, &FrameTimes::note_poses);
   bus.subscribe(channel::kStatus, [&](const Arrival& a) { times.note_status(decode_message<status_t>(a.bytes)); });
@@ -73,7 +81,7 @@ int main(int argc, char** argv) {
   app.add_option("--duration", options.duration_s, "end after this many seconds; default: at a stop signal");
   app.add_option("--expect", options.expect, "frames that are sent; end when they have come and the bus is quiet");
   app.add_option("--quiet", options.quiet_s, "how long quiet is, seconds").capture_default_str();
-  app.add_option("-c,--channel", options.frame_channel, "channel of the frames").capture_default_str();
+  add_frame_channels_option(app, options.frame_channels);
   houghstream::add_lcm_url_option(app, options.url);
   return houghstream::run_tool(app, argc, argv, [&] { observe(options); });
 }

@@ -34,19 +34,20 @@ int main(int argc, char** argv) {
   app.add_option("--min-score", settings.min_score, "poses are looked for from this score of the detection on")
       .range(0.0, 1.0)
       .capture_default_str();
-  app.add_option("-c,--channel", options.frame_channel, "channel of the frames").capture_default_str();
+  add_frame_channels_option(app, options.frame_channels);
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, url);
 
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.camera = parse_camera(camera);
-    const PoseEstimator estimator(load_models(models, model_unit_m), settings);
+    std::map<std::string, Mesh> meshes = load_models(models, model_unit_m);
+    for (const auto& [name, mesh] : meshes) options.models.insert(name);
+    const PoseEstimator estimator(std::move(meshes), settings);
     LcmBus bus(url, output_log);
-    ObjectPoses last;
-    run_pose_process(bus, options, [&](const RgbdFrame& frame, const Detections& detections) {
-      last = estimator.estimate(frame, detections, last);
-      return last;
-    });
+    run_pose_process(bus, options,
+                     [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
+                       return estimator.estimate(frame, detections, earlier);
+                     });
   });
 }

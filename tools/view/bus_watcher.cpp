@@ -6,6 +6,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "tools/view/preview.hpp"
@@ -19,12 +20,13 @@ std::int64_t microseconds(std::chrono::steady_clock::time_point time) {
 
 }  // namespace
 
-BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channel, const MatchSettings& match,
+BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channels, const MatchSettings& match,
                        std::size_t waiting_frames)
     : bus_(bus), matcher_(match), queue_(waiting_frames) {
   require(!bus_.is_log(), "{}: a log is watched by replaying it with lcm-logplayer, expected a network URL",
           bus_.url());
-  subscribe(frame_channel);
+  subscribe_to_frames(frame_channels);
+  subscribe_to_results();
   subscribe_to_status();
   const BlockStopSignals block;
   thread_ = std::thread([this] { listen(); });
@@ -39,31 +41,62 @@ void BusWatcher::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void BusWatcher::subscribe(const std::string& frame_channel) {
-  bus_.subscribe(frame_channel, [this](const Arrival& arrival) {
+void BusWatcher::subscribe_to_frames(const std::string& frame_channels) {
+  const bool is_pattern = !ChannelPattern(frame_channels).is_name();
+  bus_.subscribe(frame_channels, [this, is_pattern](const Arrival& arrival) {
+    if (is_pattern && !is_frame_message(arrival.bytes)) return;
     status_.count_received();
-    const FrameHeader header = read_frame_header(arrival.bytes);
-    status_.note_sequence(header.sequence);
-    stream_.note_frame(microseconds(arrival.time));
-    std::vector<std::uint8_t> bytes(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
-    matcher_.add_frame(std::move(bytes), header.utime, microseconds(arrival.time));
-  });
-  bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) {
-    const auto message = decode_message<houghstream::detections_t>(arrival.bytes);
-    matcher_.add_detections(detections_from_message(message), microseconds(arrival.time));
-  });
-  bus_.subscribe(channel::kPoses, [this](const Arrival& arrival) {
-    const auto message = decode_message<houghstream::object_poses_t>(arrival.bytes);
-    matcher_.add_poses(poses_from_message(message), microseconds(arrival.time));
+    try {
+      take_frame(arrival);
+    } catch (const InputError& error) {
+      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
+    }
   });
 }
 
+void BusWatcher::take_frame(const Arrival& arrival) {
+  const FrameHeader header = read_frame_header(arrival.bytes);
+  status_.note_sequence(header.sequence, arrival.channel);
+  cameras_.note(arrival.channel);
+  if (!cameras_.is_shown(arrival.channel)) {
+    status_.count_skipped(1);
+    return;
+  }
+  stream_.note_frame(microseconds(arrival.time));
+  std::vector<std::uint8_t> bytes(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
+  matcher_.add_frame({arrival.channel, header.utime}, std::move(bytes), microseconds(arrival.time));
+}
+
+LcmBus::Handler BusWatcher::counting_bad(LcmBus::Handler handler) {
+  return [this, handler = std::move(handler)](const Arrival& arrival) {
+    try {
+      handler(arrival);
+    } catch (const InputError& error) {
+      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
+    }
+  };
+}
+
+void BusWatcher::subscribe_to_results() {
+  bus_.subscribe(channel::kDetections, counting_bad([this](const Arrival& arrival) {
+                   Detections detections =
+                       detections_from_message(decode_message<houghstream::detections_t>(arrival.bytes));
+                   if (!cameras_.is_shown(detections.frame.channel)) return;
+                   matcher_.add_detections(std::move(detections), microseconds(arrival.time));
+                 }));
+  bus_.subscribe(channel::kPoses, counting_bad([this](const Arrival& arrival) {
+                   ObjectPoses poses = poses_from_message(decode_message<houghstream::object_poses_t>(arrival.bytes));
+                   if (!cameras_.is_shown(poses.frame.channel)) return;
+                   matcher_.add_poses(std::move(poses), microseconds(arrival.time));
+                 }));
+}
+
 void BusWatcher::subscribe_to_status() {
-  bus_.subscribe(channel::kStatus, [this](const Arrival& arrival) {
-    const auto message = decode_message<houghstream::status_t>(arrival.bytes);
-    stream_.note_process({message.process, message.rate_hz, message.frames_skipped, message.frames_lost,
-                          message.frames_refused, microseconds(arrival.time)});
-  });
+  bus_.subscribe(channel::kStatus, counting_bad([this](const Arrival& arrival) {
+                   const auto message = decode_message<houghstream::status_t>(arrival.bytes);
+                   stream_.note_process({message.process, message.pid, message.rate_hz, message.frames_skipped,
+                                         message.frames_lost, message.frames_refused, microseconds(arrival.time)});
+                 }));
 }
 
 StreamState BusWatcher::stream_state() {

@@ -10,6 +10,7 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/process/process_loop.hpp"
+#include "tools/view/camera_choice.hpp"
 #include "tools/view/match_queue.hpp"
 #include "tools/view/stream_watch.hpp"
 
@@ -18,9 +19,10 @@ namespace houghstream {
 /// Listens to frames, detections and poses in a thread of its own, so that slow drawing never delays receiving.
 class BusWatcher {
  public:
-  /// Starts to listen to `bus`, which must outlive it. `waiting_frames` may queue up to be drawn. Throws InputError
-  /// where the network cannot be used, or where it is a log.
-  BusWatcher(LcmBus& bus, const std::string& frame_channel, const MatchSettings& match, std::size_t waiting_frames);
+  /// Starts to listen to `bus`, which must outlive it. `frame_channels` is a ChannelPattern; of several cameras one is
+  /// shown at a time. `waiting_frames` may queue up to be drawn. Throws InputError where the network cannot be used, or
+  /// where it is a log.
+  BusWatcher(LcmBus& bus, const std::string& frame_channels, const MatchSettings& match, std::size_t waiting_frames);
   ~BusWatcher();
   BusWatcher(const BusWatcher&) = delete;
   BusWatcher& operator=(const BusWatcher&) = delete;
@@ -33,7 +35,10 @@ class BusWatcher {
   void note_refused(const std::string& reason) { status_.count_refused(reason); }
   void note_skipped() { status_.count_skipped(1); }
 
-  /// Rates, and what the processes say.
+  /// Which camera is shown; frames of the others are skipped.
+  CameraChoice& cameras() { return cameras_; }
+
+  /// Rates of the camera that is shown, and what the processes say.
   StreamState stream_state();
   std::int64_t frames_lost() const { return status_.message().frames_lost; }
 
@@ -47,13 +52,17 @@ class BusWatcher {
   void finish() { end_process(bus_, status_); }
 
  private:
-  void subscribe(const std::string& frame_channel);
+  void subscribe_to_frames(const std::string& frame_channels);
+  void subscribe_to_results();
   void subscribe_to_status();
+  LcmBus::Handler counting_bad(LcmBus::Handler handler);
+  void take_frame(const Arrival& arrival);
   void listen();
   void hand_over();
 
   LcmBus& bus_;
   StatusReporter status_{"hs-view"};
+  CameraChoice cameras_;
   FrameMatcher matcher_;
   StreamWatch stream_;
   MatchQueue queue_;

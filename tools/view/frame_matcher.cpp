@@ -1,5 +1,6 @@
 #include "tools/view/frame_matcher.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,12 +13,13 @@ FrameMatcher::FrameMatcher(MatchSettings settings) : settings_(settings) {
           settings.rate_hz);
 }
 
-void FrameMatcher::add_frame(std::vector<std::uint8_t> bytes, std::int64_t utime, std::int64_t now_us) {
+void FrameMatcher::add_frame(const FrameId& id, std::vector<std::uint8_t> bytes, std::int64_t now_us) {
   if (!first_arrival_us_) first_arrival_us_ = last_detections_us_ = last_poses_us_ = now_us;
-  MatchedFrame& frame = waiting_[utime];
+  if (waiting_.count(id) > 0) detectors_.forget(id);
+  MatchedFrame& frame = waiting_[id];
   frame = MatchedFrame();
+  frame.id = id;
   frame.frame_bytes = std::move(bytes);
-  frame.utime = utime;
   frame.arrival_us = now_us;
   const double seconds = static_cast<double>(now_us - *first_arrival_us_) * 1e-6;
   frame.slot = static_cast<std::int64_t>(std::floor(seconds * settings_.rate_hz));
@@ -25,25 +27,31 @@ void FrameMatcher::add_frame(std::vector<std::uint8_t> bytes, std::int64_t utime
 
 void FrameMatcher::add_detections(Detections detections, std::int64_t now_us) {
   last_detections_us_ = now_us;
-  const auto found = waiting_.find(detections.utime);
+  detectors_.note_result(detections.frame);
+  const auto found = waiting_.find(detections.frame);
   if (found == waiting_.end()) return;
   found->second.detect_latency_ms = static_cast<double>(now_us - found->second.arrival_us) * 1e-3;
-  found->second.detections = std::move(detections);
+  ++found->second.detections_heard;
+  found->second.results.add(std::move(detections));
 }
 
 void FrameMatcher::add_poses(ObjectPoses poses, std::int64_t now_us) {
   last_poses_us_ = now_us;
-  const auto found = waiting_.find(poses.utime);
+  const auto found = waiting_.find(poses.frame);
   if (found == waiting_.end()) return;
   found->second.pose_latency_ms = static_cast<double>(now_us - found->second.arrival_us) * 1e-3;
-  found->second.poses = std::move(poses);
+  found->second.results.add(std::move(poses));
 }
 
 bool FrameMatcher::ready(const MatchedFrame& frame, std::int64_t now_us) const {
-  if (frame.detections && frame.poses) return true;
+  const std::vector<FrameResult>& results = frame.results.results();
+  const bool all_heard = frame.detections_heard >= detectors_.of(frame.id.channel);
+  if (all_heard && frame.results.all_posed()) return true;
   if (now_us - frame.arrival_us < settings_.wait_us) return false;
+  const bool posed =
+      std::any_of(results.begin(), results.end(), [](const FrameResult& r) { return r.poses.has_value(); });
   const auto silent = [&](std::int64_t last_us) { return now_us - last_us > settings_.silence_us; };
-  return frame.detections ? silent(last_poses_us_) : silent(last_detections_us_);
+  return posed || silent(results.empty() ? last_detections_us_ : last_poses_us_);
 }
 
 std::optional<MatchedFrame> FrameMatcher::next(std::int64_t now_us) {
@@ -53,12 +61,12 @@ std::optional<MatchedFrame> FrameMatcher::next(std::int64_t now_us) {
     it = late ? waiting_.erase(it) : std::next(it);
   }
   const MatchedFrame* earliest = nullptr;
-  for (const auto& [utime, frame] : waiting_) {
+  for (const auto& [id, frame] : waiting_) {
     if (ready(frame, now_us) && (earliest == nullptr || frame.arrival_us < earliest->arrival_us)) earliest = &frame;
   }
   if (earliest == nullptr) return std::nullopt;
   last_slot_ = earliest->slot;
-  const auto found = waiting_.find(earliest->utime);
+  const auto found = waiting_.find(earliest->id);
   std::optional<MatchedFrame> result = std::move(found->second);
   waiting_.erase(found);
   return result;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/types/detection.hpp"
-#include "pipeline/types/object_pose.hpp"
+#include "pipeline/process/detector_count.hpp"
+#include "pipeline/types/frame_results.hpp"
 
 namespace houghstream {
 
@@ -20,28 +20,29 @@ struct MatchSettings {
 
 /// A frame as it came off the bus, with what was published about it.
 struct MatchedFrame {
+  FrameId id;
   std::vector<std::uint8_t> frame_bytes;  ///< the encoded images_t; decoded only when drawn
-  std::int64_t utime = 0;                 ///< of the frame
   std::int64_t arrival_us = 0;            ///< when the frame arrived, local clock
   std::int64_t slot = 0;                  ///< arrival in units of 1/rate_hz since the first frame
-  std::optional<Detections> detections;
-  std::optional<ObjectPoses> poses;
-  double detect_latency_ms = 0.0;  ///< from arrival of the frame; meaningless without detections
-  double pose_latency_ms = 0.0;    ///< from arrival of the frame; meaningless without poses
+  FrameResults results;
+  int detections_heard = 0;        ///< messages
+  double detect_latency_ms = 0.0;  ///< from the frame's arrival to its last detections'; meaningless without any
+  double pose_latency_ms = 0.0;    ///< from the frame's arrival to its last poses'; meaningless without any
 };
 
-/// Joins frames with their detections and poses by utime. Times are handed in, in microseconds of one clock.
+/// Joins frames with their detections and poses by the frame's name, those of all detectors that work on the camera.
+/// Times are handed in, in microseconds of one clock. Not thread-safe.
 class FrameMatcher {
  public:
   explicit FrameMatcher(MatchSettings settings);
 
-  void add_frame(std::vector<std::uint8_t> bytes, std::int64_t utime, std::int64_t now_us);
+  void add_frame(const FrameId& id, std::vector<std::uint8_t> bytes, std::int64_t now_us);
   void add_detections(Detections detections, std::int64_t now_us);
   void add_poses(ObjectPoses poses, std::int64_t now_us);
 
-  /// The next frame worth drawing, in order of arrival, at most `rate_hz` a second: one with poses as soon as these
-  /// are there; one with detections only, or with nothing, when no poses or no detections at all have come for as
-  /// long as `silence_us`.
+  /// The next frame worth drawing, in order of arrival, at most `rate_hz` a second: one with the poses of as many
+  /// detectors as there are, as soon as these are there; one with fewer after `wait_us`; one with detections only, or
+  /// with nothing, when no poses or no detections at all have come for as long as `silence_us`.
   std::optional<MatchedFrame> next(std::int64_t now_us);
 
   /// Frames that were forgotten without having been handed out.
@@ -51,7 +52,8 @@ class FrameMatcher {
   bool ready(const MatchedFrame& frame, std::int64_t now_us) const;
 
   MatchSettings settings_;
-  std::map<std::int64_t, MatchedFrame> waiting_;  ///< by utime
+  std::map<FrameId, MatchedFrame> waiting_;
+  DetectorCount detectors_;
   std::optional<std::int64_t> first_arrival_us_;
   std::int64_t last_slot_ = -1;
   std::int64_t passed_over_ = 0;

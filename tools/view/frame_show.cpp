@@ -13,15 +13,13 @@ namespace {
 ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& camera) {
   const ByteView bytes{matched.frame_bytes.data(), matched.frame_bytes.size()};
   ViewedFrame viewed;
-  viewed.frame = frame_from_message(decode_message<houghstream::images_t>(bytes), camera);
-  viewed.detections.utime = matched.utime;
-  if (matched.detections) {
-    viewed.detections = *matched.detections;
+  viewed.frame = frame_from_message(decode_message<houghstream::images_t>(bytes), matched.id.channel, camera);
+  viewed.detections.frame = matched.id;
+  if (std::optional<FrameResult> all = matched.results.joined()) {
+    viewed.detections = std::move(all->detections);
     viewed.detect_latency_ms = matched.detect_latency_ms;
-  }
-  if (matched.poses) {
-    viewed.poses = matched.poses;
-    viewed.pose_latency_ms = matched.pose_latency_ms;
+    viewed.poses = std::move(all->poses);
+    if (viewed.poses) viewed.pose_latency_ms = matched.pose_latency_ms;
   }
   return viewed;
 }
@@ -39,21 +37,22 @@ FrameShow::FrameShow(const ShowSettings& settings)
 }
 
 void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
-  if (picture_settings_.paused) {
+  if (picture_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
     watcher.note_skipped();
     return;
   }
   const std::optional<cv::Mat> picture = drawn(matched, watcher);
   if (!picture) return;
-  if (window_) window_->show(*picture, matched.utime);
-  outputs_.add(*picture, matched.utime, matched.slot);
-  if (preview_) watcher.publish_preview(*picture, matched.utime);
+  if (window_) window_->show(*picture, matched.id);
+  outputs_.add(*picture, matched.id.utime, matched.slot);
+  if (preview_) watcher.publish_preview(*picture, matched.id.utime);
 }
 
-bool FrameShow::handle_keys() {
+bool FrameShow::handle_keys(BusWatcher& watcher) {
   if (!window_) return true;
   const KeyAction action = window_->handle_keys(picture_settings_);
-  if (action == KeyAction::kRedraw && viewed_) window_->show(draw(*viewed_), viewed_->frame.utime);
+  if (action == KeyAction::kNextCamera) watcher.cameras().next();
+  if (action == KeyAction::kRedraw && viewed_) window_->show(draw(*viewed_), viewed_->frame.id);
   return action != KeyAction::kEnd;
 }
 
@@ -63,6 +62,7 @@ std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher&
     remember(viewed);
     stream_.state = watcher.stream_state();
     stream_.frames_lost = watcher.frames_lost();
+    stream_.cameras = watcher.cameras().heard();
     cv::Mat picture = draw(viewed);
     viewed_ = std::move(viewed);
     watcher.note_drawn(matched);

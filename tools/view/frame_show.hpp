@@ -32,12 +32,12 @@ class FrameShow {
   /// Throws InputError where there are no models, no display or no folder to write to.
   explicit FrameShow(const ShowSettings& settings);
 
-  /// Shows a frame, unless paused. One that cannot be understood is reported to `watcher` and passed over. Throws
-  /// InputError where a file cannot be written.
+  /// Shows a frame, unless paused or another camera is shown by now. One that cannot be understood is reported to
+  /// `watcher` and passed over. Throws InputError where a file cannot be written.
   void show(const MatchedFrame& matched, BusWatcher& watcher);
 
-  /// Lets the window act on keys. False when it was asked to end.
-  bool handle_keys();
+  /// Lets the window act on keys, one of which shows `watcher`'s next camera. False when it was asked to end.
+  bool handle_keys(BusWatcher& watcher);
 
   /// As ViewOutputs.
   bool complete() const { return outputs_.complete(); }

@@ -18,7 +18,7 @@ void StreamWatch::note_frame(std::int64_t now_us) {
 
 void StreamWatch::note_process(ProcessState process) {
   const std::lock_guard lock(mutex_);
-  processes_[process.name] = std::move(process);
+  processes_[{process.name, process.pid}] = std::move(process);
 }
 
 StreamState StreamWatch::state(std::int64_t now_us) {
@@ -29,7 +29,7 @@ StreamState StreamWatch::state(std::int64_t now_us) {
     state.frames_hz = static_cast<double>(arrivals_us_.size() - 1) * 1e6 /
                       static_cast<double>(arrivals_us_.back() - arrivals_us_.front());
   }
-  for (const auto& [name, process] : processes_) {
+  for (const auto& [key, process] : processes_) {
     if (now_us - process.heard_us <= kSilenceUs) state.processes.push_back(process);
   }
   return state;

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace houghstream {
@@ -12,6 +13,7 @@ namespace houghstream {
 /// What a process said about itself last.
 struct ProcessState {
   std::string name;           ///< executable
+  std::int64_t pid = 0;       ///< tells several of one name apart
   float rate_hz = 0.0F;       ///< frames finished per second
   std::int64_t skipped = 0;   ///< frames passed over since its start
   std::int64_t lost = 0;      ///< frames that never arrived; -1 = cannot be told
@@ -21,7 +23,7 @@ struct ProcessState {
 
 /// How the stream goes at a moment.
 struct StreamState {
-  double frames_hz = 0.0;               ///< frames that arrive here per second
+  double frames_hz = 0.0;               ///< frames of the camera that arrive here per second
   std::vector<ProcessState> processes;  ///< those heard of late, by name
 };
 
@@ -37,7 +39,7 @@ class StreamWatch {
  private:
   std::mutex mutex_;
   std::deque<std::int64_t> arrivals_us_;
-  std::map<std::string, ProcessState> processes_;
+  std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
 };
 
 }  // namespace houghstream

@@ -7,12 +7,13 @@ namespace houghstream {
 /// What a key asks for.
 enum class KeyAction {
   kNone,
-  kRedraw,  ///< the settings have changed
+  kRedraw,      ///< the settings have changed
+  kNextCamera,  ///< the next camera's frames are to be shown
   kEnd,
 };
 
 /// What a key, as cv::waitKey gives it, does to the settings: q or Esc ends, space pauses, d shows or hides depth, 3
-/// shows 3-D in its place, + and - move the smallest score that is drawn.
+/// shows 3-D in its place, + and - move the smallest score that is drawn, c goes on to the next camera.
 KeyAction apply_key(int key, FrameViewSettings& settings);
 
 }  // namespace houghstream

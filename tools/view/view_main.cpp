@@ -6,7 +6,7 @@ namespace {
 void add_options(houghstream::CommandLine& app, houghstream::ViewerSettings& settings, std::string& camera) {
   houghstream::ShowSettings& show = settings.show;
   houghstream::OutputSettings& outputs = show.outputs;
-  app.add_option("-c,--channel", settings.frame_channel, "channel of the frames").capture_default_str();
+  houghstream::add_frame_channels_option(app, settings.frame_channels);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   houghstream::add_model_options(app, show.models, show.model_unit_m);
   app.add_option("--snapshot", outputs.snapshot, "write one picture to this file (.png or .jpg)");
@@ -23,7 +23,10 @@ void add_options(houghstream::CommandLine& app, houghstream::ViewerSettings& set
   app.add_option("--duration", settings.duration, "end after so many seconds (0: when stopped)")
       .capture_default_str()
       .non_negative();
-  app.add_option("--min-score", show.picture.min_score, "weaker detections are not drawn").capture_default_str();
+  app.add_option(
+      "--min-score", show.picture.min_score,
+      "weaker detections are not drawn; default 0: everything that the detector sends, which has a threshold "
+      "of its own");
   app.add_clearing_flag("--no-depth", show.picture.show_depth, "show the colour image only");
   app.add_flag("--3d", show.picture.show_3d, "instead of the depth image: what was measured, seen from elsewhere");
   houghstream::add_lcm_url_option(app, settings.lcm_url);
@@ -34,7 +37,8 @@ void add_options(houghstream::CommandLine& app, houghstream::ViewerSettings& set
 int main(int argc, char** argv) {
   houghstream::CommandLine app(
       "Shows the stream: boxes, names, scores, pose axes and model outlines over each frame, depth, stage times and "
-      "latency. With --snapshot, --video, --pictures or --preview it needs no display.",
+      "latency. Of several cameras one is shown at a time: the first that is heard, the next one after key c. With "
+      "--snapshot, --video, --pictures or --preview it needs no display.",
       "hs-view");
   houghstream::ViewerSettings settings;
   std::string camera;

@@ -13,6 +13,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/bus/channels.hpp"
 #include "tools/view/view_outputs.hpp"
 
 namespace houghstream {
@@ -55,9 +56,9 @@ ViewWindow::ViewWindow() {
   cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
 }
 
-void ViewWindow::show(const cv::Mat& picture, std::int64_t utime) {
+void ViewWindow::show(const cv::Mat& picture, const FrameId& id) {
   shown_ = picture;
-  utime_ = utime;
+  id_ = id;
   cv::imshow(kTitle, picture);
 }
 
@@ -71,7 +72,7 @@ KeyAction ViewWindow::handle_keys(FrameViewSettings& settings) {
 
 void ViewWindow::save() const {
   if (shown_.empty()) return;
-  const std::string file = fmt::format("view_{}.png", utime_);
+  const std::string file = fmt::format("view_{}_{}.png", channel::camera_name(id_.channel), id_.utime);
   write_picture(file, shown_);
   log_info("saved {}", file);
 }

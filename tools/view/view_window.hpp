@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <opencv2/core.hpp>
 
+#include "pipeline/types/frame_id.hpp"
 #include "tools/view/view_keys.hpp"
 
 namespace houghstream {
@@ -13,7 +13,7 @@ class ViewWindow {
   /// Throws InputError, naming the headless options, where there is no display.
   ViewWindow();
 
-  void show(const cv::Mat& picture, std::int64_t utime);
+  void show(const cv::Mat& picture, const FrameId& id);
 
   /// Lets the window live for a moment and acts on keys.
   KeyAction handle_keys(FrameViewSettings& settings);
@@ -22,7 +22,7 @@ class ViewWindow {
   void save() const;
 
   cv::Mat shown_;
-  std::int64_t utime_ = 0;
+  FrameId id_;
 };
 
 }  // namespace houghstream

@@ -34,15 +34,15 @@ void run_viewer(const ViewerSettings& settings) {
   MatchSettings match;
   match.rate_hz = settings.show.outputs.rate_hz;
   LcmBus bus(settings.lcm_url);
-  BusWatcher watcher(bus, settings.frame_channel, match, waiting_frames(settings.show));
+  BusWatcher watcher(bus, settings.frame_channels, match, waiting_frames(settings.show));
   step_back();
-  log_info("ready: watching {}", settings.frame_channel);
+  log_info("ready: watching {}", settings.frame_channels);
 
   const auto start = Clock::now();
   const std::chrono::duration<double> limit(settings.duration);
   while (!stop_requested() && !frame_show.complete() && (settings.duration <= 0.0 || Clock::now() - start < limit)) {
     if (const auto matched = watcher.next(std::chrono::milliseconds(20))) frame_show.show(*matched, watcher);
-    if (!frame_show.handle_keys()) break;
+    if (!frame_show.handle_keys(watcher)) break;
   }
   watcher.stop();
   while (const auto matched = watcher.next(std::chrono::milliseconds(0))) frame_show.show(*matched, watcher);

@@ -9,9 +9,9 @@ namespace houghstream {
 
 /// What hs-view does.
 struct ViewerSettings {
-  std::string lcm_url;                          ///< "" = LCM's default
-  std::string frame_channel = channel::kFrame;  ///< images_t
-  double duration = 0.0;                        ///< seconds; 0 = until asked to end
+  std::string lcm_url;                           ///< "" = LCM's default
+  std::string frame_channels = channel::kFrame;  ///< a ChannelPattern; of several cameras one is shown at a time
+  double duration = 0.0;                         ///< seconds; 0 = until asked to end
   ShowSettings show;
 };
 

@@ -48,7 +48,7 @@ TEST(BopScene, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(frame.colour.at<cv::Vec3b>(5, 5), cv::Vec3b(10, 20, 30));
   EXPECT_NEAR(frame.depth.at<float>(1, 1), 1.010F, 1e-6F);
   EXPECT_TRUE(std::isnan(frame.depth.at<float>(0, 0)));
-  EXPECT_EQ(frame.utime - scene.read_frame(9).utime, 33333);
+  EXPECT_EQ(frame.id.utime - scene.read_frame(9).id.utime, 33333);
   ASSERT_EQ(scene.images()[10].objects.size(), 1U);
   const TrueObject& object = scene.images()[10].objects[0];
   EXPECT_EQ(object.object_id, 3);

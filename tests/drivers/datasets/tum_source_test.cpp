@@ -35,12 +35,12 @@ TEST(TumSource, PairsNearestInTime) {
   const auto source = open_tum_source(folder, kCamera);
   const auto first = source->next();
   ASSERT_TRUE(first.has_value());
-  EXPECT_EQ(first->utime, 1'305'031'102'160'407);
+  EXPECT_EQ(first->id.utime, 1'305'031'102'160'407);
   EXPECT_EQ(first->colour.at<cv::Vec3b>(0, 0)[0], 0);
   EXPECT_FLOAT_EQ(first->depth.at<float>(0, 0), 1.0F);
   const auto second = source->next();
   ASSERT_TRUE(second.has_value());
-  EXPECT_EQ(second->utime, 1'305'031'102'240'000);
+  EXPECT_EQ(second->id.utime, 1'305'031'102'240'000);
   EXPECT_EQ(second->colour.at<cv::Vec3b>(0, 0)[0], 2);
   EXPECT_FLOAT_EQ(second->depth.at<float>(0, 0), 1.001F);
   EXPECT_FALSE(source->next().has_value());

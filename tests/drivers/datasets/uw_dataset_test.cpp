@@ -133,7 +133,7 @@ TEST(UwDataset, BackgroundVideosLieInFoldersBelow) {
   EXPECT_NE(views[0].source.find("background_2_2.png"), std::string::npos);
   EXPECT_NE(views[1].source.find("background_2_10.png"), std::string::npos);
   EXPECT_NE(views[3].source.find("background_10_10.png"), std::string::npos);
-  EXPECT_LT(views[0].frame.utime, views[3].frame.utime);
+  EXPECT_LT(views[0].frame.id.utime, views[3].frame.id.utime);
   fs::remove(folder / "background_10" / "background_10_2.png");
   EXPECT_THROW(read_background_views(folder, kCamera), InputError);
 }

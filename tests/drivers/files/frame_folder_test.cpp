@@ -29,7 +29,7 @@ TEST(FrameFolder, PairsAreFoundUnderAnyOfTheirNamesAndOrderedByNumber) {
   EXPECT_EQ(pairs[1].colour.filename(), "a_9_color.png");
   EXPECT_EQ(pairs[2].depth.filename(), "a_10_depth.png");
   const RgbdFrame frame = read_frame_pair(pairs[2], plain_frame().camera, 77);
-  EXPECT_EQ(frame.utime, 77);
+  EXPECT_EQ(frame.id.utime, 77);
   EXPECT_EQ(cv::norm(frame.colour, plain_frame().colour, cv::NORM_INF), 0.0);
   Camera other = plain_frame().camera;
   other.width = 32;

@@ -142,7 +142,7 @@ TEST(CameraSource, AnUnpluggedCameraIsWaitedFor) {
   CameraListener listener = patient_listener(30);
   listener.trouble = [&](const std::string& reason) { words.push_back(reason); };
   const auto source = open_camera_source("AA02", CameraOptions{}, listener);
-  std::int64_t last = source->next()->utime;
+  std::int64_t last = source->next()->id.utime;
   Clock::time_point replugged;
   std::thread hand([&] {
     camera.change("serial AA01\nserial AA02\nplugged no\n");
@@ -154,8 +154,8 @@ TEST(CameraSource, AnUnpluggedCameraIsWaitedFor) {
   while (words.size() < 2) {
     const std::optional<RgbdFrame> frame = source->next();
     ASSERT_TRUE(frame.has_value());
-    gap = std::max(gap, frame->utime - last);
-    last = frame->utime;
+    gap = std::max(gap, frame->id.utime - last);
+    last = frame->id.utime;
   }
   const Clock::time_point back = Clock::now();
   hand.join();
@@ -177,10 +177,10 @@ TEST(CameraSource, AJumpOfTheDevicesClockDoesNotShow) {
       if (i == 20) camera.change(std::string("can_sync no\n") + jump);
       const RgbdFrame frame = source->next().value();
       EXPECT_LT(error_px(frame), 0.5) << i;
-      EXPECT_GT(frame.utime, last) << i;
-      EXPECT_LE(frame.utime, utime_now()) << i;
-      EXPECT_GT(frame.utime, utime_now() - 1'250'000) << i << ": half of the jump, for a busy machine";
-      last = frame.utime;
+      EXPECT_GT(frame.id.utime, last) << i;
+      EXPECT_LE(frame.id.utime, utime_now()) << i;
+      EXPECT_GT(frame.id.utime, utime_now() - 1'250'000) << i << ": half of the jump, for a busy machine";
+      last = frame.id.utime;
     }
   }
 }

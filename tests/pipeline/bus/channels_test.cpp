@@ -11,5 +11,14 @@ TEST(Channels, ObjectsHaveTransformChannels) {
   EXPECT_EQ(channel::to_camera(std::string(100, 'x')).size(), 63U);
 }
 
+TEST(Channels, ATransformSaysWhichCameraWhereThereAreSeveral) {
+  EXPECT_EQ(channel::to_camera("mug", "LEFT_CAMERA"), "MUG_TO_LEFT_CAMERA");
+  EXPECT_EQ(channel::to_camera("mug", "left-cam.2"), "MUG_TO_LEFT_CAM_2");
+  const std::string left = channel::to_camera(std::string(100, 'x'), std::string(50, 'y') + "_LEFT");
+  const std::string right = channel::to_camera(std::string(100, 'x'), std::string(50, 'y') + "_RIGHT");
+  EXPECT_EQ(left.size(), 63U);
+  EXPECT_NE(left, right);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
@@ -17,7 +20,7 @@ using std::chrono::milliseconds;
 
 detections_t numbered(std::int64_t utime) {
   Detections detections;
-  detections.utime = utime;
+  detections.frame.utime = utime;
   return to_message(detections);
 }
 
@@ -43,6 +46,59 @@ TEST(LcmBus, ThrowingHandlersDoNotStopIt) {
   EXPECT_TRUE(bus.handle(milliseconds(100)));
   EXPECT_TRUE(bus.handle(milliseconds(100)));
   EXPECT_EQ(calls, 2);
+}
+
+/// The channels, of those that hold messages, from which a subscriber of `pattern` gets them.
+std::string heard(LcmBus& bus, const std::string& pattern, const std::function<void()>& play) {
+  std::string names;
+  bus.subscribe(pattern, [&](const Arrival& arrival) { names += arrival.channel + " "; });
+  play();
+  return names;
+}
+
+TEST(LcmBus, APatternMeansTheSameOnTheBusAndInALog) {
+  const std::vector<std::string> channels = {"LEFT", "LEFT_2", "UPRIGHT", "RIGHT", "DEFT"};
+  const auto file = std::filesystem::temp_directory_path() / ("lcm_bus_test_pattern." + std::to_string(getpid()));
+  LogWriter writer(file);
+  const std::vector<std::uint8_t> bytes = encode_message(numbered(1));
+  for (const std::string& name : channels) writer.write(1, name, {bytes.data(), bytes.size()});
+  writer.close();
+  for (const auto& [pattern, expected] :
+       {std::pair<std::string, std::string>{"LEFT|RIGHT", "LEFT RIGHT "}, {".EFT", "LEFT DEFT "}, {"LEFT", "LEFT "}}) {
+    LcmBus network("memq://");
+    EXPECT_EQ(heard(network, pattern,
+                    [&] {
+                      for (const std::string& name : channels) network.publish(name, numbered(1));
+                      for (std::size_t i = 0; i < channels.size(); ++i) network.handle(milliseconds(10));
+                    }),
+              expected);
+    LcmBus log("file://" + file.string());
+    EXPECT_EQ(heard(log, pattern,
+                    [&] {
+                      while (log.handle(milliseconds(0))) {
+                      }
+                    }),
+              expected);
+    EXPECT_THROW(log.subscribe("(", {}), InputError);
+    EXPECT_THROW(network.subscribe("(", {}), InputError);
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(LcmBus, AFloodOfBadMessagesIsNotLoggedLineByLine) {
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  {
+    LcmBus bus("memq://");
+    bus.subscribe("X", [&](const Arrival&) { throw std::runtime_error("handler failed"); });
+    for (int i = 0; i < 50; ++i) {
+      bus.publish("X", numbered(i));
+      bus.handle(milliseconds(100));
+    }
+  }
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 2) << log;
+  EXPECT_NE(log.find("49 more messages dropped"), std::string::npos) << log;
 }
 
 TEST(LcmBus, RefusesWhatItCannotOpen) {

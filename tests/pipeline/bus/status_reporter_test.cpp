@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channels.hpp"
 
 namespace houghstream {
@@ -41,6 +43,30 @@ TEST(StatusReporter, GapsInTheNumberingAreLostFrames) {
   EXPECT_EQ(status.message().frames_lost, 2);
   for (const std::int64_t sequence : {0, 1, 3}) status.note_sequence(sequence);
   EXPECT_EQ(status.message().frames_lost, 3) << "a new run starts at 0 and loses nothing by it";
+}
+
+TEST(StatusReporter, EachCameraHasANumberingOfItsOwn) {
+  StatusReporter status("hs-test");
+  for (const std::int64_t sequence : {0, 1, 2}) {
+    status.note_sequence(sequence, "LEFT");
+    status.note_sequence(100 + 2 * sequence, "RIGHT");
+  }
+  EXPECT_EQ(status.message().frames_lost, 2);
+}
+
+TEST(StatusReporter, AFloodOfErrorsIsCountedAndSaidOnceASecondOfEachKind) {
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  StatusReporter status("hs-test");
+  for (int i = 0; i < 50; ++i) {
+    status.count_refused("bad frame", "frame");
+    status.count_refused("no pose", "work");
+    status.note_bad_message("bad status");
+  }
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 3) << log;
+  EXPECT_EQ(status.message().frames_refused, 100);
+  EXPECT_NE(status.summary().find("100 refused; 50 other bad messages"), std::string::npos) << status.summary();
 }
 
 TEST(StatusReporter, IsPublishedOnceASecond) {

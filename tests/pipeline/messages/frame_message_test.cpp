@@ -30,7 +30,7 @@ images_t foreign(images_t message) {
 
 void expect_refused(const images_t& message, const std::string& because) {
   try {
-    frame_from_message(message, std::nullopt);
+    frame_from_message(message, "LEFT", std::nullopt);
     FAIL() << "accepted, expected a refusal because of " << because;
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find(because), std::string::npos) << error.what();
@@ -40,8 +40,8 @@ void expect_refused(const images_t& message, const std::string& because) {
 
 TEST(FrameMessage, RawFramesComeBackExactly) {
   const RgbdFrame frame = make_test_frame(99);
-  const RgbdFrame back = frame_from_message(raw_message(), std::nullopt);
-  EXPECT_EQ(back.utime, 99);
+  const RgbdFrame back = frame_from_message(raw_message(), "LEFT", std::nullopt);
+  EXPECT_EQ(back.id, (FrameId{"LEFT", 99}));
   EXPECT_EQ(cv::norm(back.colour, frame.colour, cv::NORM_INF), 0.0);
   EXPECT_TRUE(same_depth(back.depth, frame.depth));
   EXPECT_EQ(back.camera, frame.camera);
@@ -54,7 +54,7 @@ TEST(FrameMessage, CompressedDepthComesBackExactly) {
   const images_t message = good_message();
   EXPECT_EQ(message.images[0].pixelformat, image_t::PIXEL_FORMAT_MJPEG);
   EXPECT_EQ(message.image_types[1], images_t::DEPTH_MM_ZIPPED);
-  const RgbdFrame back = frame_from_message(message, std::nullopt);
+  const RgbdFrame back = frame_from_message(message, "LEFT", std::nullopt);
   EXPECT_TRUE(same_depth(back.depth, make_test_frame(99).depth));
   EXPECT_EQ(sequence_of(message), 3);
 }
@@ -70,13 +70,13 @@ TEST(FrameMessage, AForeignFrameNeedsTheCameraOption) {
   const images_t message = foreign(good_message());
   expect_refused(message, "--camera");
   const Camera camera = make_test_frame(99).camera;
-  EXPECT_EQ(frame_from_message(message, camera).camera, camera);
+  EXPECT_EQ(frame_from_message(message, "LEFT", camera).camera, camera);
   EXPECT_FALSE(sequence_of(message).has_value());
 }
 
 TEST(FrameMessage, ACameraOfAnotherSizeIsRefused) {
   const Camera vga{640, 480, 525, 525, 319.5, 239.5};
-  EXPECT_THROW(frame_from_message(foreign(good_message()), vga), InputError);
+  EXPECT_THROW(frame_from_message(foreign(good_message()), "LEFT", vga), InputError);
 }
 
 TEST(FrameMessage, BgrGrayAndPaddedRowsAreUnderstood) {
@@ -84,14 +84,14 @@ TEST(FrameMessage, BgrGrayAndPaddedRowsAreUnderstood) {
   image_t& colour = message.images[0];
   colour.pixelformat = image_t::PIXEL_FORMAT_BGR;
   const std::uint8_t first = colour.data[0];
-  EXPECT_EQ(frame_from_message(message, std::nullopt).colour.at<cv::Vec3b>(0, 0)[0], first);
+  EXPECT_EQ(frame_from_message(message, "LEFT", std::nullopt).colour.at<cv::Vec3b>(0, 0)[0], first);
 
   colour.pixelformat = image_t::PIXEL_FORMAT_GRAY;
   colour.row_stride = 64 + 7;
   colour.data.assign(static_cast<std::size_t>(colour.row_stride) * 48, 17);
   colour.data[static_cast<std::size_t>(colour.row_stride)] = 200;
   colour.size = static_cast<std::int32_t>(colour.data.size());
-  const cv::Mat grey = frame_from_message(message, std::nullopt).colour;
+  const cv::Mat grey = frame_from_message(message, "LEFT", std::nullopt).colour;
   EXPECT_EQ(grey.at<cv::Vec3b>(1, 0), cv::Vec3b(200, 200, 200));
   EXPECT_EQ(grey.at<cv::Vec3b>(1, 1), cv::Vec3b(17, 17, 17));
 }
@@ -105,14 +105,14 @@ TEST(FrameMessage, AFourthChannelIsPassedOver) {
   colour.data[0] = 200;
   colour.data[3] = 17;
   colour.pixelformat = image_t::PIXEL_FORMAT_RGBA;
-  EXPECT_EQ(frame_from_message(message, std::nullopt).colour.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 200));
+  EXPECT_EQ(frame_from_message(message, "LEFT", std::nullopt).colour.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 200));
   colour.pixelformat = image_t::PIXEL_FORMAT_BGRA;
-  EXPECT_EQ(frame_from_message(message, std::nullopt).colour.at<cv::Vec3b>(0, 0), cv::Vec3b(200, 0, 0));
+  EXPECT_EQ(frame_from_message(message, "LEFT", std::nullopt).colour.at<cv::Vec3b>(0, 0), cv::Vec3b(200, 0, 0));
 }
 
 TEST(FrameMessage, ImagesAreReadWithoutACamera) {
   const images_t message = foreign(raw_message());
-  const ImagePair images = images_from_message(message);
+  const FrameImages images = images_from_message(message);
   EXPECT_EQ(cv::norm(images.colour, make_test_frame(99).colour, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(images.depth_mm, depth_to_millimetres(make_test_frame(99).depth), cv::NORM_INF), 0.0);
   EXPECT_FALSE(camera_of(message).has_value());
@@ -123,7 +123,7 @@ TEST(FrameMessage, CameraAndCounterCanBeAdded) {
   const Camera camera = make_test_frame(99).camera;
   add_camera(message, camera);
   add_sequence(message, 7);
-  EXPECT_EQ(frame_from_message(message, std::nullopt).camera, camera);
+  EXPECT_EQ(frame_from_message(message, "LEFT", std::nullopt).camera, camera);
   EXPECT_EQ(sequence_of(message), 7);
   images_t empty{};
   EXPECT_THROW(add_camera(empty, camera), InputError);
@@ -134,7 +134,7 @@ TEST(FrameMessage, ImagesAreFoundByTypeNotByPosition) {
   std::swap(message.images[0], message.images[1]);
   std::swap(message.image_types[0], message.image_types[1]);
   const Camera camera = make_test_frame(99).camera;
-  EXPECT_TRUE(same_depth(frame_from_message(message, camera).depth, make_test_frame(99).depth));
+  EXPECT_TRUE(same_depth(frame_from_message(message, "LEFT", camera).depth, make_test_frame(99).depth));
 }
 
 TEST(FrameMessage, MissingImagesAreRefused) {
@@ -167,7 +167,7 @@ TEST(FrameMessage, AbsurdSizesAreRefused) {
     for (images_t message : {good_message(), raw_message()}) {
       message.images[0].width = message.images[1].width = size;
       message.images[0].height = message.images[1].height = size;
-      EXPECT_THROW(frame_from_message(message, std::nullopt), InputError) << size;
+      EXPECT_THROW(frame_from_message(message, "LEFT", std::nullopt), InputError) << size;
     }
   }
 }

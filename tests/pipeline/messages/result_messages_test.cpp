@@ -24,8 +24,7 @@ Detections make_detections() {
   const Eigen::Quaternionf turned(Eigen::AngleAxisf(0.7F, Eigen::Vector3f(1, 2, 3).normalized()));
   mug.rotations = {{turned, 2.0F}, {Eigen::Quaternionf::Identity(), 1.0F}};
   Detections all;
-  all.utime = 77;
-  all.source_channel = "OPENNI_FRAME";
+  all.frame = {"OPENNI_FRAME", 77};
   all.detections = {mug};
   all.stages = {{"capture.read", 5}, {"detect.forest", 9000}};
   return all;
@@ -65,8 +64,7 @@ Message over_the_wire(const Message& message) {
 TEST(ResultMessages, DetectionsComeBack) {
   const Detections sent = make_detections();
   const Detections back = detections_from_message(over_the_wire(to_message(sent)));
-  EXPECT_EQ(back.utime, 77);
-  EXPECT_EQ(back.source_channel, "OPENNI_FRAME");
+  EXPECT_EQ(back.frame, (FrameId{"OPENNI_FRAME", 77}));
   ASSERT_EQ(back.detections.size(), 1U);
   const Detection& mug = back.detections[0];
   EXPECT_EQ(mug.class_id, 3);
@@ -85,11 +83,11 @@ TEST(ResultMessages, DetectionsComeBack) {
 
 TEST(ResultMessages, EmptyResultsAreResults) {
   Detections none;
-  none.utime = 5;
-  EXPECT_EQ(detections_from_message(over_the_wire(to_message(none))).utime, 5);
+  none.frame.utime = 5;
+  EXPECT_EQ(detections_from_message(over_the_wire(to_message(none))).frame.utime, 5);
   ObjectPoses no_poses;
-  no_poses.utime = 6;
-  EXPECT_EQ(poses_from_message(over_the_wire(to_message(no_poses))).utime, 6);
+  no_poses.frame.utime = 6;
+  EXPECT_EQ(poses_from_message(over_the_wire(to_message(no_poses))).frame.utime, 6);
 }
 
 TEST(ResultMessages, VotesAreCapped) {

@@ -88,8 +88,7 @@ TEST(WireCheck, AnotherTypeIsRefusedByName) {
 
 TEST(WireCheck, DamagedResultsNeverCrash) {
   Detections detections;
-  detections.utime = 7;
-  detections.source_channel = "OPENNI_FRAME";
+  detections.frame = {"OPENNI_FRAME", 7};
   Detection detection;
   detection.class_id = 1;
   detection.class_name = "bowl";

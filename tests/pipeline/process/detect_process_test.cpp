@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <houghstream/status_t.hpp>
+#include <map>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/event_log.hpp"
@@ -16,7 +17,6 @@ using std::chrono::milliseconds;
 
 Detections find_nothing(const RgbdFrame& frame) {
   Detections none;
-  none.utime = frame.utime;
   none.stages = frame.stages;
   return none;
 }
@@ -68,10 +68,48 @@ TEST(DetectProcess, TakesTheNewestAndAccountsForTheRest) {
   EXPECT_EQ(static_cast<std::int64_t>(test.count(channel::kDetections)), status.frames_processed);
 }
 
+TEST(DetectProcess, FramesOfALogAreKeptWhereAskedEachBeforeItsResult) {
+  catch_stop_signals();
+  const auto folder = std::filesystem::temp_directory_path();
+  const auto input = folder / ("detect_process_keep_in." + std::to_string(getpid()));
+  const auto output = folder / ("detect_process_keep_out." + std::to_string(getpid()));
+  std::map<std::string, std::vector<std::uint8_t>> sent;
+  LogWriter writer(input);
+  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+    sent[camera] = encode_message(frame_message(5, camera == "LEFT" ? 0 : 1));
+    writer.write(77, camera, {sent[camera].data(), sent[camera].size()});
+    writer.write(78, "OTHER", {sent[camera].data(), sent[camera].size()});
+  }
+  writer.close();
+  DetectProcessOptions options;
+  options.frame_channels = "LEFT|RIGHT";
+  options.keep_frames = true;
+  {
+    LcmBus bus("file://" + input.string(), output.string());
+    run_detect_process(bus, options, find_nothing);
+  }
+  LogReader results(output);
+  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+    const std::optional<LogEvent> frame = results.next();
+    ASSERT_TRUE(frame.has_value());
+    EXPECT_EQ(frame->channel, camera);
+    EXPECT_EQ(frame->timestamp, 77);
+    EXPECT_EQ(frame->data, sent[camera]);
+    const std::optional<LogEvent> found = results.next();
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(read_result_frame({found->data.data(), found->data.size()}, "test"), (FrameId{camera, 5}));
+  }
+  EXPECT_FALSE(results.next().has_value());
+  LcmBus network("memq://");
+  EXPECT_THROW(run_detect_process(network, options, find_nothing), InputError);
+  std::filesystem::remove(input);
+  std::filesystem::remove(output);
+}
+
 TEST(DetectProcess, BadFramesAreCountedReportedAndDropped) {
   ProcessOnMemq test({channel::kDetections, channel::kStatus});
   test.start(process_with([](const RgbdFrame& frame) {
-    if (frame.utime == 4) fail("the detector refuses frame 4");
+    if (frame.id.utime == 4) fail("the detector refuses frame 4");
     return find_nothing(frame);
   }));
   const auto send = [&](const images_t& message) {
@@ -126,6 +164,38 @@ TEST(DetectProcess, FramesOfOtherDriversAreWorkedOnWithTheCameraOption) {
   const auto status = test.last<status_t>(channel::kStatus);
   EXPECT_EQ(status.frames_processed, 1);
   EXPECT_EQ(status.frames_refused, 0);
+}
+
+TEST(DetectProcess, CamerasOfAPatternAreServedInTurnAndResultsBearTheirNames) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  DetectProcessOptions options;
+  options.frame_channels = "LEFT|RIGHT|" + channel::kDetections;
+  test.start([&](LcmBus& bus) {
+    run_detect_process(bus, options, [](const RgbdFrame& frame) {
+      std::this_thread::sleep_for(milliseconds(30));
+      return find_nothing(frame);
+    });
+  });
+  constexpr std::int64_t kFrames = 30;
+  for (std::int64_t i = 0; i < kFrames; ++i) {
+    test.bus.publish("LEFT", frame_message(1000 + i, i));
+    if (i % 6 == 0) test.bus.publish("RIGHT", frame_message(1000 + i, i / 6));
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  const std::int64_t sent = kFrames + kFrames / 6;
+  const auto done = [&] { return test.count(channel::kDetections); };
+  for (std::size_t before = 0; before != done(); std::this_thread::sleep_for(milliseconds(200))) before = done();
+  test.stop();
+  int right = 0;
+  for (std::size_t i = 0; i < test.count(channel::kDetections); ++i) {
+    right += test.at<detections_t>(channel::kDetections, i).source_channel == "RIGHT" ? 1 : 0;
+  }
+  EXPECT_GE(right, 3) << "of 5: the slow camera is not starved";
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_received, sent) << "its own results are no frames";
+  EXPECT_EQ(status.frames_processed + status.frames_skipped, sent);
+  EXPECT_GT(status.frames_skipped, 5);
+  EXPECT_EQ(status.frames_lost, 0);
 }
 
 TEST(DetectProcess, ALogIsWorkedOnWithoutSkipping) {

@@ -11,19 +11,23 @@ std::vector<std::uint8_t> bytes(int value) {
   return {static_cast<std::uint8_t>(value)};
 }
 
+FrameId id(std::int64_t utime) {
+  return {"LEFT", utime};
+}
+
 TEST(PairInbox, PairsWhicheverComesFirst) {
   PairInbox inbox(true);
-  inbox.put_frame(1, bytes(11));
+  inbox.put_frame(id(1), bytes(11));
   EXPECT_FALSE(inbox.take(kNow).has_value());
-  inbox.put_detections(1, bytes(21));
-  std::optional<FramePair> pair = inbox.take(kNow);
+  inbox.put_detections(id(1), bytes(21));
+  std::optional<PairedMessages> pair = inbox.take(kNow);
   ASSERT_TRUE(pair.has_value());
   EXPECT_EQ(pair->frame, bytes(11));
   EXPECT_EQ(pair->detections, bytes(21));
 
-  inbox.put_detections(2, bytes(22));
+  inbox.put_detections(id(2), bytes(22));
   EXPECT_FALSE(inbox.take(kNow).has_value());
-  inbox.put_frame(2, bytes(12));
+  inbox.put_frame(id(2), bytes(12));
   pair = inbox.take(kNow);
   ASSERT_TRUE(pair.has_value());
   EXPECT_EQ(pair->frame, bytes(12));
@@ -32,17 +36,17 @@ TEST(PairInbox, PairsWhicheverComesFirst) {
 
 TEST(PairInbox, NeverPairsAnotherFrame) {
   PairInbox inbox(true);
-  inbox.put_frame(1, bytes(11));
-  inbox.put_frame(3, bytes(13));
-  inbox.put_detections(2, bytes(22));
+  inbox.put_frame(id(1), bytes(11));
+  inbox.put_frame(id(3), bytes(13));
+  inbox.put_detections(id(2), bytes(22));
   EXPECT_FALSE(inbox.take(kNow).has_value());
 }
 
 TEST(PairInbox, NewestFirstPassesOverOlderOnes) {
   PairInbox inbox(true);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(i, bytes(10 + i));
-    inbox.put_detections(i, bytes(20 + i));
+    inbox.put_frame(id(i), bytes(10 + i));
+    inbox.put_detections(id(i), bytes(20 + i));
   }
   EXPECT_EQ(inbox.take(kNow)->detections, bytes(23));
   EXPECT_FALSE(inbox.take(kNow).has_value());
@@ -53,19 +57,19 @@ TEST(PairInbox, NewestFirstPassesOverOlderOnes) {
 TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
   PairInbox inbox(true);
   EXPECT_FALSE(inbox.take_fresh().has_value());
-  inbox.put_frame(1, bytes(11));
-  inbox.put_frame(2, bytes(12));
+  inbox.put_frame(id(1), bytes(11));
+  inbox.put_frame(id(2), bytes(12));
   EXPECT_FALSE(inbox.take(std::chrono::minutes(1)).has_value()) << "does not wait: a frame has come";
   const std::optional<ArrivedFrame> fresh = inbox.take_fresh();
   ASSERT_TRUE(fresh.has_value());
-  EXPECT_EQ(fresh->utime, 2);
+  EXPECT_EQ(fresh->id, id(2));
   EXPECT_EQ(fresh->bytes, bytes(12));
   EXPECT_FALSE(inbox.take_fresh().has_value());
-  inbox.put_detections(2, bytes(22));
+  inbox.put_detections(id(2), bytes(22));
   EXPECT_EQ(inbox.take(kNow)->frame, bytes(12)) << "it stays for its detections";
 
-  inbox.put_frame(3, bytes(13));
-  inbox.put_detections(3, bytes(23));
+  inbox.put_frame(id(3), bytes(13));
+  inbox.put_detections(id(3), bytes(23));
   EXPECT_TRUE(inbox.take(kNow).has_value());
   EXPECT_FALSE(inbox.take_fresh().has_value()) << "its pair has been taken";
 }
@@ -73,8 +77,8 @@ TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
 TEST(PairInbox, ALogIsWorkedOnInTurn) {
   PairInbox inbox(false);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(i, bytes(10 + i));
-    inbox.put_detections(i, bytes(20 + i));
+    inbox.put_frame(id(i), bytes(10 + i));
+    inbox.put_detections(id(i), bytes(20 + i));
   }
   for (int i = 1; i <= 3; ++i) EXPECT_EQ(inbox.take(kNow)->detections, bytes(20 + i));
   EXPECT_EQ(inbox.take_dropped().skipped, 0);
@@ -82,30 +86,85 @@ TEST(PairInbox, ALogIsWorkedOnInTurn) {
 
 TEST(PairInbox, DetectionsWithoutAFrameAreGivenUpInTheEnd) {
   PairInbox inbox(true);
-  inbox.put_detections(-5, bytes(1));
-  for (int i = 0; i < PairInbox::kWait; ++i) inbox.put_frame(i, bytes(i));
+  inbox.put_detections(id(-5), bytes(1));
+  for (int i = 0; i < PairInbox::kWait; ++i) inbox.put_frame(id(i), bytes(i));
   EXPECT_TRUE(inbox.take_dropped().without_frame.empty());
-  inbox.put_frame(100, bytes(0));
-  EXPECT_EQ(inbox.take_dropped().without_frame, std::vector<std::int64_t>{-5});
+  inbox.put_frame(id(100), bytes(0));
+  EXPECT_EQ(inbox.take_dropped().without_frame, std::vector<FrameId>{id(-5)});
 
-  inbox.put_detections(200, bytes(2));
+  inbox.put_detections(id(200), bytes(2));
   inbox.give_up_waiting();
-  EXPECT_EQ(inbox.take_dropped().without_frame, std::vector<std::int64_t>{200});
+  EXPECT_EQ(inbox.take_dropped().without_frame, std::vector<FrameId>{id(200)});
 }
 
 TEST(PairInbox, MemoryIsBoundedWhereFramesNeverCome) {
   PairInbox inbox(true);
   const int count = 500;
-  for (int i = 0; i < count; ++i) inbox.put_detections(i, bytes(0));
+  for (int i = 0; i < count; ++i) inbox.put_detections(id(i), bytes(0));
   EXPECT_EQ(inbox.take_dropped().without_frame.size(), count - PairInbox::kHistory);
+}
+
+TEST(PairInbox, TwoCamerasOfEqualTimesKeepTheirFramesApart) {
+  for (const bool newest_first : {true, false}) {
+    PairInbox inbox(newest_first);
+    inbox.put_frame({"LEFT", 1}, bytes(11));
+    inbox.put_frame({"RIGHT", 1}, bytes(12));
+    inbox.put_detections({"RIGHT", 1}, bytes(22));
+    inbox.put_detections({"LEFT", 1}, bytes(21));
+    for (int i = 0; i < 2; ++i) {
+      const std::optional<PairedMessages> pair = inbox.take(kNow);
+      ASSERT_TRUE(pair.has_value());
+      const int camera = pair->id.channel == "LEFT" ? 1 : 2;
+      EXPECT_EQ(pair->frame, bytes(10 + camera));
+      EXPECT_EQ(pair->detections, bytes(20 + camera));
+    }
+    EXPECT_EQ(inbox.take_dropped().skipped, 0);
+  }
+}
+
+TEST(PairInbox, AFastCameraDoesNotStarveASlowOne) {
+  PairInbox inbox(true);
+  int slow = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < 5; ++k) {
+      inbox.put_frame({"FAST", 5 * i + k}, bytes(0));
+      inbox.put_detections({"FAST", 5 * i + k}, bytes(0));
+    }
+    inbox.put_frame({"SLOW", i}, bytes(0));
+    inbox.put_detections({"SLOW", i}, bytes(0));
+    slow += inbox.take(kNow)->id.channel == "SLOW" ? 1 : 0;
+  }
+  EXPECT_EQ(slow, 10) << "each has its turn";
+}
+
+TEST(PairInbox, OfTwoDetectorsEachKeepsItsNewestResult) {
+  PairInbox inbox(true);
+  for (int i = 1; i <= 3; ++i) {
+    inbox.put_frame(id(i), bytes(10 + i));
+    inbox.put_detections(id(i), bytes(20 + i));
+    inbox.put_detections(id(i), bytes(30 + i));
+  }
+  EXPECT_EQ(inbox.take(kNow)->detections, bytes(23));
+  EXPECT_EQ(inbox.take(kNow)->detections, bytes(33));
+  EXPECT_FALSE(inbox.take(kNow).has_value());
+  EXPECT_EQ(inbox.take_dropped().skipped, 4);
+}
+
+TEST(PairInbox, OtherCamerasFramesDoNotAgeWhatWaits) {
+  PairInbox inbox(true);
+  inbox.put_detections({"LEFT", 7}, bytes(1));
+  for (int i = 0; i < 5 * PairInbox::kWait; ++i) inbox.put_frame({"RIGHT", i}, bytes(0));
+  EXPECT_TRUE(inbox.take_dropped().without_frame.empty());
+  inbox.put_frame({"LEFT", 7}, bytes(2));
+  EXPECT_TRUE(inbox.take(kNow).has_value());
 }
 
 TEST(PairInbox, OldFramesAreForgotten) {
   PairInbox inbox(true);
-  for (int i = 0; i <= static_cast<int>(PairInbox::kHistory); ++i) inbox.put_frame(i, bytes(0));
-  inbox.put_detections(0, bytes(0));
+  for (int i = 0; i <= static_cast<int>(PairInbox::kHistory); ++i) inbox.put_frame(id(i), bytes(0));
+  inbox.put_detections(id(0), bytes(0));
   EXPECT_FALSE(inbox.take(kNow).has_value());
-  inbox.put_detections(1, bytes(0));
+  inbox.put_detections(id(1), bytes(0));
   EXPECT_TRUE(inbox.take(kNow).has_value());
 }
 

@@ -1,7 +1,13 @@
 #include "pipeline/process/pose_process.hpp"
 
+#include <unistd.h>
+
+#include <filesystem>
 #include <houghstream/status_t.hpp>
 
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/bus/event_log.hpp"
 #include "tests/pipeline/process_test.hpp"
 
 namespace houghstream {
@@ -9,33 +15,33 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Detections one_bowl(std::int64_t utime) {
+Detections one_bowl(std::int64_t utime, const std::string& camera = channel::kFrame) {
   Detection bowl;
   bowl.class_id = 1;
   bowl.class_name = "bowl";
   bowl.box_px = {1, 2, 3, 4};
   Detections detections;
-  detections.utime = utime;
-  detections.source_channel = channel::kFrame;
+  detections.frame = {camera, utime};
   detections.detections = {bowl};
   return detections;
 }
 
-ObjectPoses at_one_metre(const RgbdFrame& frame, const Detections& detections) {
-  EXPECT_EQ(frame.utime, detections.utime);
+ObjectPoses at_one_metre(const RgbdFrame& frame, const Detections& detections, const ObjectPoses&) {
+  EXPECT_EQ(frame.id, detections.frame);
   ObjectPose pose;
   pose.class_name = detections.detections.at(0).class_name;
+  pose.detection_index = 0;
   pose.status = PoseStatus::kValid;
   pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1));
   ObjectPoses poses;
-  poses.utime = detections.utime;
+  poses.frame = detections.frame;
   poses.poses = {pose};
   poses.stages = detections.stages;
   return poses;
 }
 
-void send_frame(ProcessOnMemq& test, std::int64_t utime) {
-  test.bus.publish(channel::kFrame, to_message(make_test_frame(utime), WireFormat{}, utime));
+void send_frame(ProcessOnMemq& test, std::int64_t utime, const std::string& camera = channel::kFrame) {
+  test.bus.publish(camera, to_message(make_test_frame(utime), WireFormat{}, utime));
 }
 
 void run_fake(LcmBus& bus) {
@@ -49,8 +55,7 @@ TEST(PoseProcess, PublishesPosesAndTransforms) {
   test.bus.publish(channel::kDetections, to_message(one_bowl(10)));
   ASSERT_TRUE(test.wait_for("BOWL_TO_CAMERA", 1));
   const ObjectPoses poses = poses_from_message(test.at<object_poses_t>(channel::kPoses, 0));
-  EXPECT_EQ(poses.utime, 10);
-  EXPECT_EQ(poses.source_channel, channel::kFrame);
+  EXPECT_EQ(poses.frame, (FrameId{channel::kFrame, 10}));
   ASSERT_EQ(poses.poses.size(), 1U);
   EXPECT_EQ(poses.stages.at(0).stage, "pose.decode");
   EXPECT_EQ(test.at<rigid_transform_t>("BOWL_TO_CAMERA", 0).trans[2], 1.0);
@@ -100,6 +105,166 @@ TEST(PoseProcess, DetectionsOfAFrameThatIsNotThereAreCountedAndDropped) {
   EXPECT_EQ(status.frames_refused, 2);
   EXPECT_EQ(status.frames_processed, 0);
   EXPECT_NE(status.last_error.find("frame 2"), std::string::npos) << status.last_error;
+}
+
+/// Poses that tell which picture they were computed on: the depth of its first pixel with one.
+ObjectPoses by_picture(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
+  ObjectPoses poses = at_one_metre(frame, detections, earlier);
+  const double depth = static_cast<double>(frame.depth.at<float>(0, 1));
+  poses.poses[0].T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0, 0, depth));
+  return poses;
+}
+
+images_t picture(std::int64_t utime, float depth) {
+  RgbdFrame frame = make_test_frame(utime);
+  frame.depth.setTo(depth);
+  return to_message(frame, WireFormat{}, utime);
+}
+
+TEST(PoseProcess, TwoCamerasOfEqualTimesGetPosesOfTheirOwnPictures) {
+  ProcessOnMemq test({channel::kPoses, "BOWL_TO_LEFT", "BOWL_TO_RIGHT", "BOWL_TO_CAMERA"});
+  PoseProcessOptions options;
+  options.frame_channels = "LEFT|RIGHT";
+  test.start([&](LcmBus& bus) { run_pose_process(bus, options, by_picture); });
+  constexpr std::size_t kFrames = 5;
+  for (std::size_t i = 1; i <= kFrames; ++i) {
+    const auto utime = static_cast<std::int64_t>(i);
+    test.bus.publish("LEFT", picture(utime, 1.0F));
+    test.bus.publish("RIGHT", picture(utime, 2.0F));
+    test.bus.publish(channel::kDetections, to_message(one_bowl(utime, "RIGHT")));
+    test.bus.publish(channel::kDetections, to_message(one_bowl(utime, "LEFT")));
+    ASSERT_TRUE(test.wait_for(channel::kPoses, 2 * i));
+  }
+  ASSERT_TRUE(test.wait_for("BOWL_TO_LEFT", kFrames));
+  ASSERT_TRUE(test.wait_for("BOWL_TO_RIGHT", kFrames));
+  test.stop();
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    EXPECT_EQ(test.at<rigid_transform_t>("BOWL_TO_LEFT", i).trans[2], 1.0);
+    EXPECT_EQ(test.at<rigid_transform_t>("BOWL_TO_RIGHT", i).trans[2], 2.0);
+  }
+  EXPECT_EQ(test.count("BOWL_TO_CAMERA"), 0U);
+}
+
+TEST(PoseProcess, TwoDetectorsOfOneCameraBothGetTheirPoses) {
+  ProcessOnMemq test({channel::kPoses, channel::kStatus, "BOWL_TO_CAMERA", "CAN_TO_CAMERA"});
+  test.start(run_fake);
+  Detections cans = one_bowl(3);
+  cans.detections[0].class_name = "can";
+  send_frame(test, 3);
+  test.bus.publish(channel::kDetections, to_message(one_bowl(3)));
+  test.bus.publish(channel::kDetections, to_message(cans));
+  EXPECT_TRUE(test.wait_for("BOWL_TO_CAMERA", 1));
+  EXPECT_TRUE(test.wait_for("CAN_TO_CAMERA", 1));
+  test.stop();
+  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_processed, 2);
+}
+
+TEST(PoseProcess, OtherCamerasDetectionsAreLeftToOthersAndTransformsThenNameTheCamera) {
+  ProcessOnMemq test({channel::kPoses, channel::kStatus, "BOWL_TO_CAMERA", "BOWL_TO_OPENNI_FRAME"});
+  test.start(run_fake);
+  send_frame(test, 1);
+  test.bus.publish(channel::kDetections, to_message(one_bowl(1)));
+  ASSERT_TRUE(test.wait_for("BOWL_TO_CAMERA", 1));
+  test.bus.publish(channel::kDetections, to_message(one_bowl(1, "RIGHT")));
+  send_frame(test, 2);
+  test.bus.publish(channel::kDetections, to_message(one_bowl(2)));
+  ASSERT_TRUE(test.wait_for("BOWL_TO_OPENNI_FRAME", 1));
+  test.stop();
+  EXPECT_EQ(test.count("BOWL_TO_CAMERA"), 1U);
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_received, 2);
+  EXPECT_EQ(status.frames_refused, 0);
+}
+
+TEST(PoseProcess, PosesStartFromTheCamerasOwnLastOnes) {
+  ProcessOnMemq test({channel::kPoses});
+  PoseProcessOptions options;
+  options.frame_channels = "LEFT|RIGHT";
+  std::vector<FrameId> earlier_frames;
+  test.start([&](LcmBus& bus) {
+    run_pose_process(bus, options,
+                     [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
+                       earlier_frames.push_back(earlier.frame);
+                       return at_one_metre(frame, detections, earlier);
+                     });
+  });
+  std::size_t sent = 0;
+  for (const std::int64_t utime : {1, 2}) {
+    for (const std::string& camera : {"LEFT", "RIGHT"}) {
+      send_frame(test, utime, camera);
+      test.bus.publish(channel::kDetections, to_message(one_bowl(utime, camera)));
+      ASSERT_TRUE(test.wait_for(channel::kPoses, ++sent));
+    }
+  }
+  test.stop();
+  EXPECT_EQ(earlier_frames, (std::vector<FrameId>{{"", 0}, {"", 0}, {"LEFT", 1}, {"RIGHT", 1}}));
+}
+
+/// A log of detections of four frames, and of the first `frames` of these; removed in the end.
+class ResultLog {
+ public:
+  explicit ResultLog(int frames)
+      : path(std::filesystem::temp_directory_path() / ("pose_process_test." + std::to_string(getpid()))) {
+    LogWriter writer(path);
+    const auto add = [&](const std::string& name, const auto& message) {
+      const std::vector<std::uint8_t> bytes = encode_message(message);
+      writer.write(message.utime, name, {bytes.data(), bytes.size()});
+    };
+    for (int i = 0; i < 4; ++i) {
+      if (i < frames) add(channel::kFrame, to_message(make_test_frame(i), WireFormat{}, i));
+      add(channel::kDetections, to_message(one_bowl(i)));
+    }
+    writer.close();
+  }
+  ~ResultLog() {
+    std::filesystem::remove(path);
+    std::filesystem::remove(out());
+  }
+  ResultLog(const ResultLog&) = delete;
+  ResultLog& operator=(const ResultLog&) = delete;
+
+  std::string out() const { return path.string() + ".out"; }
+
+  /// What hs-pose logs when it works on it.
+  std::string run() const {
+    catch_stop_signals();
+    testing::internal::CaptureStderr();
+    start_log("test", LogLevel::kInfo);
+    LcmBus bus("file://" + path.string(), out());
+    run_fake(bus);
+    return testing::internal::GetCapturedStderr();
+  }
+
+  std::filesystem::path path;
+};
+
+TEST(PoseProcess, ALogWithoutFramesFailsAndOneWithoutSomeSaysHowMany) {
+  const ResultLog none(0);
+  try {
+    none.run();
+    ADD_FAILURE() << "expected an error";
+  } catch (const InputError& error) {
+    testing::internal::GetCapturedStderr();
+    EXPECT_NE(std::string(error.what()).find("of 4 detections_t 4 had no frame"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("--keep-frames"), std::string::npos) << error.what();
+  }
+  EXPECT_NE(ResultLog(3).run().find("of 4 detections_t 1 had no frame"), std::string::npos);
+  EXPECT_EQ(ResultLog(4).run().find("had no frame"), std::string::npos);
+}
+
+TEST(PoseProcess, ModelsOfOtherObjectsThanTheDetectorsAreToldOnce) {
+  ProcessOnMemq test({channel::kPoses});
+  PoseProcessOptions options;
+  options.models = {"mug"};
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  test.start([&](LcmBus& bus) { run_pose_process(bus, options, at_one_metre); });
+  send_frame(test, 1);
+  test.bus.publish(channel::kDetections, to_message(one_bowl(1)));
+  ASSERT_TRUE(test.wait_for(channel::kPoses, 1));
+  test.stop();
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("detected are bowl; there are models of mug"), std::string::npos) << log;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class SmallLog {
     LogWriter writer(path);
     for (int i = 0; i < count; ++i) {
       Detections none;
-      none.utime = i;
+      none.frame.utime = i;
       const std::vector<std::uint8_t> bytes = encode_message(to_message(none));
       writer.write(i, "X", {bytes.data(), bytes.size()});
     }

@@ -124,7 +124,7 @@ TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
   pose.T_camera_object = truth;
   const auto count = [&](std::int64_t utime, const ObjectPose& earlier) {
     ObjectPoses poses;
-    poses.utime = utime;
+    poses.frame.utime = utime;
     poses.poses = {earlier};
     return earlier_candidates(2000000, detection, poses, {}).size();
   };

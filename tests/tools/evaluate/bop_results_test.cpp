@@ -96,8 +96,7 @@ TEST(BopEstimates, CarryTheIdsOfTheScene) {
   std::vector<EvaluatedFrame> frames = read_truth(scene, {});
   ObjectPose refused = pose_of("mug");
   refused.T_camera_object.reset();
-  frames[1].poses = ObjectPoses{frames[1].utime,
-                                "",
+  frames[1].poses = ObjectPoses{{"", frames[1].utime},
                                 {refused, pose_of("mug"), pose_of("stranger")},
                                 {{"detect.forest", 200000}, {"pose", 50000}}};
   const std::vector<BopEstimate> estimates = bop_estimates(frames, scene, {{3, "mug"}});
@@ -112,7 +111,7 @@ TEST(BopEstimates, CarryTheIdsOfTheScene) {
 TEST(BopEstimates, AnotherNameOfTheFolderIsSceneZeroAndNoStagesNoTime) {
   const BopScene scene = scene_in(fresh_folder("bop_estimates") / "12_monkeys");
   std::vector<EvaluatedFrame> frames = read_truth(scene, {});
-  frames[0].poses = ObjectPoses{frames[0].utime, "", {pose_of("object_9")}, {}};
+  frames[0].poses = ObjectPoses{{"", frames[0].utime}, {pose_of("object_9")}, {}};
   NamedObject object;
   object.class_name = "object_9";
   object.truth.object_id = 9;

@@ -36,12 +36,12 @@ std::vector<EvaluatedFrame> two_frames() {
     frames[i].objects = {mug};
   }
   frames[0].detections =
-      Detections{0, "", {detect("mug", kBox, 0.9F), detect("bottle", kBox, 0.4F)}, {{"detect.forest", 4000}}};
+      Detections{{}, {detect("mug", kBox, 0.9F), detect("bottle", kBox, 0.4F)}, {{"detect.forest", 4000}}};
   ObjectPose pose;
   pose.detection_index = 0;
   pose.status = PoseStatus::kValid;
   pose.T_camera_object = Eigen::Isometry3d::Identity();
-  frames[0].poses = ObjectPoses{0, "", {pose}, {{"detect.forest", 4000}, {"pose.icp", 2000}}};
+  frames[0].poses = ObjectPoses{{}, {pose}, {{"detect.forest", 4000}, {"pose.icp", 2000}}};
   return frames;
 }
 
@@ -125,6 +125,26 @@ TEST(ResultLog, ResultsAreReadAndOthersPassedOver) {
   EXPECT_EQ(results.detections[0].detections[1].class_name, "bottle");
   ASSERT_EQ(results.poses.size(), 1U);
   EXPECT_EQ(results.poses[0].poses[0].status, PoseStatus::kValid);
+}
+
+TEST(ResultLog, OneOfSeveralCamerasIsChosenOrTheLogIsRefused) {
+  const fs::path file = fresh_folder("result_log_cameras") / "results.lcmlog";
+  LogWriter log(file);
+  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+    Detections detections = *two_frames()[0].detections;
+    detections.frame.channel = camera;
+    append(log, channel::kDetections, to_message(detections));
+    ObjectPoses poses = *two_frames()[0].poses;
+    poses.frame.channel = camera;
+    append(log, channel::kPoses, to_message(poses));
+  }
+  log.close();
+  EXPECT_THROW(read_result_log(file), InputError) << "a scene is what one camera saw";
+  EXPECT_THROW(read_result_log(file, "ABOVE"), InputError);
+  const PublishedResults results = read_result_log(file, "RIG.T");
+  ASSERT_EQ(results.detections.size(), 1U);
+  EXPECT_EQ(results.detections[0].frame.channel, "RIGHT");
+  EXPECT_EQ(results.poses.size(), 1U);
 }
 
 TEST(ResultLog, BadLogsAreRefused) {

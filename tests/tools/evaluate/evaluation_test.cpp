@@ -38,7 +38,7 @@ EvaluatedFrame frame(std::vector<NamedObject> objects, std::vector<Detection> de
   EvaluatedFrame out;
   out.utime = utime;
   out.objects = std::move(objects);
-  out.detections = Detections{utime, "", std::move(detections), {}};
+  out.detections = Detections{{"", utime}, std::move(detections), {}};
   return out;
 }
 
@@ -133,14 +133,34 @@ TEST(EvaluatedFrames, ResultsFindTheirFrameOrAreRefused) {
   std::vector<EvaluatedFrame> frames(2);
   frames[0].utime = 10;
   frames[1].utime = 20;
-  add_detections(frames, {Detections{20, "", {detection("mug", kLeft, 1)}, {}}}, "test");
+  const Detections mug{{"", 20}, {detection("mug", kLeft, 1)}, {}};
+  add_results(frames, {{mug}, {}}, "test");
   EXPECT_FALSE(frames[0].detections.has_value());
   EXPECT_TRUE(frames[1].detections.has_value());
-  EXPECT_THROW(add_detections(frames, {Detections{20, "", {}, {}}}, "test"), InputError) << "a second result";
-  EXPECT_THROW(add_detections(frames, {Detections{30, "", {}, {}}}, "test"), InputError) << "an unknown frame";
+  EXPECT_THROW(add_results(frames, {{Detections{{"", 30}, {}, {}}}, {}}, "test"), InputError) << "an unknown frame";
   ObjectPose pose;
+  pose.class_name = "mug";
   pose.detection_index = 1;
-  EXPECT_THROW(add_poses(frames, {ObjectPoses{20, "", {pose}, {}}}, "test"), InputError) << "no such detection";
+  EXPECT_THROW(add_results(frames, {{mug}, {{{"", 20}, {pose}, {}}}}, "test"), InputError) << "no such detection";
+}
+
+TEST(EvaluatedFrames, DetectorsOfDifferentObjectsAreJoined) {
+  std::vector<EvaluatedFrame> frames(1);
+  const Detections mug{{"", 0}, {detection("mug", kLeft, 0.5F)}, {}};
+  const Detections bowl{{"", 0}, {detection("bowl", kLeft, 0.75F)}, {}};
+  ObjectPose pose;
+  pose.class_name = "mug";
+  pose.detection_score = 0.5F;
+  pose.detection_index = 0;
+  add_results(frames, {{mug, bowl}, {{{"", 0}, {pose}, {}}}}, "test");
+  ASSERT_EQ(frames[0].detections->detections.size(), 2U);
+  EXPECT_EQ(frames[0].detections->detections[0].class_name, "bowl");
+  EXPECT_EQ(frames[0].poses->poses.at(0).detection_index, 1);
+  Detections another_run = mug;
+  another_run.detections[0].score = 0.4F;
+  EXPECT_THROW(add_results(frames, {{mug, another_run}, {}}, "test"), InputError) << "it would count twice";
+  add_results(frames, {{mug, mug}, {}}, "test");
+  EXPECT_EQ(frames[0].detections->detections.size(), 1U) << "the same run, played again";
 }
 
 TEST(EvaluatedFrames, EveryNthBeginsWithTheFirst) {
@@ -183,7 +203,7 @@ std::vector<EvaluatedFrame> posed_frames(double visible) {
     pose.detection_index = 0;
     pose.status = i < 2 ? PoseStatus::kValid : PoseStatus::kNotConverged;
     if (i < 2) pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, i == 0 ? 0.001 : 0.05));
-    frames.back().poses = ObjectPoses{0, "", {pose}, {}};
+    frames.back().poses = ObjectPoses{{}, {pose}, {}};
   }
   return frames;
 }

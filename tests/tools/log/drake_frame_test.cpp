@@ -28,6 +28,22 @@ TEST(DrakeFrame, ZlibAndPngAreUnpacked) {
   expect_colour(message, frame);
 }
 
+TEST(DrakeFrame, APngThatCannotBeDecodedIsRefusedInOneLine) {
+  const RgbdFrame frame = numbered_frame(3);
+  drake_image_array_t drake = drake_message(frame);
+  drake.images[1].compression_method = drake_image_t::COMPRESSION_METHOD_PNG;
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", frame.colour, png);
+  std::vector<std::uint8_t> huge = png;
+  huge[17] = 0xFF;  // the width's second byte
+  const std::vector<std::uint8_t> cut(png.begin(), png.begin() + 40);
+  for (const std::vector<std::uint8_t>& data : {std::vector<std::uint8_t>(), huge, cut}) {
+    drake.images[1].data = data;
+    drake.images[1].size = static_cast<std::int32_t>(data.size());
+    EXPECT_THROW(convert(images_from_drake, drake), InputError) << data.size();
+  }
+}
+
 TEST(DrakeFrame, WhatIsNotOneFrameIsRefused) {
   const drake_image_array_t good = drake_message(numbered_frame(0));
   expect_cuts_refused(images_from_drake, good);

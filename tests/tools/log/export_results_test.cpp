@@ -15,10 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Detections make_detections(std::int64_t utime, int count) {
+Detections make_detections(std::int64_t utime, int count, const std::string& camera = "OPENNI_FRAME") {
   Detections found;
-  found.utime = utime;
-  found.source_channel = "OPENNI_FRAME";
+  found.frame = {camera, utime};
   for (int i = 0; i < count; ++i) {
     Detection d;
     d.class_id = i + 1;
@@ -33,10 +32,9 @@ Detections make_detections(std::int64_t utime, int count) {
   return found;
 }
 
-ObjectPoses make_poses(std::int64_t utime) {
+ObjectPoses make_poses(std::int64_t utime, const std::string& camera = "OPENNI_FRAME") {
   ObjectPoses poses;
-  poses.utime = utime;
-  poses.source_channel = "OPENNI_FRAME";
+  poses.frame = {camera, utime};
   ObjectPose pose;
   pose.class_id = 1;
   pose.class_name = "bowl";
@@ -94,6 +92,53 @@ TEST(ExportResults, JsonHasEmptyFramesToo) {
   EXPECT_TRUE(frames[0]["detections"][1]["centre"][2].is_null());
   EXPECT_EQ(frames[0]["stages_us"]["pose.refinement"], 500);
   EXPECT_TRUE(frames[1]["detections"].empty());
+}
+
+TEST(ExportResults, CamerasOfEqualTimesAndSeveralDetectorsAreAllThere) {
+  const fs::path folder = fresh_folder("results_two_cameras");
+  TestLog log(folder / "log");
+  constexpr int kFrames = 20;
+  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+    for (int i = 0; i < kFrames; ++i) {
+      log.add(channel::kDetections, to_message(make_detections(i, 1, camera)));
+      Detections cup = make_detections(i, 1, camera);
+      cup.detections[0].class_name = "cup";
+      cup.detections[0].score = 0.75F;
+      log.add(channel::kDetections, to_message(cup));
+      ObjectPoses pose = make_poses(i, camera);
+      pose.poses[0].T_camera_object->translation().x() = camera == "LEFT" ? 1.0 : 2.0;
+      log.add(channel::kPoses, to_message(pose));
+    }
+  }
+  log.close();
+  LossAccount losses;
+  EXPECT_EQ(export_results_json(folder / "log", folder / "a.json", losses), 2 * kFrames);
+  EXPECT_EQ(losses.line(), "");
+  const nlohmann::json frames = read_json_object(folder / "a.json").at("frames");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool left = i % 2 == 0;
+    EXPECT_EQ(frames[i]["utime"], i / 2) << "in the order of time";
+    EXPECT_EQ(frames[i]["source_channel"], left ? "LEFT" : "RIGHT");
+    ASSERT_EQ(frames[i]["detections"].size(), 2U);
+    EXPECT_EQ(frames[i]["detections"][0]["class_name"], "cup") << "strongest first";
+    EXPECT_TRUE(frames[i]["detections"][0]["pose"].is_null());
+    EXPECT_EQ(frames[i]["detections"][1]["pose"]["trans"][0], left ? 1.0 : 2.0);
+    EXPECT_EQ(frames[i]["stages_us"]["pose.refinement"], 500);
+  }
+  EXPECT_EQ(export_results_csv(folder / "log", folder / "a.csv", losses), 2 * kFrames);
+  const std::string rows = read_text(folder / "a.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 4 * kFrames);
+}
+
+TEST(ExportResults, PosesOfNoDetectionsAreCounted) {
+  const fs::path folder = fresh_folder("results_stray");
+  TestLog log(folder / "log");
+  log.add(channel::kDetections, to_message(make_detections(1, 1, "LEFT")));
+  log.add(channel::kPoses, to_message(make_poses(1, "RIGHT")));
+  log.close();
+  LossAccount losses;
+  EXPECT_EQ(export_results_csv(folder / "log", folder / "a.csv", losses), 1);
+  EXPECT_NE(losses.line().find("poses of frame RIGHT 1"), std::string::npos) << losses.line();
 }
 
 TEST(ExportResults, ALogWithoutResultsIsRefused) {

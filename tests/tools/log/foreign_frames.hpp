@@ -15,7 +15,7 @@ images_t convert(images_t (*conversion)(ByteView), const Message& message) {
 }
 
 inline void expect_depth(const images_t& message, const RgbdFrame& frame) {
-  EXPECT_EQ(message.utime, frame.utime);
+  EXPECT_EQ(message.utime, frame.id.utime);
   EXPECT_EQ(cv::norm(images_from_message(message).depth_mm, depth_to_millimetres(frame.depth), cv::NORM_INF), 0.0);
 }
 

@@ -28,7 +28,7 @@ TEST(ImportLog, KeepsTimesAndAddsWhatIsMissing) {
     EXPECT_EQ(event->channel, "MINE");
     EXPECT_EQ(event->timestamp, 1'500'000'000'000'000 + 33'000 * 2 * i);
     const auto message = decode_message<images_t>({event->data.data(), event->data.size()});
-    EXPECT_EQ(message.utime, numbered_frame(i).utime);
+    EXPECT_EQ(message.utime, numbered_frame(i).id.utime);
     EXPECT_EQ(camera_of(message), kCamera);
     EXPECT_EQ(sequence_of(message), i);
   }

@@ -25,8 +25,8 @@ TEST(KlgFile, CompressedAndRawFramesAreRead) {
   for (int i = 0; i < 2; ++i) {
     const std::optional<images_t> message = klg.next();
     ASSERT_TRUE(message.has_value());
-    EXPECT_EQ(message->utime, numbered_frame(i).utime);
-    const ImagePair images = images_from_message(*message);
+    EXPECT_EQ(message->utime, numbered_frame(i).id.utime);
+    const FrameImages images = images_from_message(*message);
     const cv::Mat depth_mm = depth_to_millimetres(numbered_frame(i).depth);
     EXPECT_EQ(cv::norm(images.depth_mm, depth_mm, cv::NORM_INF), 0.0);
     if (i == 1) {

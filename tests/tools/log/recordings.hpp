@@ -39,7 +39,7 @@ inline std::vector<std::uint8_t> rgb_bytes(const RgbdFrame& frame) {
 
 inline kinect_frame_msg_t kinect_message(const RgbdFrame& frame, bool compressed) {
   kinect_frame_msg_t message{};
-  message.timestamp = frame.utime;
+  message.timestamp = frame.id.utime;
   message.image.width = static_cast<std::int16_t>(frame.colour.cols);
   message.image.height = static_cast<std::int16_t>(frame.colour.rows);
   message.image.image_data = compressed ? encode_jpeg(frame.colour, 90) : rgb_bytes(frame);
@@ -74,7 +74,7 @@ inline drake_image_t drake_image(const cv::Mat& pixels, std::int8_t format, std:
 inline drake_image_array_t drake_message(const RgbdFrame& frame) {
   constexpr std::int8_t kLabel = 6;
   drake_image_array_t message{};
-  message.header.utime = frame.utime;
+  message.header.utime = frame.id.utime;
   message.images.push_back(drake_image(cv::Mat(5, 4, CV_16UC1, cv::Scalar(3)), kLabel, 2));
   message.images.push_back(
       drake_image(frame.colour, drake_image_t::PIXEL_FORMAT_BGR, drake_image_t::CHANNEL_TYPE_UINT8));
@@ -93,7 +93,7 @@ class KlgWriter {
     const cv::Mat depth_mm = depth_to_millimetres(frame.depth);
     const std::vector<std::uint8_t> depth = compressed ? zip_depth(depth_mm, 1) : bytes_of_mat(depth_mm);
     const std::vector<std::uint8_t> colour = compressed ? encode_jpeg(frame.colour, 90) : rgb_bytes(frame);
-    put(frame.utime);
+    put(frame.id.utime);
     put(static_cast<std::int32_t>(depth.size()));
     put(static_cast<std::int32_t>(colour.size()));
     bytes_.insert(bytes_.end(), depth.begin(), depth.end());

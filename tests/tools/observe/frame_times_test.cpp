@@ -15,10 +15,10 @@ FrameTimes::Time at_ms(int ms) {
 FrameTimes ten_frames() {
   FrameTimes times;
   for (int i = 0; i < 10; ++i) {
-    times.note_frame(i, at_ms(100 * i));
+    times.note_frame({"LEFT", i}, at_ms(100 * i));
     if (i % 2 == 1) continue;
-    times.note_detections(i, at_ms(100 * i + 10));
-    times.note_poses(i, at_ms(100 * i + 15));
+    times.note_detections({"LEFT", i}, at_ms(100 * i + 10));
+    times.note_poses({"LEFT", i}, at_ms(100 * i + 15));
   }
   return times;
 }
@@ -37,7 +37,7 @@ TEST(FrameTimes, TheStartIsOnTheClockOfUtimes) {
   FrameTimes times;
   EXPECT_TRUE(times.summary(std::nullopt)["start_utime"].is_null());
   const std::int64_t before = utime_now();
-  times.note_frame(1, FrameTimes::Time::clock::now());
+  times.note_frame({"LEFT", 1}, FrameTimes::Time::clock::now());
   const std::int64_t after = utime_now();
   const std::int64_t start = times.summary(std::nullopt)["start_utime"];
   EXPECT_GE(start, before - 100000);
@@ -73,21 +73,37 @@ TEST(FrameTimes, TheAccountAddsUpOrSaysThatItDoesNot) {
   EXPECT_FALSE(account["balanced"]);
 }
 
+TEST(FrameTimes, CamerasOfEqualTimesAndSeveralDetectorsStaySeparate) {
+  FrameTimes times = ten_frames();
+  for (int i = 0; i < 10; ++i) times.note_frame({"RIGHT", i}, at_ms(100 * i + 1));
+  times.note_detections({"RIGHT", 1}, at_ms(500));
+  status_t left = detector_status(10, 5, 5);
+  times.note_status(left);
+  left.pid = 17;
+  times.note_status(left);
+  const nlohmann::json summary = times.summary(std::nullopt);
+  EXPECT_EQ(summary["frames_received"], 20);
+  EXPECT_EQ(summary["frames_detected"], 6);
+  EXPECT_TRUE(summary["processes"].contains("hs-detect 0"));
+  EXPECT_TRUE(summary["processes"].contains("hs-detect 17"));
+  EXPECT_TRUE(summary["account"].is_null()) << "two detectors do not share one account";
+}
+
 TEST(FrameTimes, WithoutMessagesThereAreNoNumbers) {
   const nlohmann::json summary = FrameTimes().summary(5);
   EXPECT_EQ(summary["frames_received"], 0);
   EXPECT_TRUE(summary["latency_ms"]["detect"]["p50"].is_null());
   EXPECT_TRUE(summary["frame_rate_hz"].is_null());
-  EXPECT_EQ(FrameTimes().csv(), "utime,t_frame,t_detections,t_poses\n");
+  EXPECT_EQ(FrameTimes().csv(), "utime,channel,t_frame,t_detections,t_poses\n");
 }
 
 TEST(FrameTimes, RowsLeaveEmptyWhatHasNotCome) {
   FrameTimes times;
-  times.note_frame(7, at_ms(0));
-  times.note_frame(7, at_ms(500));
-  times.note_frame(8, at_ms(33));
-  times.note_detections(8, at_ms(50));
-  EXPECT_EQ(times.csv(), "utime,t_frame,t_detections,t_poses\n7,0.000000,,\n8,0.033000,0.050000,\n");
+  times.note_frame({"LEFT", 7}, at_ms(0));
+  times.note_frame({"LEFT", 7}, at_ms(500));
+  times.note_frame({"LEFT", 8}, at_ms(33));
+  times.note_detections({"LEFT", 8}, at_ms(50));
+  EXPECT_EQ(times.csv(), "utime,channel,t_frame,t_detections,t_poses\n7,LEFT,0.000000,,\n8,LEFT,0.033000,0.050000,\n");
   EXPECT_EQ(times.frames(), 2U);
 }
 

@@ -14,10 +14,10 @@ TEST(OrderedFrames, AreWrittenInOrderByAnyNumberOfThreads) {
         "test", threads, 20,
         [](int index) {
           SceneFrame frame;
-          frame.frame.utime = index;
+          frame.frame.id.utime = index;
           return frame;
         },
-        [&](const SceneFrame& frame) { order.push_back(frame.frame.utime); });
+        [&](const SceneFrame& frame) { order.push_back(frame.frame.id.utime); });
     ASSERT_EQ(order.size(), 20U);
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], static_cast<std::int64_t>(i));
   }

@@ -18,10 +18,11 @@ TEST(BusWatcher, AFrameComesWithItsResults) {
   watched.publish_results(1);
   const std::optional<MatchedFrame> matched = watched.next();
   ASSERT_TRUE(matched.has_value());
-  EXPECT_EQ(matched->utime, 1);
-  ASSERT_TRUE(matched->detections.has_value());
-  EXPECT_EQ(matched->detections->detections.size(), 1U);
-  EXPECT_TRUE(matched->poses.has_value());
+  EXPECT_EQ(matched->id, (FrameId{channel::kFrame, 1}));
+  const std::optional<FrameResult> found = matched->results.joined();
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->detections.detections.size(), 1U);
+  EXPECT_TRUE(found->poses.has_value());
   EXPECT_FALSE(watched.watcher.next(std::chrono::milliseconds(0)).has_value());
 }
 
@@ -43,6 +44,29 @@ TEST(BusWatcher, WhatIsNoMessageOfTheChannelDoesNotEndIt) {
   watched.publish_frame(1);
   watched.publish_results(1);
   EXPECT_TRUE(watched.next().has_value());
+  EXPECT_EQ(watched.last_words().frames_refused, 1) << "and counts the one that should have been a frame";
+}
+
+TEST(BusWatcher, OfTwoCamerasOfEqualTimesOneIsShownAndNothingMixed) {
+  WatchedBus watched("LEFT|RIGHT");
+  for (std::int64_t i = 1; i <= 2; ++i) {
+    for (const std::string& camera : {"LEFT", "RIGHT"}) {
+      watched.publish_frame(i, camera);
+      watched.publish_results({camera, i}, camera == "LEFT" ? "bowl" : "can");
+    }
+    const std::optional<MatchedFrame> matched = watched.next();
+    ASSERT_TRUE(matched.has_value());
+    const std::string shown = i == 1 ? "LEFT" : "RIGHT";
+    EXPECT_EQ(matched->id, (FrameId{shown, i}));
+    EXPECT_EQ(matched->results.joined()->detections.detections.at(0).class_name, i == 1 ? "bowl" : "can");
+    EXPECT_FALSE(watched.watcher.next(std::chrono::milliseconds(200)).has_value());
+    watched.watcher.cameras().next();
+  }
+  EXPECT_EQ(watched.watcher.cameras().heard(), (std::vector<std::string>{"LEFT", "RIGHT"}));
+  const status_t last = watched.last_words();
+  EXPECT_EQ(last.frames_received, 4);
+  EXPECT_EQ(last.frames_skipped, 2);
+  EXPECT_EQ(last.frames_lost, 0) << "each camera has a numbering of its own";
 }
 
 TEST(BusWatcher, ProcessesAreKnownByWhatTheySay) {

@@ -27,7 +27,7 @@ TEST(FrameShow, DrawsAFrameToTheFilesAskedFor) {
   const RgbdFrame frame = make_test_frame(5);
   EXPECT_GE(picture.cols, 2 * frame.colour.cols) << "colour, and depth beside it";
   EXPECT_GT(picture.rows, frame.colour.rows) << "and a panel below";
-  EXPECT_TRUE(frame_show.handle_keys()) << "without a window nobody asks to end";
+  EXPECT_TRUE(frame_show.handle_keys(watched.watcher)) << "without a window nobody asks to end";
   EXPECT_EQ(watched.last_words().frames_processed, 1);
 }
 

@@ -34,5 +34,14 @@ TEST(StreamWatch, ProcessesAreShownByNameUntilTheyFallSilent) {
   EXPECT_EQ(later.processes[0].heard_us, 3'000'000);
 }
 
+TEST(StreamWatch, TwoProcessesOfOneNameAreTwo) {
+  StreamWatch watch;
+  ProcessState other = heard("hs-detect", 2'000'000);
+  other.pid = 17;
+  watch.note_process(heard("hs-detect", 1'000'000));
+  watch.note_process(other);
+  EXPECT_EQ(watch.state(3'000'000).processes.size(), 2U);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -15,6 +15,7 @@ TEST(ViewKeys, EachKeyDoesWhatTheWindowSays) {
   EXPECT_TRUE(settings.paused);
   apply_key(' ', settings);
   EXPECT_FALSE(settings.paused);
+  EXPECT_EQ(apply_key('c', settings), KeyAction::kNextCamera);
   EXPECT_EQ(apply_key('q', settings), KeyAction::kEnd);
   EXPECT_EQ(apply_key(27, settings), KeyAction::kEnd);
   EXPECT_EQ(apply_key(-1, settings), KeyAction::kNone);

@@ -13,28 +13,37 @@ namespace houghstream {
 
 /// An in-process bus with a watcher that draws every frame, as the processes of a stream would see it.
 struct WatchedBus {
+  WatchedBus() = default;
+  explicit WatchedBus(std::string pattern) : channels(std::move(pattern)) {}
+
   static MatchSettings every_frame() {
     MatchSettings match;
     match.rate_hz = 1000.0;
     return match;
   }
 
-  void publish_frame(std::int64_t utime) {
-    bus.publish(channel::kFrame, to_message(make_test_frame(utime), WireFormat{}, utime - 1));
+  void publish_frame(std::int64_t utime, const std::string& camera = channel::kFrame) {
+    bus.publish(camera, to_message(make_test_frame(utime), WireFormat{}, utime - 1));
   }
 
-  void publish_results(std::int64_t utime) {
+  /// What a detector of this object and hs-pose say of a frame.
+  void publish_results(const FrameId& frame, const std::string& object = "bowl") {
     Detections detections;
-    detections.utime = utime;
+    detections.frame = frame;
     detections.detections.resize(1);
     detections.detections[0].class_id = 1;
-    detections.detections[0].class_name = "bowl";
+    detections.detections[0].class_name = object;
     detections.detections[0].box_px = {10.0F, 10.0F, 20.0F, 20.0F};
     bus.publish(channel::kDetections, to_message(detections));
     ObjectPoses poses;
-    poses.utime = utime;
+    poses.frame = frame;
+    poses.poses.resize(1);
+    poses.poses[0].class_name = object;
+    poses.poses[0].detection_index = 0;
+    poses.poses[0].status = PoseStatus::kNotConverged;
     bus.publish(channel::kPoses, to_message(poses));
   }
+  void publish_results(std::int64_t utime) { publish_results({channel::kFrame, utime}); }
 
   std::optional<MatchedFrame> next() { return watcher.next(std::chrono::seconds(10)); }
 
@@ -56,13 +65,14 @@ struct WatchedBus {
   }
 
   LcmBus bus{"memq://"};
-  BusWatcher watcher{bus, channel::kFrame, every_frame(), 10};
+  std::string channels = channel::kFrame;
+  BusWatcher watcher{bus, channels, every_frame(), 10};
 };
 
 /// The encoded message of a frame, with nothing found in it.
 inline MatchedFrame matched_frame(std::int64_t utime) {
   MatchedFrame matched;
-  matched.utime = utime;
+  matched.id = {channel::kFrame, utime};
   matched.frame_bytes = encode_message(to_message(make_test_frame(utime), WireFormat{}, 0));
   return matched;
 }
@@ -75,7 +85,7 @@ inline MatchedFrame matched_frame_without_camera(std::int64_t utime) {
     image.nmetadata = 0;
   }
   MatchedFrame matched;
-  matched.utime = utime;
+  matched.id = {channel::kFrame, utime};
   matched.frame_bytes = encode_message(message);
   return matched;
 }

@@ -22,7 +22,7 @@ PoseMaker estimator_maker(const std::map<std::string, Mesh>& models, PoseSetting
   const auto estimator = std::make_shared<const PoseEstimator>(models, settings);
   return [estimator](const RgbdFrame& frame, const Detection& detection) {
     Detections one;
-    one.utime = frame.utime;
+    one.frame = frame.id;
     one.detections = {detection};
     return estimator->estimate(frame, one).poses.front();
   };
@@ -44,7 +44,7 @@ PoseMaker rival_maker(std::unique_ptr<PoseRival> rival) {
 
 TimedPoses make_poses(const PoseMaker& maker, const RgbdFrame& frame, const Detections& detections) {
   TimedPoses out;
-  out.poses.utime = frame.utime;
+  out.poses.frame = frame.id;
   for (const Detection& detection : detections.detections) {
     const double start_ms = thread_cpu_ms();
     ObjectPose pose = maker(frame, detection);

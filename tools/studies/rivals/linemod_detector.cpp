@@ -75,7 +75,7 @@ LinemodDetector::LinemodDetector(const std::vector<TrainingView>& views, const L
 Detections LinemodDetector::detect(const RgbdFrame& frame) const {
   StageClock clock;
   Detections out;
-  out.utime = frame.utime;
+  out.frame = frame.id;
   const std::vector<LinemodMatch> matches = templates_.match(frame, selection_.match_threshold);
   clock.mark("linemod.match");
   out.detections = select_detections(matches, frame, selection_);

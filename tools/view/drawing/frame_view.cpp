@@ -27,6 +27,7 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score) {
     new_index[i] = static_cast<int>(strong.size());
     strong.push_back(std::move(viewed.detections.detections[i]));
   }
+  viewed.weak += new_index.size() - strong.size();
   viewed.detections.detections = std::move(strong);
   if (!viewed.poses) return viewed;
   std::vector<ObjectPose> poses;

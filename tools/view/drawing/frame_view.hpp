@@ -16,11 +16,12 @@ struct ViewedFrame {
   std::optional<ObjectPoses> poses;         ///< nothing where no pose process answered
   std::optional<double> detect_latency_ms;  ///< from the arrival of the frame to that of its detections
   std::optional<double> pose_latency_ms;    ///< from the arrival of the frame to that of its poses
+  std::size_t weak = 0;                     ///< detections that were sent and are not among these
 };
 
 /// What the picture shows beside the overlay.
 struct FrameViewSettings {
-  float min_score = 0.5F;   ///< weaker detections and their poses are not drawn
+  float min_score = 0.0F;   ///< weaker detections and their poses are not drawn; 0: all that were sent
   bool show_depth = true;   ///< depth, colour-mapped, to the right
   bool show_3d = false;     ///< there the measured points, seen from elsewhere, instead (turned_view.hpp)
   float depth_near = 0.4F;  ///< metres, red end of the colour map
@@ -32,14 +33,15 @@ struct FrameViewSettings {
 /// What the panel below the pictures shows of the stream as a whole.
 struct StreamView {
   StreamState state;
-  std::int64_t frames_lost = 0;  ///< frames that never arrived here
+  std::int64_t frames_lost = 0;      ///< frames that never arrived here
+  std::vector<std::string> cameras;  ///< channels that frames come on, in order
   LatencyHistory history;
 };
 
 /// Depth (CV_32FC1, metres) as BGR: near is warm, far is cold, no measurement is black.
 cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
 
-/// The frame without detections weaker than `min_score` and without their poses.
+/// The frame without detections weaker than `min_score`, which are counted, and without their poses.
 ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 
 /// The whole picture, CV_8UC3: overlay, depth or 3-D beside it, and below them the panel (view_panel.hpp). Its size is

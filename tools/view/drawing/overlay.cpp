@@ -102,7 +102,7 @@ std::vector<const ObjectPose*> poses_by_detection(const Detections& detections,
   if (!poses) return found;
   for (const ObjectPose& pose : poses->poses) {
     require(pose.detection_index >= 0 && pose.detection_index < static_cast<int>(found.size()),
-            "poses of frame {}: detection index {}, expected 0 to {}", poses->utime, pose.detection_index,
+            "poses of frame {}: detection index {}, expected 0 to {}", to_string(poses->frame), pose.detection_index,
             static_cast<int>(found.size()) - 1);
     found[pose.detection_index] = &pose;
   }
@@ -121,10 +121,12 @@ cv::Scalar class_colour(int class_id) {
 
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
                      const ClassModels& models) {
-  check_frame(frame, fmt::format("frame {}", frame.utime));
-  require(detections.utime == frame.utime, "detections of frame {} drawn over frame {}", detections.utime, frame.utime);
-  require(!poses || poses->utime == frame.utime, "poses of frame {} drawn over frame {}", poses ? poses->utime : 0,
-          frame.utime);
+  const std::string name = to_string(frame.id);
+  check_frame(frame, "frame " + name);
+  require(detections.frame == frame.id, "detections of frame {} drawn over frame {}", to_string(detections.frame),
+          name);
+  require(!poses || poses->frame == frame.id, "poses of frame {} drawn over frame {}",
+          poses ? to_string(poses->frame) : "", name);
   const std::vector<const ObjectPose*> pose_of = poses_by_detection(detections, poses);
   cv::Mat image = frame.colour.clone();
   for (const Detection& detection : detections.detections) draw_box(image, detection);

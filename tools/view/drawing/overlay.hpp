@@ -21,7 +21,7 @@ cv::Scalar class_colour(int class_id);
 
 /// A copy of the frame's colour image with, for every detection, its box, name and score; with poses also the outline
 /// of the model, the object's axes (x red, y green, z blue), or the reason why there is no pose.
-/// Throws InputError when detections or poses are not of this frame (utime), or a pose names no detection.
+/// Throws InputError when detections or poses are not of this frame, or a pose names no detection.
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
                      const ClassModels& models);
 

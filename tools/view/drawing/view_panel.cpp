@@ -97,16 +97,31 @@ std::string latency_heading(const ViewedFrame& viewed) {
   return detections + (viewed.pose_latency_ms ? fmt::format("poses {:.0f}", *viewed.pose_latency_ms) : "no poses");
 }
 
-void draw_keys(cv::Mat image, const FrameViewSettings& settings) {
+void draw_keys(cv::Mat image, const FrameViewSettings& settings, bool several_cameras) {
   image.setTo(kKeysGround);
   const int baseline = kKeysHeight - 9;
   draw_text(image,
-            fmt::format("q end   space pause   d depth   3 3-D   s save   + - score from {:.2f}", settings.min_score),
+            fmt::format("q end   space pause   d depth   3 3-D   s save   + - score from {:.2f}{}", settings.min_score,
+                        several_cameras ? "   c camera" : ""),
             {kMargin, baseline}, 0.45);
   if (settings.paused) draw_text(image, "paused", {std::max(image.cols - 70, 0), baseline}, 0.5, kWarning);
 }
 
 }  // namespace
+
+std::string camera_heading(const FrameId& frame, const std::vector<std::string>& cameras) {
+  const std::string time = fmt::format("frame {:.3f} s", static_cast<double>(frame.utime) * 1e-6);
+  if (frame.channel.empty()) return time;
+  const auto found = std::find(cameras.begin(), cameras.end(), frame.channel);
+  if (cameras.size() < 2 || found == cameras.end()) return frame.channel + ", " + time;
+  return fmt::format("{} ({} of {}), {}", frame.channel, found - cameras.begin() + 1, cameras.size(), time);
+}
+
+std::string objects_heading(const ViewedFrame& viewed, float min_score) {
+  const std::size_t shown = viewed.detections.detections.size();
+  if (min_score <= 0.0F) return fmt::format("{} objects, all that were sent", shown);
+  return fmt::format("{} of {} objects, from score {:.2f}", shown, shown + viewed.weak, min_score);
+}
 
 cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const FrameViewSettings& settings, int width) {
   constexpr int kBlocks = 4;
@@ -116,15 +131,14 @@ cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const Fr
   const auto corner = [&](int block) {
     return cv::Point(block % columns * kBlockWidth, block / columns * kBlockHeight);
   };
-  const std::string time = fmt::format("frame {:.3f} s", static_cast<double>(viewed.frame.utime) * 1e-6);
-  draw_stream(Block(panel, corner(0), time), stream.state, stream.frames_lost);
-  const std::size_t count = viewed.detections.detections.size();
-  draw_objects(Block(panel, corner(1), fmt::format("{} objects from score {:.2f}", count, settings.min_score)), viewed);
+  const std::string frame = camera_heading(viewed.frame.id, stream.cameras);
+  draw_stream(Block(panel, corner(0), frame), stream.state, stream.frames_lost);
+  draw_objects(Block(panel, corner(1), objects_heading(viewed, settings.min_score)), viewed);
   Block stages(panel, corner(2), "stages, ms");
   draw_stage_list(stages.image(), stages.area(), viewed.poses ? viewed.poses->stages : viewed.detections.stages, kRows);
   Block latency(panel, corner(3), latency_heading(viewed));
   draw_latency_chart(latency.image(), latency.area(), stream.history);
-  if (settings.show_keys) draw_keys(panel.rowRange(blocks_height, panel.rows), settings);
+  if (settings.show_keys) draw_keys(panel.rowRange(blocks_height, panel.rows), settings, stream.cameras.size() > 1);
   return panel.colRange(0, width).clone();
 }
 

@@ -72,7 +72,8 @@ void expect_same(const Recording& recording, const std::vector<RgbdFrame>& repla
     EXPECT_TRUE(frame.camera == recording.seen[i].camera);
   }
   for (std::size_t i = 1; i < replayed.size(); ++i) {
-    EXPECT_NEAR(static_cast<double>(replayed[i].utime - replayed[i - 1].utime), 33'333.0, 100.0) << "none is missing";
+    EXPECT_NEAR(static_cast<double>(replayed[i].id.utime - replayed[i - 1].id.utime), 33'333.0, 100.0)
+        << "none is missing";
   }
 }
 

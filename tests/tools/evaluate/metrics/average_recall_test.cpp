@@ -113,7 +113,7 @@ TEST(MeasurePoses, OnlyAsManyPosesAsTargetsAreTried) {
   const MeasuredScene measured = measured_scene();
   EvaluatedFrame frame;
   frame.objects = {mug_at(0.0, 1.0)};
-  frame.poses = ObjectPoses{0, "", {pose_at(0.0, 0.4F), pose_at(0.2, 0.9F)}, {}};
+  frame.poses = ObjectPoses{{}, {pose_at(0.0, 0.4F), pose_at(0.2, 0.9F)}, {}};
   const ClassErrors errors = measure_poses({frame}, measured.scene, measured.models, 1);
   ASSERT_EQ(errors.at("mug").size(), 1U);
   ASSERT_EQ(errors.at("mug")[0].errors.size(), 1U);
@@ -126,7 +126,7 @@ TEST(MeasurePoses, HardlyVisibleObjectsAndThoseWithoutTruePoseAreNoTargets) {
   EvaluatedFrame frame;
   frame.objects = {mug_at(0.0, 0.09), mug_at(0.1, 0.1), mug_at(0.2, 1.0)};
   frame.objects[2].truth.has_pose = false;
-  frame.poses = ObjectPoses{0, "", {pose_at(0.1, 0.4F)}, {}};
+  frame.poses = ObjectPoses{{}, {pose_at(0.1, 0.4F)}, {}};
   const ClassErrors errors = measure_poses({frame}, measured.scene, measured.models, 2);
   EXPECT_EQ(errors.at("mug")[0].targets, 1);
   EXPECT_EQ(average_recall(errors.at("mug")).mean, 1.0);
@@ -137,7 +137,7 @@ TEST(MeasurePoses, FramesWithoutPosesHaveTargets) {
   EvaluatedFrame skipped;
   skipped.objects = {mug_at(0.0, 1.0)};
   EvaluatedFrame refused = skipped;
-  refused.poses = ObjectPoses{0, "", {ObjectPose{}}, {}};
+  refused.poses = ObjectPoses{{}, {ObjectPose{}}, {}};
   const ClassErrors errors = measure_poses({skipped, refused}, measured.scene, measured.models, 1);
   const AverageRecall recall = average_recall(errors.at("mug"));
   EXPECT_EQ(recall.targets, 2);

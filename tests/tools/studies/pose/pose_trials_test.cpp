@@ -41,7 +41,7 @@ PoseRun one_frame(const PoseMaker& maker) {
   object.truth.visible_fraction = 0.8;
   object.truth.T_camera_object = at(0.0, 2.0);
   frame.objects = {object};
-  frame.detections = Detections{0, "", {detection(kBox, 0.9F), detection({300, 100, 80, 80}, 0.4F)}, {}};
+  frame.detections = Detections{{}, {detection(kBox, 0.9F), detection({300, 100, 80, 80}, 0.4F)}, {}};
   TimedPoses made = make_poses(maker, RgbdFrame{}, *frame.detections);
   frame.poses = made.poses;
   return {"desk", {frame}, {made.ms}};

@@ -40,7 +40,7 @@ const LinemodDetector& toy_detector() {
 
 Detections find_tile(int kind, double distance, cv::Point2d centre, cv::Rect& box_px) {
   RgbdFrame frame = toy::room(9);
-  frame.utime = 17;
+  frame.id.utime = 17;
   box_px = cv::boundingRect(toy::put_tile(kind, centre.x, centre.y, distance, frame));
   return toy_detector().detect(frame);
 }
@@ -58,7 +58,7 @@ TEST(LinemodDetector, FindsATaughtObjectAtTwoDistances) {
     EXPECT_LE(best->score, 1.0F);
     EXPECT_GT(box_iou(best->box_px, cv::Rect2f(box_px)), 0.7F) << distance;
     EXPECT_NEAR(best->centre_camera.z(), distance, 0.15 * distance);
-    EXPECT_EQ(found.utime, 17);
+    EXPECT_EQ(found.frame.utime, 17);
     ASSERT_EQ(found.stages.size(), 2U);
     EXPECT_EQ(found.stages[0].stage, "linemod.match");
   }

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<RgbdFrame> some_frames(int count) {
   std::vector<RgbdFrame> frames(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) frames[static_cast<std::size_t>(i)].utime = i;
+  for (int i = 0; i < count; ++i) frames[static_cast<std::size_t>(i)].id.utime = i;
   return frames;
 }
 
@@ -21,7 +21,7 @@ Contender scribe(const std::string& name, std::size_t frames, std::string& words
   contender.name = name;
   contender.frames = frames;
   contender.detect = [name, &words](const RgbdFrame& frame) {
-    words += name + std::to_string(frame.utime) + " ";
+    words += name + std::to_string(frame.id.utime) + " ";
     Detections found;
     found.stages = {{"detect.forest", 1500}};
     found.detections.resize(2);

@@ -11,11 +11,11 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 ViewedFrame small_frame() {
   ViewedFrame viewed;
-  viewed.frame.utime = 5;
+  viewed.frame.id.utime = 5;
   viewed.frame.colour = cv::Mat(121, 161, CV_8UC3, cv::Scalar(1, 2, 3));
   viewed.frame.depth = cv::Mat(121, 161, CV_32FC1, cv::Scalar(1.0));
   viewed.frame.camera = Camera{161, 121, 150, 150, 80, 60};
-  viewed.detections.utime = 5;
+  viewed.detections.frame.utime = 5;
   return viewed;
 }
 

@@ -15,7 +15,7 @@ const cv::Vec3b kGrey(90, 90, 90);
 
 RgbdFrame grey_frame() {
   RgbdFrame frame;
-  frame.utime = 7;
+  frame.id = {"TEST", 7};
   frame.colour = cv::Mat(240, 320, CV_8UC3, cv::Scalar(kGrey[0], kGrey[1], kGrey[2]));
   frame.depth = cv::Mat(240, 320, CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
   frame.camera = kCamera;
@@ -28,7 +28,7 @@ Detections one_detection() {
   detection.class_name = "box";
   detection.score = 0.5F;
   detection.box_px = {100, 80, 120, 90};
-  return Detections{7, "TEST", {detection}, {}};
+  return Detections{{"TEST", 7}, {detection}, {}};
 }
 
 ObjectPoses one_pose(const Eigen::Isometry3d& T_camera_object) {
@@ -38,7 +38,7 @@ ObjectPoses one_pose(const Eigen::Isometry3d& T_camera_object) {
   pose.detection_index = 0;
   pose.status = PoseStatus::kValid;
   pose.T_camera_object = T_camera_object;
-  return ObjectPoses{7, "TEST", {pose}, {}};
+  return ObjectPoses{{"TEST", 7}, {pose}, {}};
 }
 
 // A square plate of 0.2 m, facing the camera.
@@ -65,7 +65,7 @@ bool shows(const cv::Mat& image, const cv::Scalar& colour, int x, int y, int rad
 
 TEST(Overlay, NothingFoundLeavesThePictureAsItIs) {
   const RgbdFrame frame = grey_frame();
-  const cv::Mat image = draw_overlay(frame, Detections{7, "", {}, {}}, std::nullopt, {});
+  const cv::Mat image = draw_overlay(frame, Detections{{"TEST", 7}, {}, {}}, std::nullopt, {});
   EXPECT_EQ(cv::norm(image, frame.colour, cv::NORM_INF), 0.0);
 }
 
@@ -111,12 +111,12 @@ TEST(Overlay, MissingPoseChangesTheLabel) {
 
 TEST(Overlay, ResultsOfAnotherFrameAreRefused) {
   Detections detections = one_detection();
-  detections.utime = 8;
+  detections.frame.utime = 8;
   EXPECT_THROW(draw_overlay(grey_frame(), detections, std::nullopt, {}), InputError);
   ObjectPoses poses = one_pose(one_metre_ahead());
-  poses.utime = 8;
+  poses.frame.utime = 8;
   EXPECT_THROW(draw_overlay(grey_frame(), one_detection(), poses, {}), InputError);
-  poses.utime = 7;
+  poses.frame.utime = 7;
   poses.poses[0].detection_index = 1;
   EXPECT_THROW(draw_overlay(grey_frame(), one_detection(), poses, {}), InputError);
 }

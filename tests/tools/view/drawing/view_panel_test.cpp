@@ -41,13 +41,30 @@ TEST(ViewPanel, ObjectsAreListedInTheirColours) {
   EXPECT_FALSE(draw_panel(with_objects(50), {}, {}, 1280).empty());
 }
 
+TEST(ViewPanel, TheCameraIsNamedAndThatThereAreOthers) {
+  const FrameId frame{"LEFT", 1'500'000};
+  EXPECT_EQ(camera_heading(frame, {"LEFT"}), "LEFT, frame 1.500 s");
+  EXPECT_EQ(camera_heading(frame, {"LEFT", "RIGHT"}), "LEFT (1 of 2), frame 1.500 s");
+  EXPECT_EQ(camera_heading({"", 1'500'000}, {}), "frame 1.500 s");
+}
+
+TEST(ViewPanel, WhatTheDetectorSendsIsAllShownUnlessAskedOtherwise) {
+  ViewedFrame viewed = with_objects(3);
+  for (Detection& detection : viewed.detections.detections) detection.score = 0.1F;
+  const FrameViewSettings settings;
+  EXPECT_EQ(objects_heading(without_weak(viewed, settings.min_score), settings.min_score),
+            "3 objects, all that were sent");
+  viewed.detections.detections[1].score = 0.6F;
+  EXPECT_EQ(objects_heading(without_weak(viewed, 0.5F), 0.5F), "1 of 3 objects, from score 0.50");
+}
+
 TEST(ViewPanel, RatesLossesAndLatencyAreShown) {
   StreamView stream;
   const cv::Mat plain = draw_panel({}, stream, {}, 1280);
   stream.frames_lost = 3;
   EXPECT_TRUE(differs(draw_panel({}, stream, {}, 1280), plain, kStream));
   stream.frames_lost = 0;
-  stream.state.processes = std::vector<ProcessState>(20, {"hs-detect", 9.8F, 3, 1, 1, 0});
+  stream.state.processes = std::vector<ProcessState>(20, {"hs-detect", 7, 9.8F, 3, 1, 1, 0});
   EXPECT_TRUE(differs(draw_panel({}, stream, {}, 1280), plain, kStream));
   stream.history = {{{{"a", 1000}}, 2.0}};
   EXPECT_TRUE(differs(draw_panel({}, stream, {}, 1280), plain, kLatency));

@@ -1,0 +1,25 @@
+#include "pipeline/process/model_check.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace houghstream {
+
+std::optional<std::string> ModelCheck::note(const Detections& detections) {
+  constexpr int kEnough = 10;
+  if (settled_ || models_.empty() || detections.detections.empty()) return std::nullopt;
+  for (const Detection& detection : detections.detections) {
+    detected_.insert(detection.class_name);
+    settled_ = settled_ || models_.count(detection.class_name) > 0;
+  }
+  return ++checked_ < kEnough ? std::nullopt : at_end();
+}
+
+std::optional<std::string> ModelCheck::at_end() {
+  if (settled_ || checked_ == 0) return std::nullopt;
+  settled_ = true;
+  return fmt::format("none of what was detected has a model: detected are {}; there are models of {}",
+                     fmt::join(detected_, ", "), fmt::join(models_, ", "));
+}
+
+}  // namespace houghstream

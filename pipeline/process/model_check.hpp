@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "pipeline/types/detection.hpp"
+
+namespace houghstream {
+
+/// Notices that the models and the detector do not know each other's objects: no pose can come of it, and the reason
+/// stands in every single pose only. Not thread-safe.
+class ModelCheck {
+ public:
+  /// `models`: classes that have one. Without any nothing is noticed; there is nothing to compare with.
+  explicit ModelCheck(std::set<std::string> models) : models_(std::move(models)) {}
+
+  /// A warning that names both sides' classes, once, where the first ten detections_t that hold something hold no class
+  /// with a model.
+  std::optional<std::string> note(const Detections& detections);
+
+  /// The same where fewer have come and no more will.
+  std::optional<std::string> at_end();
+
+ private:
+  std::set<std::string> models_;
+  std::set<std::string> detected_;
+  int checked_ = 0;
+  bool settled_ = false;  // a class with a model has come, or it has been said
+};
+
+}  // namespace houghstream

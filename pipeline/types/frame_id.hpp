@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <tuple>
+
+namespace houghstream {
+
+/// The name of a frame, by which everything pairs, keeps, draws, exports and judges. The time alone does not name it:
+/// cameras that are triggered together, simulated or replayed take frames of equal times.
+struct FrameId {
+  std::string channel;     ///< the camera's: LCM channel of the frame; empty where it was not published
+  std::int64_t utime = 0;  ///< capture time, microseconds since the epoch
+};
+
+inline bool operator==(const FrameId& a, const FrameId& b) {
+  return a.utime == b.utime && a.channel == b.channel;
+}
+inline bool operator!=(const FrameId& a, const FrameId& b) {
+  return !(a == b);
+}
+/// Earlier frames first; frames of one time by their channels.
+inline bool operator<(const FrameId& a, const FrameId& b) {
+  return std::tie(a.utime, a.channel) < std::tie(b.utime, b.channel);
+}
+
+/// "LEFT_CAMERA 1499876543210000", or the time alone where there is no channel.
+inline std::string to_string(const FrameId& id) {
+  return (id.channel.empty() ? "" : id.channel + " ") + std::to_string(id.utime);
+}
+
+}  // namespace houghstream
+
+template <>
+struct std::hash<houghstream::FrameId> {
+  std::size_t operator()(const houghstream::FrameId& id) const noexcept {
+    return std::hash<std::string>()(id.channel) * 31 + std::hash<std::int64_t>()(id.utime);
+  }
+};

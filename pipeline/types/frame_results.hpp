@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/object_pose.hpp"
+
+namespace houghstream {
+
+/// What one detector found in a frame, and the poses that were computed of it.
+struct FrameResult {
+  Detections detections;
+  std::optional<ObjectPoses> poses;
+};
+
+/// Whether the poses are those of these detections: of the same frame, of its classes at the places that they name, and
+/// some where there are detections. The messages do not say which detector they are of.
+bool answers(const ObjectPoses& poses, const Detections& detections);
+
+/// All that was published of one frame. Several detectors may work on a camera's frames, each with a forest of its own
+/// objects: each result stands by itself, with its own poses. Results and poses may come in any order.
+class FrameResults {
+ public:
+  /// One that finds the very same objects as an earlier one takes its place: it is a log that is played again.
+  void add(Detections detections);
+  void add(ObjectPoses poses);
+
+  const std::vector<FrameResult>& results() const { return results_; }
+  /// Whether each result has its poses.
+  bool all_posed() const;
+  /// Poses of no result that has come so far.
+  const std::vector<ObjectPoses>& unmatched() const { return unmatched_; }
+
+  /// All results as one, strongest detections first, and the poses that have come with indices to match. What several
+  /// results say of a stage stands several times, but the stages that they begin with alike, which are the frame's
+  /// own, once. Nothing where there are no detections; no poses where none of the results has any.
+  std::optional<FrameResult> joined() const;
+
+ private:
+  bool place(ObjectPoses& poses);
+
+  std::vector<FrameResult> results_;
+  std::vector<ObjectPoses> unmatched_;
+};
+
+}  // namespace houghstream

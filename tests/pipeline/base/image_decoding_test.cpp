@@ -1,0 +1,41 @@
+#include "pipeline/base/image_decoding.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+/// A PNG of a few bytes whose header claims this width.
+std::vector<std::uint8_t> png_of_width(std::uint8_t high_byte) {
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", cv::Mat(3, 4, CV_8UC1, cv::Scalar(7)), png);
+  png[17] = high_byte;  // of the four big-endian bytes from 16 on
+  return png;
+}
+
+TEST(ImageDecoding, WhatCannotBeDecodedIsEmpty) {
+  const std::vector<std::uint8_t> good = png_of_width(0);
+  EXPECT_EQ(decode_image(good.data(), good.size(), cv::IMREAD_UNCHANGED).size(), cv::Size(4, 3));
+  EXPECT_TRUE(decode_image(nullptr, 0, cv::IMREAD_UNCHANGED).empty());
+  EXPECT_TRUE(decode_image(good.data(), 20, cv::IMREAD_UNCHANGED).empty());
+  const std::vector<std::uint8_t> huge = png_of_width(0xFF);
+  EXPECT_TRUE(decode_image(huge.data(), huge.size(), cv::IMREAD_UNCHANGED).empty());
+}
+
+TEST(ImageDecoding, SoItIsOfFiles) {
+  const auto file = std::filesystem::temp_directory_path() / ("image_decoding_test." + std::to_string(getpid()));
+  const std::vector<std::uint8_t> huge = png_of_width(0xFF);
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(huge.data()), static_cast<std::streamsize>(huge.size()));
+  EXPECT_TRUE(decode_image_file(file, cv::IMREAD_COLOR).empty());
+  std::filesystem::remove(file);
+  EXPECT_TRUE(decode_image_file(file, cv::IMREAD_COLOR).empty());
+}
+
+}  // namespace
+}  // namespace houghstream

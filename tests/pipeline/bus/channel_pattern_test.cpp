@@ -1,0 +1,32 @@
+#include "pipeline/bus/channel_pattern.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+TEST(ChannelPattern, ANameStandsForItself) {
+  const ChannelPattern name("OPENNI_FRAME");
+  EXPECT_TRUE(name.is_name());
+  EXPECT_TRUE(name.matches("OPENNI_FRAME"));
+  EXPECT_FALSE(name.matches("OPENNI_FRAME_2"));
+}
+
+TEST(ChannelPattern, AnExpressionIsForTheWholeName) {
+  const ChannelPattern two("LEFT|RIGHT");
+  EXPECT_FALSE(two.is_name());
+  EXPECT_TRUE(two.matches("LEFT"));
+  EXPECT_TRUE(two.matches("RIGHT"));
+  EXPECT_FALSE(two.matches("LEFT_2"));
+  EXPECT_FALSE(two.matches("UPRIGHT"));
+  EXPECT_TRUE(ChannelPattern("CAMERA_[0-9]+").matches("CAMERA_17"));
+}
+
+TEST(ChannelPattern, WhatIsNoExpressionIsRefused) {
+  EXPECT_THROW(ChannelPattern("("), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

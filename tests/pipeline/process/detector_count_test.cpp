@@ -1,0 +1,32 @@
+#include "pipeline/process/detector_count.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+TEST(DetectorCount, IsHowManyResultsAFrameHadOfLate) {
+  DetectorCount detectors;
+  EXPECT_EQ(detectors.of("LEFT"), 1);
+  detectors.note_result({"LEFT", 1});
+  detectors.note_result({"RIGHT", 1});
+  EXPECT_EQ(detectors.of("LEFT"), 1) << "the other one's is another frame";
+  detectors.note_result({"LEFT", 2});
+  detectors.note_result({"LEFT", 1});
+  EXPECT_EQ(detectors.of("LEFT"), 2);
+  EXPECT_EQ(detectors.of("RIGHT"), 1);
+  for (int i = 10; i < 30; ++i) detectors.note_result({"LEFT", i});
+  EXPECT_EQ(detectors.of("LEFT"), 1) << "one of them is gone";
+}
+
+TEST(DetectorCount, AFrameThatComesAgainIsCountedAnew) {
+  DetectorCount detectors;
+  detectors.note_result({"LEFT", 1});
+  detectors.forget({"LEFT", 1});
+  detectors.forget({"NONE", 1});
+  detectors.note_result({"LEFT", 1});
+  EXPECT_EQ(detectors.of("LEFT"), 1);
+}
+
+}  // namespace
+}  // namespace houghstream

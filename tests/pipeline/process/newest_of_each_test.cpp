@@ -1,0 +1,57 @@
+#include "pipeline/process/newest_of_each.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace houghstream {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(NewestOfEach, TheNewestWinsAndWhatIsPassedOverIsTold) {
+  NewestOfEach<int> slot;
+  EXPECT_FALSE(slot.put("A", 1));
+  EXPECT_TRUE(slot.put("A", 2));
+  EXPECT_TRUE(slot.put("A", 3));
+  EXPECT_EQ(slot.take(milliseconds(0)), 3);
+  EXPECT_FALSE(slot.take(milliseconds(1)).has_value());
+  EXPECT_FALSE(slot.put("A", 4));
+}
+
+TEST(NewestOfEach, EveryItemIsTakenOrPassedOver) {
+  NewestOfEach<int> slot;
+  constexpr int kItems = 20000;
+  int passed_over = 0;
+  std::thread sender([&] {
+    for (int i = 1; i <= kItems; ++i) passed_over += slot.put("A", i) ? 1 : 0;
+  });
+  int taken = 0;
+  int last = 0;
+  while (last < kItems) {
+    const std::optional<int> item = slot.take(milliseconds(1000));
+    ASSERT_TRUE(item.has_value());
+    EXPECT_GT(*item, last);
+    last = *item;
+    ++taken;
+  }
+  sender.join();
+  EXPECT_EQ(taken + passed_over, kItems);
+}
+
+TEST(NewestOfEach, AFastChannelDoesNotStarveASlowOne) {
+  NewestOfEach<int> slots;
+  EXPECT_FALSE(slots.put("SLOW", 1));
+  EXPECT_FALSE(slots.put("FAST", 10));
+  for (int i = 11; i < 20; ++i) EXPECT_TRUE(slots.put("FAST", i));
+  EXPECT_EQ(slots.waiting(), 2U);
+  EXPECT_EQ(slots.take(milliseconds(0)), 1);
+  EXPECT_FALSE(slots.put("SLOW", 2));
+  EXPECT_TRUE(slots.put("FAST", 20)) << "a newer item takes the turn of the one before";
+  EXPECT_EQ(slots.take(milliseconds(0)), 20);
+  EXPECT_EQ(slots.take(milliseconds(0)), 2);
+  EXPECT_EQ(slots.waiting(), 0U);
+}
+
+}  // namespace
+}  // namespace houghstream
