@@ -205,7 +205,7 @@ TEST(PoseEstimator, SameResultForAnyNumberOfThreads) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   Detections detections = only(detection_of("mug", scene.object, scene.truth, 5));
   for (int i = 6; i < 11; ++i) detections.detections.push_back(detection_of("mug", scene.object, scene.truth, i));
-  detections.stages = {{"detect.forest", 7}};
+  detections.stages = {{"detect.leaves", 7}};
   PoseSettings settings;
   const ObjectPoses serial = estimator_for("mug", mug(), settings).estimate(scene.frame, detections);
   settings.threads = 3;
@@ -218,7 +218,7 @@ TEST(PoseEstimator, SameResultForAnyNumberOfThreads) {
     EXPECT_EQ(parallel.poses[i].detection_index, static_cast<int>(i));
   }
   ASSERT_EQ(serial.stages.size(), 2U);
-  EXPECT_EQ(serial.stages[0].stage, "detect.forest");
+  EXPECT_EQ(serial.stages[0].stage, "detect.leaves");
   EXPECT_EQ(serial.stages[1].stage, "pose.estimate");
 }
 

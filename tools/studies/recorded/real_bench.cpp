@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detector/stages.hpp"
 #include "drivers/files/frame_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/studies/recorded/pose_sheets.hpp"
@@ -76,10 +77,11 @@ RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& 
                          const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
                          const ComparedObject& object) {
   RealBench bench;
+  DetectorWorkspace workspace;
   std::int64_t utime = 0;
   for (const FramePair& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, drawn.camera, ++utime);
-    const Detections detections = detector.detect(frame);
+    const Detections detections = detector.detect(frame, workspace);
     const ObjectPoses poses = estimator.estimate(frame, detections);
     const ObjectPoses withheld =
         withheld_poses(detections, poses, unchecked.estimate(frame, detections), boxes_of(pair.name, drawn.frames));
