@@ -14,7 +14,8 @@ import sys
 import time
 
 NAMES = (
-    *("hs-render", "hs-import", "hs-log", "hs-train", "hs-evaluate", "hs-linemod", "hs-hough", "hs-failures"),
+    *("hs-render", "hs-import", "hs-log", "hs-study-train", "hs-study-evaluate"),
+    *("hs-linemod", "hs-hough", "hs-failures"),
     "hs-bench-speed",
 )
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can")
@@ -82,15 +83,16 @@ def write_evaluation(folder, quality, times, chance):
 def evaluate(words, out, chance):
     taught = pathlib.Path(option(words, "--forest")).read_text()
     slow = (
-        (20.0 if "--readable" in words else 1.0)
+        (20.0 if "--reference" in words else 1.0)
         / float(option(words, "--stride", "2"))
         / (1 if "normalised" in taught else 4)
     )
     times = {
         "detect.features": 30.0,
-        "detect.forest": 400.0 * slow,
-        "detect.voting": 300.0 * slow,
-        "detect.hypotheses": 20.0,
+        "detect.leaves": 400.0 * slow,
+        "detect.votes": 200.0 * slow,
+        "detect.evidence": 100.0 * slow,
+        "detect.suppression": 20.0,
     }
     quality = max([value for name, value in QUALITY.items() if name in taught] or [0.5])
     write_evaluation(out, quality, times, chance)
@@ -111,10 +113,10 @@ def bench_speed(words, out):
 def run(name, words):
     out = pathlib.Path(option(words, "--out", words[-1]))
     chance = random.Random(" ".join(words[1:-1]))
-    if name == "hs-train":
+    if name == "hs-study-train":
         out.write_text(" ".join(words) + os.environ.get("REPRODUCE_FAKE_DIFFERS", ""))
         print("train_seconds 101.5")
-    elif name == "hs-evaluate":
+    elif name == "hs-study-evaluate":
         evaluate(words, out, chance)
     elif name == "hs-linemod":
         linemod(words, out, chance)

@@ -142,11 +142,11 @@ class Plan(unittest.TestCase):
 
     def test_no_two_units_share_a_name(self):
         collected = units.Units()
-        collected.add("train/a", "1", "hs-train", "--seed", 1)
-        collected.add("train/a", "2", "hs-train", "--seed", 1)
+        collected.add("train/a", "1", "hs-study-train", "--seed", 1)
+        collected.add("train/a", "2", "hs-study-train", "--seed", 1)
         self.assertEqual(collected.all()[0].figures, ("1", "2"))
         with self.assertRaises(ValueError):
-            collected.add("train/a", "1", "hs-train", "--seed", 2)
+            collected.add("train/a", "1", "hs-study-train", "--seed", 2)
 
 
 class Bars(unittest.TestCase):

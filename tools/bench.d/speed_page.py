@@ -8,10 +8,12 @@ from html_parts import STYLE, show, table
 WORDS = {
     "realtime": "realtime profile, all threads",
     "paper": "paper profile, all threads",
-    "serial": "realtime profile, readable engine, one thread",
-    "gall": "gall profile, readable engine, one thread",
+    "serial": "realtime profile, reference engine, one thread",
+    "gall": "gall profile, reference engine, one thread",
 }
-STAGES = ("detect.resize", "detect.features", "detect.forest", "detect.voting", "detect.hypotheses")
+STAGES = (
+    *("detect.resize", "detect.features", "detect.leaves", "detect.votes", "detect.evidence", "detect.suppression"),
+)
 
 
 def milliseconds(value):
@@ -93,7 +95,7 @@ def render(summary, history):
         " the objects, on all frames of the scene.</p>",
         table(("", "ms a frame", "AUC"), detection_rows(summary)),
         f"<p>Against gall on one thread: {show(summary['speedup_over_gall'], '{:.0f}')} times as fast. Two threads against one:"
-        f" {show(summary['speedup_of_two_threads'], '{:.2f}')}. On every twelfth frame the readable engine has AUC"
+        f" {show(summary['speedup_of_two_threads'], '{:.2f}')}. On every twelfth frame the reference engine has AUC"
         f" {show(summary['auc']['serial_few'])}, the fast one {show(summary['auc']['realtime_few'])}.</p>",
         "<h2>Stages</h2>",
         table(("ms, median", *(stage.removeprefix("detect.") for stage in STAGES)), stage_rows(summary)),

@@ -1,4 +1,4 @@
-# Time a frame, profile by profile and stage by stage, beside the readable detector, OpenCV's LINEMOD, other instruction
+# Time a frame, profile by profile and stage by stage, beside the reference engine, OpenCV's LINEMOD, other instruction
 # sets and numbers of threads, and what accuracy it buys: $out/speed. Sourced by tools/bench.
 
 speed_scene=table_small_1
@@ -6,7 +6,7 @@ scene_distances=(--min-distance 0.75 --max-distance 2.1) # at which the objects 
 
 # profile_forest PROFILE: $data/PROFILE_forest, beside the default profile's $data/forest, which all parts use.
 profile_forest() {
-  cached "$1_forest" 'training background' "$bin/hs-train" --profile "$1" --threads "$(nproc)" \
+  cached "$1_forest" 'training background' "$bin/hs-study-train" --profile "$1" --threads "$(nproc)" \
     --out "$data/$1_forest" --views "bop:$data/training" --background "bop:$data/background"
 }
 
@@ -23,7 +23,7 @@ measure_accuracy() {
   accuracy realtime "$bin/hs-evaluate" --forest "$data/forest" "${ranked[@]}" --threads "$(nproc)"
   accuracy paper "$bin/hs-evaluate" --forest "$data/paper_forest" "${ranked[@]}" --threads "$(nproc)"
   accuracy realtime_few "$bin/hs-evaluate" --forest "$data/forest" "${ranked[@]}" --every 12 --threads "$(nproc)"
-  accuracy serial_few "$bin/hs-evaluate" --forest "$data/forest" "${ranked[@]}" --every 12 --readable --threads 1
+  accuracy serial_few "$bin/hs-study-evaluate" --forest "$data/forest" "${ranked[@]}" --every 12 --reference --threads 1
   accuracy linemod "$bin/hs-linemod" --views "bop:$data/training" "${scene_distances[@]}" --threads "$(nproc)"
 }
 
@@ -44,8 +44,8 @@ bench_speed() {
   step "speed: side by side"
   "$bin/hs-bench-speed" --scene "$data/scene/$speed_scene" --every "$every" --out "$out/speed/times.json" \
     --detector "realtime=$data/forest,threads=$(nproc)" --detector "paper=$data/paper_forest,threads=$(nproc)" \
-    --detector "serial=$data/forest,threads=1,readable,frames=3" \
-    --detector "gall=$data/gall_forest,threads=1,readable,frames=1" \
+    --detector "serial=$data/forest,threads=1,reference,frames=3" \
+    --detector "gall=$data/gall_forest,threads=1,reference,frames=1" \
     --detector "gall_engine=$data/gall_forest,threads=1,frames=2" "${detectors[@]}" \
     --linemod-views "bop:$data/training" "${scene_distances[@]}" --linemod-threads "$(nproc)"
   step "speed: kernels"

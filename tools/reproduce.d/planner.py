@@ -39,7 +39,8 @@ class Planner:
         forest = forest_of(what)
         name = f"train/{prefix}{forest}/seed{seed}"
         options = (*variants.TRAINING[forest], "--seed", seed, "--threads", self.protocol.threads, *source.training)
-        return self.units.add(name, figure, "hs-train", *options, "--out", "{out}", what=prefix + forest, seed=seed)
+        command = ("hs-study-train", *options, "--out", "{out}")
+        return self.units.add(name, figure, *command, what=prefix + forest, seed=seed)
 
     def evaluate(self, what, source, scene, seed, figure, prefix="", every=None):
         """Trains the forest where no other figure has, and measures it; nothing where the protocol leaves it out."""
@@ -65,7 +66,7 @@ class Planner:
 
     def _evaluate_command(self, forest, source, scene, every):
         files = ("--scene", source.scenes[scene], "--forest", f"{{{forest}}}")
-        return ("hs-evaluate", *files, "--every", every, "--out", "{out}")
+        return ("hs-study-evaluate", *files, "--every", every, "--out", "{out}")
 
     def linemod(self, what, source, scenes, figure, every, extra=()):
         """Learns its templates without chance: one run stands for all. As evaluate() where it is left out."""

@@ -17,7 +17,7 @@ REAL_NAMES = "can_1=can,can_2=can"
 
 @dataclasses.dataclass(frozen=True)
 class Source:
-    training: tuple  # options of hs-train and hs-linemod
+    training: tuple  # options of hs-study-train and hs-linemod
     distances: tuple  # at which objects stand in the scenes, options of hs-linemod
     scenes: dict  # "{NAME}" of the unit that makes it, by scene
 

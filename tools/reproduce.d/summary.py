@@ -5,7 +5,7 @@ from arithmetic import mean_of, ratio, relative
 from reliability import calibration_error, reliability
 from variants import FEATURE_SCENE, FEATURES, PROFILES, SCALE_SCENES, SCENES, SCENES_20, STRIDES, TIMINGS, forest_of
 
-CLASSIFY_AND_VOTE = ("detect.forest", "detect.voting")
+CLASSIFY_AND_VOTE = ("detect.leaves", "detect.votes", "detect.evidence")
 
 
 def all_auc(results):

@@ -1,4 +1,4 @@
-"""The detectors that are compared: what hs-train is told for each, and how hs-evaluate asks it."""
+"""The detectors that are compared: what hs-study-train is told for each, and how hs-study-evaluate asks it."""
 
 # Training options. The feature study adds one feature at a time to the intensity features (paper, Section 4).
 FINAL = ("--profile", "gall", "--features", "intensity,depth_value,depth_derivatives,depth_hog", "--depth-kernel", "7")
@@ -63,11 +63,11 @@ def detection_options(what):
 
 
 TIMINGS = {  # name: forest, options; Section 5 gives each saving relative to the original
-    "original": ("gall", ("--stride", "1", "--threads", "1", "--readable")),
-    "half_size": ("half_size", ("--stride", "1", "--threads", "1", "--readable")),
-    "depth_normalisation": ("normalised", ("--stride", "1", "--threads", "1", "--readable")),
-    "stride_2": ("gall", ("--stride", "2", "--threads", "1", "--readable")),
-    "all_threads": ("gall", ("--stride", "1", "--readable")),
+    "original": ("gall", ("--stride", "1", "--threads", "1", "--reference")),
+    "half_size": ("half_size", ("--stride", "1", "--threads", "1", "--reference")),
+    "depth_normalisation": ("normalised", ("--stride", "1", "--threads", "1", "--reference")),
+    "stride_2": ("gall", ("--stride", "2", "--threads", "1", "--reference")),
+    "all_threads": ("gall", ("--stride", "1", "--reference")),
     "fast_engine": ("gall", ("--stride", "1")),
     "final": ("paper", ()),
     "realtime": ("realtime", ()),
