@@ -2,18 +2,33 @@
 
 #include <utility>
 
-#include "detector/detection_candidates.hpp"
-#include "detector/voting/boxes.hpp"
+#include "detector/extensions.hpp"
+#include "detector/stages.hpp"
 
 namespace houghstream {
+namespace {
+
+/// Those that are likely enough; of overlapping ones the stronger (Section 2).
+std::vector<Detection> suppress(std::vector<Candidate>& candidates, const DetectionSettings& settings) {
+  std::vector<Detection> likely;
+  for (Candidate& candidate : candidates) {
+    if (candidate.detection.score >= settings.evidence.threshold) likely.push_back(std::move(candidate.detection));
+  }
+  return suppress_overlaps(std::move(likely), settings.suppression);
+}
+
+}  // namespace
 
 struct Detector::State {
   Forest forest;
   DetectionSettings settings;
+  const Engine& engine;
 };
 
-Detector::Detector(Forest forest, DetectionSettings settings)
-    : state_(std::make_unique<State>(State{std::move(forest), settings})) {}
+Detector::Detector(Forest forest, DetectionSettings settings, const Engine& engine)
+    : state_(std::make_unique<State>(State{std::move(forest), settings, engine})) {
+  require_extensions(state_->forest.features, "forest");
+}
 Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
 
@@ -21,20 +36,42 @@ const Forest& Detector::forest() const {
   return state_->forest;
 }
 
-Detections Detector::detect(const RgbdFrame& frame) const {
-  const DetectionSettings& settings = state_->settings;
+const DetectionSettings& Detector::settings() const {
+  return state_->settings;
+}
+
+// The method on one page; sections are those of Haensch, Kaiser and Hellwich (2017).
+Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const {
+  const Search search{state_->forest, state_->settings, state_->engine};
   check_frame(frame, "detector");
   StageClock clock;
+  std::vector<Candidate> candidates;
+  if (search.forest.features.handling == ScaleHandling::kScaleSpace) {  // the original's way, see detector/baseline
+    candidates = extensions().search_scale_space(search, frame, clock);
+  } else {
+    make_working_images(search, frame, workspace);  // Section 5.1.1
+    clock.mark("detect.resize");
+    compute_features(search, workspace);  // Section 3, around the patches of Section 5.1.3
+    clock.mark("detect.features");
+    find_posteriors(search, workspace);  // Section 5.1.2: leaves of every tree
+    clock.mark("detect.leaves");
+    const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);  // Section 2: votes and their maxima
+    clock.mark("detect.votes");
+    candidates = weigh_evidence(search, frame, hypotheses, workspace);  // scores
+    clock.mark("detect.evidence");
+  }
   Detections out;
   out.frame = frame.id;
-  for (Candidate& candidate : find_candidates(state_->forest, frame, settings, clock)) {
-    if (candidate.detection.score >= settings.threshold) out.detections.push_back(std::move(candidate.detection));
-  }
-  out.detections = suppress_overlaps(std::move(out.detections), settings);
-  clock.mark("detect.hypotheses");
+  out.detections = suppress(candidates, search.settings);  // Section 2: non-maximum suppression
+  clock.mark("detect.suppression");
   out.stages = frame.stages;
   out.stages.insert(out.stages.end(), clock.times().begin(), clock.times().end());
   return out;
+}
+
+Detections Detector::detect(const RgbdFrame& frame) const {
+  DetectorWorkspace workspace;
+  return detect(frame, workspace);
 }
 
 }  // namespace houghstream

@@ -2,26 +2,36 @@
 
 #include <memory>
 
-#include "detector/detector_settings.hpp"
+#include "detector/detection_settings.hpp"
+#include "detector/engine.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 
+/// The memory of a search, see stages.hpp.
+struct DetectorWorkspace;
+
 /// Finds the taught objects in an RGB-D frame: depth-normalised Hough Forest (Haensch, Kaiser, Hellwich,
-/// VISAPP 2017, after Gall et al., PAMI 2011).
+/// VISAPP 2017, after Gall et al., PAMI 2011). Several threads may use one detector, each with a workspace of its own.
 class Detector {
  public:
-  Detector(Forest forest, DetectionSettings settings);
+  /// Throws InputError where the forest needs what this program does not have, see extensions.hpp.
+  Detector(Forest forest, DetectionSettings settings, const Engine& engine = fast_engine());
   ~Detector();
   Detector(Detector&&) noexcept;
 
-  /// Detections above settings.threshold, strongest first, with stage times "detect.*" appended to the frame's.
-  /// Same forest, frame and settings: same result, bit for bit, for any number of threads.
+  /// Detections from settings.evidence.threshold on, strongest first, with stage times "detect.*" appended to the
+  /// frame's. Same forest, frame and settings: same result, bit for bit, for any number of threads, whatever the
+  /// workspace was used for before. Throws InputError unless the frame's images and camera agree.
+  Detections detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const;
+
+  /// The same with memory of its own: for a single frame.
   Detections detect(const RgbdFrame& frame) const;
 
   const Forest& forest() const;
+  const DetectionSettings& settings() const;
 
  private:
   struct State;

@@ -35,9 +35,9 @@ Profile paper() {
   profile.features.far_distance = profile.features.max_distance;  // one size for all
   profile.patch.radius = 5;
   profile.patch.unit = 1.0F / (0.7F * kUsualFocal);  // one working pixel at 1 m
-  profile.detection.stride = 1;
-  profile.detection.patch_spacing = 0.0F;
-  profile.detection.first_trees = 0;
+  profile.detection.spacing.stride = 1;
+  profile.detection.spacing.metres = 0.0F;
+  profile.detection.leaves.first_trees = 0;
   return profile;
 }
 
@@ -53,12 +53,12 @@ Profile gall(std::size_t objects) {
   profile.training.most_background = std::numeric_limits<float>::infinity();
   profile.training.scoring = Scoring::kVotes;
   profile.training.max_leaf_votes = 32;
-  profile.detection.stride = 1;
-  profile.detection.patch_spacing = 0.0F;
-  profile.detection.first_trees = 0;
-  profile.detection.threshold = 0.1F;
-  profile.detection.min_mass_share = 0.05F;
-  profile.detection.min_class_share = even_share(objects);
+  profile.detection.spacing.stride = 1;
+  profile.detection.spacing.metres = 0.0F;
+  profile.detection.leaves.first_trees = 0;
+  profile.detection.evidence.threshold = 0.1F;
+  profile.detection.voting.min_mass_share = 0.05F;
+  profile.detection.leaves.min_class_share = even_share(objects);
   set_scale_handling(profile, "five");
   return profile;
 }
@@ -102,8 +102,8 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
     features.scales = {};
     features.far_distance = features.max_distance;
     profile.patch.unit = kTaughtDistance / (features.image_scale * kUsualFocal);
-    profile.training.merge_radius = TrainingSettings{}.merge_radius;
-    profile.detection.vote_sigma = DetectionSettings{}.vote_sigma;
+    profile.training.merge_radius = training::TrainingSettings{}.merge_radius;
+    profile.detection.voting.vote_sigma = DetectionSettings{}.voting.vote_sigma;
     return;
   }
   require(handling == "five" || handling == "single", "scale handling '{}', expected five, single or normalised",
@@ -113,7 +113,7 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
   profile.patch.unit = 1.0F;
   // Offsets are counted as at 1 m: see FeatureSettings::handling.
   profile.training.merge_radius = 2.0F / kUsualFocal;
-  profile.detection.vote_sigma = 3.0F / kUsualFocal;
+  profile.detection.voting.vote_sigma = 3.0F / kUsualFocal;
 }
 
 }  // namespace houghstream

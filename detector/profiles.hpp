@@ -3,7 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "detector/detector_settings.hpp"
+#include "detector/detection_settings.hpp"
+#include "detector/features/feature_settings.hpp"
+#include "detector/forest/patch_settings.hpp"
+#include "detector/training/training_settings.hpp"
 
 namespace houghstream {
 
@@ -14,13 +17,14 @@ struct Profile {
   std::string name;
   FeatureSettings features;
   PatchSettings patch;
-  TrainingSettings training;
+  training::TrainingSettings training;
   DetectionSettings detection;
 };
 
 /// The one place where the named settings are:
 ///
-/// gall      the original Hough Forest (Gall et al. 2011) with the parameters of the paper's Section 4: intensity only,
+/// gall      (with detector/baseline only) the original Hough Forest (Gall et al. 2011) with the parameters of the
+/// paper's Section 4: intensity only,
 ///           five scales of the image, patches of 16x16 pixels, every pixel; a detection's score is its votes' mass.
 ///           A patch votes for the objects that it takes for likelier than one of so many by chance.
 /// paper     Section 6: final features, image scale 0.7, patches of 10x10 pixels (at 1 m), depth normalisation, every

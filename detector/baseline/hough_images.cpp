@@ -4,16 +4,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/baseline/scale_space_search.hpp"
-#include "detector/forest/seen_patches.hpp"
-#include "detector/voting/voting.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
-cv::Mat largest_over_sizes(const Forest& forest, int class_index, const RgbdFrame& frame,
-                           const DetectionSettings& settings) {
+cv::Mat largest_over_sizes(const Search& search, int class_index, const RgbdFrame& frame) {
   cv::Mat largest = cv::Mat::zeros(frame.colour.size(), CV_32FC1);
-  for (const cv::Mat& image : scale_space_hough_images(forest, class_index, frame, settings)) {
+  for (const cv::Mat& image : scale_space_hough_images(search, class_index, frame)) {
     cv::Mat resized;
     cv::resize(image, resized, largest.size(), 0, 0, cv::INTER_LINEAR);
     cv::max(largest, resized, largest);
@@ -22,16 +19,18 @@ cv::Mat largest_over_sizes(const Forest& forest, int class_index, const RgbdFram
 }
 
 /// Vote mass around each cell, as if summed by a kernel as wide as vote_sigma at the votes' own distance.
-cv::Mat masses_by_cell(const HoughSpace& space, const SeenPatches& seen, const DetectionSettings& settings) {
+cv::Mat masses_by_cell(const HoughSpace& space, const VotingInput& input) {
+  const VotingSettings& settings = input.settings;
   cv::Mat masses = cv::Mat::zeros(space.height, space.width, CV_32FC1);
-  const double sigma_at_1m = settings.vote_sigma * seen.hough_camera.fx / space.cell_px;
+  const double sigma_at_1m = settings.vote_sigma * input.camera.fx / space.cell_px;
   const auto kernel_at_1m = static_cast<float>(2.0 * M_PI * sigma_at_1m * sigma_at_1m);
   for (int c = 0; c < space.width * space.height; ++c) {
     float& mass = masses.at<float>(c / space.width, c % space.width);
     for (std::uint32_t v = space.first_vote[c]; v < space.first_vote[c + 1]; ++v) {
       const Vote& vote = space.votes[v];
       const float distance = vote.centre_camera.z();
-      mass += vote.weight * seen.grid.area[space.voters[space.voter[v]].patch] * kernel_at_1m / (distance * distance);
+      mass +=
+          vote.weight * input.patches.area[space.voters[space.voter[v]].patch] * kernel_at_1m / (distance * distance);
     }
   }
   const double sigma = static_cast<double>(settings.hough_sigma_px) / space.cell_px;
@@ -53,18 +52,21 @@ cv::Mat at_frame_size(const cv::Mat& cells, int cell_px, const Camera& working_c
 
 }  // namespace
 
-cv::Mat hough_image(const Forest& forest, int class_index, const RgbdFrame& frame, const DetectionSettings& settings) {
-  if (forest.features.handling == ScaleHandling::kScaleSpace) {
-    return largest_over_sizes(forest, class_index, frame, settings);
+cv::Mat hough_image(const Search& search, int class_index, const RgbdFrame& frame) {
+  if (search.forest.features.handling == ScaleHandling::kScaleSpace) {
+    return largest_over_sizes(search, class_index, frame);
   }
-  StageClock clock;
-  SeenPatches seen;
-  classify_patches(forest, frame, settings, clock, seen);
+  DetectorWorkspace workspace;
+  make_working_images(search, frame, workspace);
+  compute_features(search, workspace);
+  find_posteriors(search, workspace);
+  const VotingInput input = voting_input(search, workspace);
+  CastMemory memory;
   HoughSpace space;
-  cast_votes(forest, class_index, seen.grid, seen.beliefs, seen.hough_camera, settings, space);
-  const cv::Mat masses = masses_by_cell(space, seen, settings);
-  const float expected = forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
-  return at_frame_size(masses / expected, space.cell_px, seen.hough_camera, frame.colour.size());
+  cast_votes(input, class_index, memory, space);
+  const cv::Mat masses = masses_by_cell(space, input);
+  const float expected = search.forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
+  return at_frame_size(masses / expected, space.cell_px, input.camera, frame.colour.size());
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -2,15 +2,14 @@
 
 #include <opencv2/core.hpp>
 
-#include "detector/detector_settings.hpp"
-#include "detector/forest/forest.hpp"
+#include "detector/stages.hpp"
 #include "pipeline/types/frame.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// The Hough space of one class as a picture (paper, Figure 3): CV_32FC1 of the frame's size, the vote mass that meets
 /// around each pixel as a share of what a wholly visible object is expected to have. Of a scale space, the largest over
 /// all sizes; of a depth-normalised forest only about, since votes of all distances are smoothed alike.
-cv::Mat hough_image(const Forest& forest, int class_index, const RgbdFrame& frame, const DetectionSettings& settings);
+cv::Mat hough_image(const Search& search, int class_index, const RgbdFrame& frame);
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

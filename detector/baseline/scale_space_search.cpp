@@ -4,44 +4,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/baseline/scale_peaks.hpp"
-#include "detector/features/features.hpp"
-#include "detector/forest/beliefs.hpp"
 #include "detector/voting/boxes.hpp"
-#include "detector/voting/voting.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 /// One size of the frame, classified.
 struct SeenLevel {
   PatchGrid grid;  // without points and areas, which need depth
-  PatchBeliefs beliefs;
+  PatchPosteriors posteriors;
   Camera camera;               // of the level's image
   float px_per_offset = 0.0F;  // level pixels per unit of a leaf's offset, see ScaleHandling::kScaleSpace
   float size_ratio = 1.0F;
   int size = 0;  // its number
 };
 
-SeenLevel see_level(const Forest& forest, const RgbdFrame& frame, const FeatureLevel& level,
-                    const DetectionSettings& settings, StageClock& clock) {
+/// Classifies the patches of a level; closes its stages on the clock.
+SeenLevel see_level(const Search& search, const RgbdFrame& frame, const FeatureLevel& level, StageClock& clock) {
+  const Forest& forest = search.forest;
+  const DetectionSettings& settings = search.settings;
   const WorkingFrame working = make_working_frame(frame, level, forest.features);
   clock.mark("detect.resize");
-  std::vector<FeatureImage> features;
-  features.push_back(settings.readable ? compute_features_readably(working, forest.features)
-                                       : compute_features(working, forest.features, settings.threads));
+  FeatureTiles everywhere;
+  everywhere.want_all(working.colour.size());
+  FeatureMemory feature_memory;
+  std::vector<FeatureImage> features(1);
+  search.engine.features({working, forest.features, everywhere}, settings.threads, feature_memory, features[0]);
   clock.mark("detect.features");
   SeenLevel seen;
   seen.camera = working.camera;
   seen.size_ratio = level.size_ratio;
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
-  add_patches_everywhere(working, level, forest.patch, settings.stride, seen.grid);
-  classify(forest, features, seen.grid, settings, seen.beliefs);
-  clock.mark("detect.forest");
+  add_patches_everywhere(working, level, forest.patch, settings.spacing.stride, seen.grid);
+  LeafMemory leaf_memory;
+  find_posteriors({forest, features, seen.grid, settings.leaves, settings.threads}, search.engine, leaf_memory,
+                  seen.posteriors);
+  clock.mark("detect.leaves");
   return seen;
 }
 
@@ -51,7 +54,7 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
   const float share = 1.0F / static_cast<float>(forest.roots.size());
   const auto width = static_cast<float>(seen.camera.width);
   const auto height = static_cast<float>(seen.camera.height);
-  seen.beliefs.for_believers(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+  seen.posteriors.for_supporters(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
     for (std::uint32_t e = 0; e < count; ++e) {  // the cache misses below overlap
       hwy::Prefetch(forest.votes.data() + forest.leaf_classes[entries[e]].first_vote);
     }
@@ -72,13 +75,15 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
 }
 
 /// Vote mass per pixel over the class's expected mass.
-cv::Mat hough_image(const Forest& forest, int class_index, const SeenLevel& seen, const DetectionSettings& settings) {
+cv::Mat hough_image(const Search& search, int class_index, const SeenLevel& seen) {
+  const Forest& forest = search.forest;
+  const DetectionSettings& settings = search.settings;
   cv::Mat image = cv::Mat::zeros(seen.camera.height, seen.camera.width, CV_32FC1);
   for_votes_of(forest, class_index, seen,
                [&](std::uint32_t, int x, int y, float weight, const LeafClass&) { image.at<float>(y, x) += weight; });
-  const double sigma = static_cast<double>(settings.vote_sigma) * seen.px_per_offset;
+  const double sigma = static_cast<double>(settings.voting.vote_sigma) * seen.px_per_offset;
   cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
-  const double patch_side = settings.stride / static_cast<double>(seen.px_per_offset);
+  const double patch_side = settings.spacing.stride / static_cast<double>(seen.px_per_offset);
   const double kernel_sum = 2.0 * M_PI * sigma * sigma;  // a vote at the centre counts as 1
   const float expected = forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
   return image * (kernel_sum * patch_side * patch_side / expected);
@@ -112,9 +117,10 @@ cv::Mat supported_maximum(const std::vector<cv::Point>& maxima, cv::Size size, f
 }
 
 /// The patches, and the views that they remember, whose votes meet at each maximum.
-std::vector<Hypothesis> gather_supporters(const Forest& forest, int class_index, const SeenLevel& seen,
-                                          const std::vector<cv::Point>& maxima, const DetectionSettings& settings) {
-  const float sigma = settings.vote_sigma * seen.px_per_offset;
+std::vector<Hypothesis> gather_supporters(const Search& search, int class_index, const SeenLevel& seen,
+                                          const std::vector<cv::Point>& maxima) {
+  const Forest& forest = search.forest;
+  const float sigma = search.settings.voting.vote_sigma * seen.px_per_offset;
   const cv::Mat number = supported_maximum(maxima, cv::Size(seen.camera.width, seen.camera.height), kVoteReach * sigma);
   std::vector<Hypothesis> hypotheses(maxima.size());
   if (maxima.empty()) return hypotheses;
@@ -158,14 +164,15 @@ Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis
 }
 
 /// All maxima of one class in one size.
-std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const SeenLevel& seen, const Camera& camera,
-                                   const DetectionSettings& settings) {
-  const ObjectClass& object = forest.classes[static_cast<std::size_t>(class_index)];
-  const cv::Mat image = hough_image(forest, class_index, seen, settings);
+std::vector<ScalePeak> level_peaks(const Search& search, int class_index, const SeenLevel& seen, const Camera& camera) {
+  const ObjectClass& object = search.forest.classes[static_cast<std::size_t>(class_index)];
+  const VotingSettings& settings = search.settings.voting;
+  const cv::Mat image = hough_image(search, class_index, seen);
   const int reach_px = static_cast<int>(std::lround(kVoteReach * settings.vote_sigma * seen.px_per_offset));
   const auto limit = static_cast<std::size_t>(settings.candidates_per_class);
   const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
-  std::vector<Hypothesis> hypotheses = gather_supporters(forest, class_index, seen, maxima, settings);
+  std::vector<Hypothesis> hypotheses = gather_supporters(search, class_index, seen, maxima);
+  BoxMemory box_memory;
   const float to_frame = static_cast<float>(camera.width) / static_cast<float>(seen.camera.width);
   const cv::Point2f half(0.5F, 0.5F);
   std::vector<ScalePeak> peaks;
@@ -173,7 +180,7 @@ std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const 
     const cv::Point at = maxima[m];
     Hypothesis& hypothesis = hypotheses[m];
     hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
-    const cv::Rect2f box_px = backprojected_box(forest, hypothesis, seen.grid, camera);
+    const cv::Rect2f box_px = backprojected_box(search.forest, hypothesis, seen.grid, camera, box_memory);
     if (box_px.empty()) continue;
     peaks.push_back({make_candidate(object, hypothesis, image.at<float>(at), box_px),
                      (cv::Point2f(at) + half) * to_frame - half, static_cast<float>(reach_px) * to_frame, seen.size});
@@ -181,33 +188,53 @@ std::vector<ScalePeak> level_peaks(const Forest& forest, int class_index, const 
   return peaks;
 }
 
+bool beside(const ScalePeak& a, const ScalePeak& b) {
+  if (a.candidate.detection.class_id != b.candidate.detection.class_id || std::abs(a.size - b.size) != 1) return false;
+  const cv::Point2f way = a.at_px - b.at_px;
+  return std::max(std::abs(way.x), std::abs(way.y)) <= std::max(a.reach_px, b.reach_px);
+}
+
+bool is_slope(const std::vector<ScalePeak>& peaks, std::size_t i) {
+  const float mass = peaks[i].candidate.evidence.mass_share;
+  for (std::size_t j = 0; j < peaks.size(); ++j) {
+    const float other = peaks[j].candidate.evidence.mass_share;
+    if ((other > mass || (other == mass && j < i)) && beside(peaks[i], peaks[j])) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-std::vector<Candidate> search_scale_space(const Forest& forest, const RgbdFrame& frame,
-                                          const DetectionSettings& settings, StageClock& clock) {
+std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    if (!is_slope(peaks, i)) candidates.push_back(peaks[i].candidate);
+  }
+  return candidates;
+}
+
+std::vector<Candidate> search_scale_space(const Search& search, const RgbdFrame& frame, StageClock& clock) {
   std::vector<ScalePeak> all;
   int sizes = 0;
-  for (const FeatureLevel& level : feature_levels(forest.features)) {
-    SeenLevel seen = see_level(forest, frame, level, settings, clock);
+  for (const FeatureLevel& level : feature_levels(search.forest.features)) {
+    SeenLevel seen = see_level(search, frame, level, clock);
     seen.size = sizes++;
-    std::vector<std::vector<ScalePeak>> by_class(forest.classes.size());
-    parallel_for(settings.threads, static_cast<int>(by_class.size()), [&](int c) {
-      by_class[static_cast<std::size_t>(c)] = level_peaks(forest, c, seen, frame.camera, settings);
-    });
+    std::vector<std::vector<ScalePeak>> by_class(search.forest.classes.size());
+    parallel_for(search.settings.threads, static_cast<int>(by_class.size()),
+                 [&](int c) { by_class[static_cast<std::size_t>(c)] = level_peaks(search, c, seen, frame.camera); });
     for (std::vector<ScalePeak>& part : by_class) std::move(part.begin(), part.end(), std::back_inserter(all));
-    clock.mark("detect.voting");
+    clock.mark("detect.votes");
   }
   return maxima_over_sizes(all);
 }
 
-std::vector<cv::Mat> scale_space_hough_images(const Forest& forest, int class_index, const RgbdFrame& frame,
-                                              const DetectionSettings& settings) {
+std::vector<cv::Mat> scale_space_hough_images(const Search& search, int class_index, const RgbdFrame& frame) {
   std::vector<cv::Mat> images;
   StageClock clock;
-  for (const FeatureLevel& level : feature_levels(forest.features)) {
-    images.push_back(hough_image(forest, class_index, see_level(forest, frame, level, settings, clock), settings));
+  for (const FeatureLevel& level : feature_levels(search.forest.features)) {
+    images.push_back(hough_image(search, class_index, see_level(search, frame, level, clock)));
   }
   return images;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

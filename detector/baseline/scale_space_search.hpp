@@ -2,20 +2,32 @@
 
 #include <vector>
 
-#include "detector/detection_candidates.hpp"
+#include "detector/stages.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// The search of the original Hough Forest (Gall et al. 2011, Section 3.3): the frame is looked at in every size of
 /// FeatureSettings::scales, each pixel votes in the image for the centres it knows, and each size has a Hough image of
-/// its own; candidates are the maxima over place and size, see scale_peaks.hpp. Boxes by back-projection of all
+/// its own; candidates are the maxima over place and size, see maxima_over_sizes. Boxes by back-projection of all
 /// supporting patches. A candidate's centre has no depth: centre_camera is NaN. Same result for any number of threads.
-std::vector<Candidate> search_scale_space(const Forest& forest, const RgbdFrame& frame,
-                                          const DetectionSettings& settings, StageClock& clock);
+/// Closes the stages "detect.resize", "detect.features", "detect.leaves" and "detect.votes" on the clock.
+std::vector<Candidate> search_scale_space(const Search& search, const RgbdFrame& frame, StageClock& clock);
 
 /// The Hough images of one class before maxima are taken, one per size, CV_32FC1: vote mass as a share of what a wholly
 /// visible object is expected to have.
-std::vector<cv::Mat> scale_space_hough_images(const Forest& forest, int class_index, const RgbdFrame& frame,
-                                              const DetectionSettings& settings);
+std::vector<cv::Mat> scale_space_hough_images(const Search& search, int class_index, const RgbdFrame& frame);
 
-}  // namespace houghstream
+/// A maximum of the Hough image of one class in one size of the frame.
+struct ScalePeak {
+  Candidate candidate;
+  cv::Point2f at_px;      ///< frame pixels
+  float reach_px = 0.0F;  ///< it is the highest of its size at most so far away along either axis, frame pixels
+  int size = 0;           ///< which of the sizes, counted in the order of FeatureSettings::scales
+};
+
+/// The voting space has a third axis, the size (paper, Section 2: maxima over place, class and scale; Gall et al. 2011,
+/// Section 3.3): a maximum of one size that a higher one of the next size stands beside is a slope of that one. Of a
+/// class's equal neighbours the first counts. What is left keeps its order.
+std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks);
+
+}  // namespace houghstream::baseline

@@ -8,7 +8,7 @@
 #include "detector/baseline/surface_normals.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 namespace {
 
@@ -93,4 +93,4 @@ std::vector<cv::Mat> curvature_planes(const WorkingFrame& frame, int threads) {
   return planes;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

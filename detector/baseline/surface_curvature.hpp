@@ -6,7 +6,7 @@
 #include "detector/baseline/surface_window.hpp"
 #include "detector/features/working_frame.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// Principal curvature (Arbeiter et al. 2012; paper, Section 3, item 6) with the sizes of Section 4, in the organised
 /// image: normals of 100 neighbours, curvature of 225.
@@ -38,4 +38,4 @@ std::vector<cv::Mat> curvature_planes(const WorkingFrame& frame, int threads);
 /// The curvatures of a row of normals; NaN where there is no normal.
 std::vector<Curvature> row_curvatures(const SurfaceVectors& normals, int y, int radius_px);
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

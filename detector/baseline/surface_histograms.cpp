@@ -10,7 +10,7 @@
 #include "detector/baseline/surface_neighbours.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::vector<cv::Mat> pfh_planes(const WorkingFrame& frame, const PointHistogramS
   return spread(cloud, percent, frame.filled_depth, threads);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -5,7 +5,7 @@
 
 #include "detector/features/working_frame.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// (Fast) Point Feature Histograms (Rusu et al. 2008 and 2009; paper, Section 3, item 7): PCL's functions, given the
 /// neighbours that the organised image knows instead of those of a search. Neighbours are counted as in a cloud with
@@ -30,4 +30,4 @@ std::vector<cv::Mat> fpfh_planes(const WorkingFrame& frame, const PointHistogram
 /// pfh_bins^3 planes: one histogram of the three angles together.
 std::vector<cv::Mat> pfh_planes(const WorkingFrame& frame, const PointHistogramSettings& settings, int threads);
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -7,7 +7,7 @@
 #include "detector/baseline/surface_normals.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 namespace {
 
@@ -79,7 +79,8 @@ RowVotes sum_votes(const std::vector<cv::Mat>& votes, const SurfaceVectors& norm
   RowVotes sums;
   for (std::vector<std::uint16_t>& sum : sums) sum.assign(width, 0);
   std::vector<std::uint16_t> mask(width);
-  for_each_shift(size, y, radius_px, [&](int y_neighbour, int dx, int first_x, int last_x) {
+  for_each_shift(size, y, radius_px, [&](const WindowShift& shift) {
+    const auto [y_neighbour, dx, first_x, last_x] = shift;
     const auto* depth_near = normals.depth.ptr<float>(y_neighbour) + dx;
     for (int x = first_x; x < last_x; ++x) {
       const auto i = static_cast<std::size_t>(x);
@@ -119,4 +120,4 @@ std::vector<cv::Mat> honv_planes(const WorkingFrame& frame, int threads) {
   return planes;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

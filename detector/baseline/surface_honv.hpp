@@ -5,7 +5,7 @@
 
 #include "detector/features/working_frame.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// Histogram of Oriented Normal Vectors (Tang et al. 2013; paper, Section 3, item 5) with the sizes of Section 4: 120
 /// neighbours for the normals and for the histogram, in the organised image.
@@ -22,4 +22,4 @@ struct HonvLayout {
 /// to all four alike, since a surface seen face on has none. 0 in all planes where there is no normal.
 std::vector<cv::Mat> honv_planes(const WorkingFrame& frame, int threads);
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -9,7 +9,7 @@
 #include "detector/baseline/surface_window.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 namespace {
 
@@ -136,4 +136,4 @@ CloudNeighbours neighbours_of(const HistogramCloud& cloud, int x, int y) {
   return found;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -8,7 +8,7 @@
 
 #include "detector/baseline/surface_histograms.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// The points that get a histogram, one per cell of step_px x step_px pixels, row by row.
 struct HistogramCloud {
@@ -36,4 +36,4 @@ HistogramCloud make_histogram_cloud(const WorkingFrame& frame, const PointHistog
 /// Those of a point that lie on its own surface, itself first; none where there is no surface.
 CloudNeighbours neighbours_of(const HistogramCloud& cloud, int x, int y);
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 namespace {
 
@@ -70,4 +70,4 @@ SurfaceVectors normal_vectors(const WorkingFrame& frame, const cv::Mat& normals)
   return vectors;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -5,7 +5,7 @@
 #include "detector/baseline/surface_window.hpp"
 #include "detector/features/working_frame.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// Unit normals, CV_32FC3 in the camera frame, pointing towards the camera: of the plane fitted by covariance (as PCL's
 /// NormalEstimation does) to the surface around each pixel, in the organised image (surface_window.hpp), not by search.
@@ -18,4 +18,4 @@ Eigen::Vector3d facing_normal(const Eigen::Matrix3d& covariance, const Eigen::Ve
 /// The normals as vectors whose windows can be summed.
 SurfaceVectors normal_vectors(const WorkingFrame& frame, const cv::Mat& normals);
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 namespace {
 
@@ -21,8 +21,9 @@ using RowSums = std::array<std::vector<float>, kSums>;
 
 /// Adds the neighbours at one shift. Vectors are taken relative to the middle's, so that float sums lose nothing; no
 /// branch, so that the loop runs on several pixels at once.
-void add_shift(const SurfaceVectors& vectors, int y, int y_neighbour, int dx, int first_x, int last_x,
-               const std::vector<float>& limit, RowSums& sums) {
+void add_shift(const SurfaceVectors& vectors, int y, const WindowShift& shift, const std::vector<float>& limit,
+               RowSums& sums) {
+  const auto [y_neighbour, dx, first_x, last_x] = shift;
   const auto* depth = vectors.depth.ptr<float>(y);
   const auto* depth_near = vectors.depth.ptr<float>(y_neighbour) + dx;
   std::array<const float*, 3> middle{};
@@ -90,12 +91,10 @@ std::vector<WindowMoments> row_moments(const SurfaceVectors& vectors, int y, int
   }
   RowSums sums;
   for (std::vector<float>& sum : sums) sum.assign(width, 0.0F);
-  for_each_shift(size, y, radius_px, [&](int y_neighbour, int dx, int first_x, int last_x) {
-    add_shift(vectors, y, y_neighbour, dx, first_x, last_x, limit, sums);
-  });
+  for_each_shift(size, y, radius_px, [&](const WindowShift& shift) { add_shift(vectors, y, shift, limit, sums); });
   std::vector<WindowMoments> moments(width);
   for (std::size_t x = 0; x < width; ++x) moments[x] = moments_of(sums, x);
   return moments;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

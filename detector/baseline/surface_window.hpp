@@ -8,7 +8,7 @@
 
 #include "pipeline/types/camera.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 
 /// The paper's surface features (Section 3, items 5 to 7) look at the k nearest neighbours of a point. Here the picture
 /// itself says who is near: the neighbours of a pixel are those in a square window of about k pixels that lie on its
@@ -40,14 +40,21 @@ struct WindowMoments {
 /// For every pixel of row y, the moments of the vectors around it.
 std::vector<WindowMoments> row_moments(const SurfaceVectors& vectors, int y, int radius_px);
 
-/// Calls visit(y_neighbour, dx, first_x, last_x) for each row and shift of the window around the pixels of row y: the
-/// pixels from first_x up to but without last_x have a neighbour at (x + dx, y_neighbour).
+/// The pixels from first_x up to but without last_x of a row have a neighbour at (x + dx, y_neighbour).
+struct WindowShift {
+  int y_neighbour = 0;
+  int dx = 0;
+  int first_x = 0;
+  int last_x = 0;
+};
+
+/// Calls visit(shift) for each row and shift of the window around the pixels of row y.
 template <typename Visit>
 void for_each_shift(cv::Size size, int y, int radius_px, const Visit& visit) {
   for (int v = std::max(0, y - radius_px); v <= std::min(size.height - 1, y + radius_px); ++v) {
     for (int dx = -radius_px; dx <= radius_px; ++dx)
-      visit(v, dx, std::max(0, -dx), std::min(size.width, size.width - dx));
+      visit(WindowShift{v, dx, std::max(0, -dx), std::min(size.width, size.width - dx)});
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -14,16 +14,15 @@ double logistic(double x) {
   return 1.0 / (1.0 + std::exp(-x));
 }
 
-template <typename Values>
-Vector to_vector(const Values& values) {
+Vector to_vector(const ScoreTerms& terms) {
   Vector out;
-  for (std::size_t i = 0; i < kScoreTerms; ++i) out(static_cast<Eigen::Index>(i)) = values[i];
+  for (std::size_t i = 0; i < kScoreTerms; ++i) out(static_cast<Eigen::Index>(i)) = terms.*kScoreTermList[i];
   return out;
 }
 
 /// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
-double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights, const Vector& believed) {
-  double loss = 0.5 * (weights - believed).squaredNorm();
+double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights, const Vector& prior) {
+  double loss = 0.5 * (weights - prior).squaredNorm();
   for (const ScoreExample& example : examples) {
     const double x = weights.dot(to_vector(example.terms)) * (example.is_object ? 1.0 : -1.0);
     loss += x > 0.0 ? std::log1p(std::exp(-x)) : -x + std::log1p(std::exp(x));
@@ -41,27 +40,29 @@ ScoreTerms score_terms(const Evidence& evidence) {
   const float log_mass = std::log(std::max(evidence.mass_share, kLeast));
   const float log_shown = std::log(1.02F - fit.hidden);
   const float log_certainty = std::log(std::max(evidence.certainty, kLeast));
-  return {1.0F,
-          log_mass,
-          log_shown,
-          fit.seen_through,
-          fit.unknown,
-          fit.continued,
-          fit.likeness,
-          fit.hue_conflict,
-          foreign * foreign,
-          fit.unevenness,
-          fit.unknown * log_mass,
-          fit.unknown * fit.likeness,
-          fit.unknown * std::log(std::max(evidence.distance, kNearest)),
-          fit.likeness * fit.hue_conflict,
-          evidence.other_size,
-          log_certainty,
-          log_shown * log_shown,
-          evidence.other_size * evidence.other_size,
-          fit.seen_through * log_certainty,
-          fit.hue_conflict * foreign * foreign,
-          fit.unevenness * fit.unevenness};
+  ScoreTerms terms;
+  terms.constant = 1.0F;
+  terms.mass = log_mass;
+  terms.shown = log_shown;
+  terms.seen_through = fit.seen_through;
+  terms.unknown = fit.unknown;
+  terms.continued = fit.continued;
+  terms.likeness = fit.likeness;
+  terms.hue_conflict = fit.hue_conflict;
+  terms.foreign_colour = foreign * foreign;
+  terms.unevenness = fit.unevenness;
+  terms.unknown_mass = fit.unknown * log_mass;
+  terms.unknown_likeness = fit.unknown * fit.likeness;
+  terms.unknown_distance = fit.unknown * std::log(std::max(evidence.distance, kNearest));
+  terms.likeness_hue_conflict = fit.likeness * fit.hue_conflict;
+  terms.other_size = evidence.other_size;
+  terms.certainty = log_certainty;
+  terms.shown_sq = log_shown * log_shown;
+  terms.other_size_sq = evidence.other_size * evidence.other_size;
+  terms.seen_through_certainty = fit.seen_through * log_certainty;
+  terms.hue_conflict_foreign_colour = fit.hue_conflict * foreign * foreign;
+  terms.unevenness_sq = fit.unevenness * fit.unevenness;
+  return terms;
 }
 
 float score(const ScoreModel& model, const Evidence& evidence) {
@@ -70,11 +71,11 @@ float score(const ScoreModel& model, const Evidence& evidence) {
 
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
   constexpr int kSteps = 30;  // of Newton's method, which needs about eight
-  const Vector believed = to_vector(prior.weights);
-  Vector weights = believed;
-  double loss = loss_of(examples, weights, believed);
+  const Vector expected = to_vector(prior.weights);
+  Vector weights = expected;
+  double loss = loss_of(examples, weights, expected);
   for (int step = 0; step < kSteps; ++step) {
-    Vector gradient = believed - weights;
+    Vector gradient = expected - weights;
     Matrix curvature = Matrix::Identity();
     for (const ScoreExample& example : examples) {
       const Vector x = to_vector(example.terms);
@@ -84,13 +85,14 @@ ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const Scor
     }
     Vector change = curvature.ldlt().solve(gradient);
     // Far from the minimum a whole step may lead away from it.
-    while (loss_of(examples, weights + change, believed) > loss && change.norm() > 1e-9) change *= 0.5;
+    while (loss_of(examples, weights + change, expected) > loss && change.norm() > 1e-9) change *= 0.5;
     weights += change;
-    loss = loss_of(examples, weights, believed);
+    loss = loss_of(examples, weights, expected);
   }
   ScoreModel model;
-  for (std::size_t i = 0; i < kScoreTerms; ++i)
-    model.weights[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));
+  for (std::size_t i = 0; i < kScoreTerms; ++i) {
+    model.weights.*kScoreTermList[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));
+  }
   return model;
 }
 

@@ -14,15 +14,7 @@ struct Evidence {
   float other_size = -0.4F;  ///< see gain_of_other_size; about what objects have, where it was not looked for
 };
 
-/// The evidence as the terms that ScoreModel::weights multiply: 1, the logarithms of the mass and of what is not
-/// hidden (half an object has half the mass), the rest of the fit and the gain of another size as they are; foreign
-/// colour, of which light makes a little, squared; the share of unknown depth times the mass's logarithm and times the
-/// likeness, since both say something else of what is mostly unknown, and times the distance's logarithm: near surfaces
-/// lose their depth, far ones seldom; the likeness times the hue conflict: print of other colours may be as like as can
-/// be; the logarithm of the certainty: as many votes of patches that are less sure come from something else; and five
-/// products for which those are too straight: the squares of the logarithm of what is not hidden, of the gain of
-/// another size and of the unevenness, what is seen through times the certainty's logarithm, and the hue conflict times
-/// the squared foreign colour. Of all products of two measures they helped most on development worlds.
+/// The evidence as the terms that ScoreModel::weights multiply.
 ScoreTerms score_terms(const Evidence& evidence);
 
 /// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
@@ -40,7 +32,8 @@ struct ScoreExample {
   bool is_object = false;
 };
 
-/// The weights that explain the examples best; few examples move them little from those of `prior`.
+/// The weights that explain the examples best (maximum a posteriori, a Gaussian of unit variance about each weight of
+/// `prior`): few examples move them little from there.
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior);
 
 }  // namespace houghstream

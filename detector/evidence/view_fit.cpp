@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "detector/evidence/likeness.hpp"
-#include "detector/features/picture_memory.hpp"
 
 namespace houghstream {
 namespace {
@@ -210,15 +208,6 @@ Likeness compare_colours(const Comparison& comparison, const Tally& tally, const
 }
 
 }  // namespace
-
-LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
-  static thread_local cv::Mat blurred;  // both kept from frame to frame
-  static thread_local cv::Mat lab;
-  forget_shared(lab);
-  cv::blur(colour, blurred, cv::Size(3, 3));
-  cv::cvtColor(blurred, lab, cv::COLOR_BGR2Lab);
-  return {frame, lab, scale};
-}
 
 ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
   const Comparison comparison = compare(view, centre_camera, frame.frame, size);

@@ -10,12 +10,9 @@ namespace houghstream {
 /// A frame with its colours as views remember them.
 struct LabFrame {
   const RgbdFrame& frame;
-  cv::Mat lab;         ///< CV_8UC3, CIE L*a*b*, smaller than the frame
+  cv::Mat lab;         ///< see averaged_lab
   float scale = 1.0F;  ///< its size over the frame's
 };
-
-/// `colour` is the frame's, BGR, `scale` times its size. Neighbouring pixels are averaged: dim light is noisy.
-LabFrame make_lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale);
 
 /// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
 /// surface, the first four of which sum to 1.

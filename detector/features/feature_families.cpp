@@ -2,7 +2,6 @@
 
 #include <sstream>
 
-#include "detector/baseline/surface_curvature.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {
@@ -21,7 +20,7 @@ FeatureBlock block_of(FeatureFamily family) {
     case kDepthDerivatives: return {family, 0, 4, true};
     case kDepthHog: return {family, 0, 9, true};
     case kHonv: return {family, 0, 12, false};
-    case kCurvature: return {family, 0, CurvatureLayout::kPlanes, true};
+    case kCurvature: return {family, 0, 5, true};
     case kPointHistogram: return {family, 0, 125, false};
     case kFastHistogram: return {family, 0, 33, false};
   }

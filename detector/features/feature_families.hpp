@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "detector/detector_settings.hpp"
+#include "detector/features/feature_settings.hpp"
 
 namespace houghstream {
 
@@ -16,10 +16,16 @@ enum FeatureFamily : std::uint32_t {
   kDepthDerivatives = 4,  ///< 4 planes: first and second Sobel derivatives of the depth
   kDepthHog = 8,          ///< 9 planes: histogram of oriented depth gradients (Janoch et al. 2011)
   kHonv = 16,             ///< 12 planes: histogram of oriented normal vectors (Tang et al. 2013)
-  kCurvature = 32,        ///< 5 planes: principal curvature (Arbeiter et al. 2012), see CurvatureLayout
+  kCurvature = 32,        ///< 5 planes: principal curvature (Arbeiter et al. 2012)
   kPointHistogram = 64,   ///< 125 planes: point feature histogram, PFH (Rusu et al. 2009)
   kFastHistogram = 128,   ///< 33 planes: fast point feature histogram, FPFH (Rusu et al. 2009)
 };
+
+/// Whether a family describes the surface around a point: studied in the paper, not among its final features, and
+/// implemented in detector/baseline, see extensions.hpp.
+constexpr bool is_surface_family(FeatureFamily family) {
+  return family >= kHonv;
+}
 
 /// Names for the command line and for reports, in the order of the planes.
 struct FamilyName {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <opencv2/core/types.hpp>
 
-#include "detector/features/line_allocator.hpp"
+#include "detector/features/picture_memory.hpp"
 
 namespace houghstream {
 

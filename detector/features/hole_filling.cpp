@@ -20,11 +20,6 @@ constexpr int kDiagonal = 91750;
 constexpr int kKnight = 143976;  // one step straight and one diagonal
 constexpr int kFarAway = INT_MAX - kKnight;
 
-struct Hole {
-  std::int16_t x = 0;
-  std::int16_t y = 0;
-};
-
 /// A neighbour that a distance may come from.
 struct Step {
   int dx = 0;
@@ -41,12 +36,6 @@ constexpr std::array<Step, 8> kSteps = {{{-1, -2, kKnight},
                                          {1, -1, kDiagonal},
                                          {2, -1, kKnight},
                                          {-1, 0, kStraight}}};
-
-/// What is kept from frame to frame for its memory.
-struct Scratch {
-  std::vector<Hole> holes;              // row by row
-  std::vector<std::int32_t> distances;  // to the pixel that a hole has borrowed from; 0 where there is no hole
-};
 
 void list_holes(const cv::Mat& depth, std::vector<Hole>& holes) {
   holes.clear();
@@ -106,12 +95,11 @@ void borrow_all(const std::vector<Hole>& holes, Distances& distances, cv::Mat& d
 
 }  // namespace
 
-void fill_holes(cv::Mat& depth, const HoleReach& reach) {
-  static thread_local Scratch scratch;
-  const std::vector<Hole>& holes = scratch.holes;
-  list_holes(depth, scratch.holes);
+void fill_holes(cv::Mat& depth, const HoleReach& reach, HoleMemory& memory) {
+  const std::vector<Hole>& holes = memory.holes;
+  list_holes(depth, memory.holes);
   if (holes.empty() || holes.size() == depth.total()) return;
-  Distances distances(depth.size(), scratch.distances);
+  Distances distances(depth.size(), memory.distances);
   for (const Hole hole : holes) distances.at(hole) = kFarAway;
   if (reach.px_at_1m > 0.0F) {
     borrow_all<true>(holes, distances, depth);

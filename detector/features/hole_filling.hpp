@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
+#include <vector>
 
 namespace houghstream {
 
@@ -11,11 +13,28 @@ struct HoleReach {
   float px_at_1m = 0.0F;
 };
 
+/// A pixel without depth.
+struct Hole {
+  std::int16_t x = 0;
+  std::int16_t y = 0;
+};
+
+/// What fill_holes needs for itself, to be kept from picture to picture.
+struct HoleMemory {
+  std::vector<Hole> holes;              ///< row by row
+  std::vector<std::int32_t> distances;  ///< to the pixel that a hole has borrowed from; 0 where there is no hole
+};
+
 /// NaN pixels of a depth image (CV_32FC1, metres) borrow the nearest measured depth within reach. With `px_at_1m` the
 /// nearest is at the smallest distance in metres on the lender's surface, pixels times its depth: a structured-light
 /// camera loses near surfaces, and what lies in their shadow, before it loses what is behind them, so that a hole
 /// between the two is more likely part of the near one. Distances are those of the 5x5 chamfer mask (Borgefors 1986),
 /// within 2 % of the true ones. The time taken grows with the number of holes.
-void fill_holes(cv::Mat& depth, const HoleReach& reach);
+void fill_holes(cv::Mat& depth, const HoleReach& reach, HoleMemory& memory);
+
+inline void fill_holes(cv::Mat& depth, const HoleReach& reach) {
+  HoleMemory memory;
+  fill_holes(depth, reach, memory);
+}
 
 }  // namespace houghstream

@@ -1,11 +1,31 @@
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <new>
 #include <opencv2/core.hpp>
-
-#include "detector/features/line_allocator.hpp"
+#include <vector>
 
 namespace houghstream {
+
+/// Memory that begins with a cache line, so that aligned pixels and vectors lie in one line each.
+template <typename T>
+struct LineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+
+  LineAllocator() = default;
+  template <typename U>
+  explicit LineAllocator(const LineAllocator<U>&) {}
+
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kLine)); }
+  void deallocate(T* memory, std::size_t) { ::operator delete(memory, kLine); }
+
+  bool operator==(const LineAllocator&) const { return true; }
+  bool operator!=(const LineAllocator&) const { return false; }
+};
+
+using LineBytes = std::vector<std::uint8_t, LineAllocator<std::uint8_t>>;
 
 /// Memory for a picture that is made again and again in several sizes: cv::Mat would ask for other memory each time.
 class PictureMemory {

@@ -6,8 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "detector/features/hole_filling.hpp"
 #include "detector/features/picture_memory.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {
@@ -101,6 +101,28 @@ HoleReach hole_reach(const FeatureSettings& settings, const Camera& camera) {
   return {settings.fill_distance_px, settings.fill_distance * static_cast<float>(camera.fx)};
 }
 
+/// Into `out`, whose memory is used again where nobody shares it.
+void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& settings, HoleMemory& holes,
+                 WorkingFrame& out) {
+  forget_shared(out.colour);
+  forget_shared(out.filled_depth);
+  out.camera = frame.camera.scaled(scale);
+  out.size_ratio = 1.0F;
+  const cv::Size size(out.camera.width, out.camera.height);
+  if (size == frame.colour.size()) {
+    out.colour = frame.colour;
+    frame.depth.copyTo(out.filled_depth);
+  } else {
+    cv::resize(frame.colour, out.colour, size, 0, 0, scale < 1.0F ? cv::INTER_AREA : cv::INTER_LINEAR);
+    if (scale < 1.0F) {
+      shrink_depth(frame.depth, size, out.filled_depth);
+    } else {
+      out.filled_depth = enlarge_depth(frame.depth, size);
+    }
+  }
+  fill_holes(out.filled_depth, hole_reach(settings, out.camera), holes);
+}
+
 }  // namespace
 
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
@@ -119,29 +141,10 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
   return levels;
 }
 
-void make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings, WorkingFrame& out) {
-  forget_shared(out.colour);
-  forget_shared(out.filled_depth);
-  out.camera = frame.camera.scaled(scale);
-  out.size_ratio = 1.0F;
-  const cv::Size size(out.camera.width, out.camera.height);
-  if (size == frame.colour.size()) {
-    out.colour = frame.colour;
-    frame.depth.copyTo(out.filled_depth);
-  } else {
-    cv::resize(frame.colour, out.colour, size, 0, 0, scale < 1.0F ? cv::INTER_AREA : cv::INTER_LINEAR);
-    if (scale < 1.0F) {
-      shrink_depth(frame.depth, size, out.filled_depth);
-    } else {
-      out.filled_depth = enlarge_depth(frame.depth, size);
-    }
-  }
-  fill_holes(out.filled_depth, hole_reach(settings, out.camera));
-}
-
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
   WorkingFrame out;
-  make_working_frame(frame, scale, settings, out);
+  HoleMemory holes;
+  resize_into(frame, scale, settings, holes, out);
   return out;
 }
 
@@ -149,6 +152,24 @@ WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& leve
   WorkingFrame out = make_working_frame(frame, level.scale, settings);
   out.size_ratio = level.size_ratio;
   return out;
+}
+
+void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, cv::Mat& lab) {
+  forget_shared(lab);
+  cv::blur(colour, blurred, cv::Size(3, 3));
+  cv::cvtColor(blurred, lab, cv::COLOR_BGR2Lab);
+}
+
+void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings, int threads, WorkingImages& images) {
+  images.levels = feature_levels(settings);
+  images.frames.resize(images.levels.size());
+  images.holes.resize(images.levels.size());
+  parallel_for(threads, static_cast<int>(images.levels.size()), [&](int l) {
+    const auto level = static_cast<std::size_t>(l);
+    resize_into(frame, images.levels[level].scale, settings, images.holes[level], images.frames[level]);
+    if (level != 0) return;
+    averaged_lab(images.frames[0].colour, images.blurred, images.lab);
+  });
 }
 
 }  // namespace houghstream

@@ -3,7 +3,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "detector/detector_settings.hpp"
+#include "detector/features/feature_settings.hpp"
+#include "detector/features/hole_filling.hpp"
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream {
@@ -33,10 +34,24 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
 /// foreground and background are never averaged into a surface that is not there.
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings);
 
-/// The same into `out`, whose memory is used again where nobody shares it.
-void make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings, WorkingFrame& out);
-
 /// The same for a level of a scale space.
 WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
+
+/// The colours of a BGR image as remembered views are compared with: CV_8UC3, CIE L*a*b*, each pixel the mean of 3x3,
+/// since dim light is noisy. `blurred` is overwritten.
+void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, cv::Mat& lab);
+
+/// The images that the stages of a search look at, with the memory that is kept for the next frame's.
+struct WorkingImages {
+  std::vector<FeatureLevel> levels;
+  std::vector<WorkingFrame> frames;  ///< one for each level
+  cv::Mat lab;                       ///< averaged_lab of the first level
+  std::vector<HoleMemory> holes;     ///< one for each level
+  cv::Mat blurred;
+};
+
+/// Depth-normalised levels of a frame. What `images` held is overwritten and its memory used again where nobody shares
+/// it.
+void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings, int threads, WorkingImages& images);
 
 }  // namespace houghstream

@@ -6,22 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "detector/detector_settings.hpp"
 #include "detector/evidence/appearance.hpp"
+#include "detector/evidence/evidence_settings.hpp"
+#include "detector/evidence/score_model.hpp"
+#include "detector/features/feature_settings.hpp"
 #include "detector/forest/pixel_test.hpp"
 
 namespace houghstream {
 
-constexpr std::size_t kScoreTerms = 21;
-using ScoreTerms = std::array<float, kScoreTerms>;
-
-/// How evidence becomes a probability, see score_terms(). The values here are what is believed before any example is
-/// seen: even odds at about a third of the expected mass.
-struct ScoreModel {
-  ScoreTerms weights = {3.6F, 3.0F, -1.0F, -4.0F, 0.0F, -2.0F, 2.0F, -1.0F, 0.0F, 0.0F};
-};
-
-/// Inner node: left child at `child`, right child at `child` + 1. A child below 0 is leaf number -1 - child.
+/// Inner node: a patch that passes the test goes right. A child is the index of a later node of Forest::nodes, or,
+/// below 0, leaf number -1 - child.
 struct TreeNode {
   PixelTest test;
   std::int32_t left = 0;
@@ -50,7 +44,7 @@ struct LeafClass {
   std::uint8_t view_count = 0;
 };
 
-/// Classes of leaf i are leaf_classes[leaves[i] .. leaves[i + 1]).
+/// A taught object.
 struct ObjectClass {
   int class_id = 0;  ///< from 1
   std::string name;
@@ -81,7 +75,7 @@ struct PackedNode {
   std::int32_t way = 0;
 };
 
-/// The trees once more, node for node in eight bytes each; the right child follows the left one.
+/// The trees once more, packed for walk_wide: eight bytes for each node and leaf; the right child follows the left one.
 struct PackedTrees {
   std::vector<PackedNode> nodes;    ///< and leaves; empty = see pack_trees
   std::vector<std::int32_t> roots;  ///< per tree, into nodes
@@ -98,7 +92,8 @@ struct Forest {
   std::vector<TrainedView> views;
   std::vector<std::int32_t> roots;  ///< per tree: a node, or -1 - leaf
   std::vector<TreeNode> nodes;
-  std::vector<std::uint32_t> leaves;  ///< number of leaves + 1
+  std::vector<std::uint32_t> leaves;  ///< number of leaves + 1: classes of leaf i are
+                                      ///< leaf_classes[leaves[i] .. leaves[i + 1])
   std::vector<float> leaf_weights;    ///< per leaf: share of what its tree learnt from; a tree's sum to 1
   std::vector<LeafClass> leaf_classes;
   std::vector<LeafVote> votes;
@@ -113,7 +108,7 @@ void note_leaf_heads(Forest& forest);
 /// Smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);
 
-/// Walks one patch down one tree. The readable way; the fast one (traversal.hpp) gives the same leaves.
+/// Walks one patch down one tree: the reference that find_leaves (traversal.hpp) is held against.
 std::int32_t find_leaf(const Forest& forest, int tree, const PatchView& patch);
 
 }  // namespace houghstream

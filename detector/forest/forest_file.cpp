@@ -9,7 +9,8 @@
 #include <fstream>
 #include <type_traits>
 
-#include "detector/features/features.hpp"
+#include "detector/extensions.hpp"
+#include "detector/features/feature_families.hpp"
 #include "detector/forest/packed_trees.hpp"
 #include "detector/profiles.hpp"
 #include "pipeline/base/checks.hpp"
@@ -25,7 +26,7 @@ void archive_class(Archive& archive, ClassType& object) {
   archive(object.name);
   archive(object.radius);
   archive(object.expected_mass);
-  archive(object.score_model);
+  for (const auto term : kScoreTermList) archive(object.score_model.weights.*term);
 }
 
 /// One list of members for writing and reading, so that the two cannot drift apart; for classes the one above.
@@ -206,7 +207,8 @@ void check_settings(const Forest& forest, const std::string& source) {
   for (const ObjectClass& c : forest.classes) {
     require(c.radius > 0.0F && c.radius < 10.0F && c.expected_mass > 0.0F && std::isfinite(c.expected_mass),
             "{}: class '{}' of radius {} m, expected 0 to 10 m", source, c.name, c.radius);
-    for (const float weight : c.score_model.weights) {
+    for (const auto term : kScoreTermList) {
+      const float weight = c.score_model.weights.*term;
       require(std::isfinite(weight), "{}: class '{}' has score weight {}, expected a number", source, c.name, weight);
     }
   }
@@ -270,6 +272,7 @@ Forest load_forest(const std::filesystem::path& file) {
   archive_members(reader, forest);
   require(reader.at == payload.size(), "{}: {} bytes left over after the forest", source, payload.size() - reader.at);
   check_settings(forest, source);
+  require_extensions(forest.features, source);
   check_indices(forest, source);
   check_leaves(forest, source);
   note_leaf_heads(forest);

@@ -9,6 +9,8 @@
 namespace houghstream {
 namespace {
 
+constexpr int kSquareSide = 32;  // patches
+
 /// Visits a place every `stride` pixels, square by square: the patches of a square share their pixels, so that a
 /// square's worth of planes stays in the cache from tree to tree.
 template <typename Visit>
@@ -79,17 +81,6 @@ void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index
   grid.cell_px.emplace_back(left, top, side_px, side_px);
 }
 
-/// The patches from `first` on, which for_places came to at every pixel, by square.
-void list_squares(std::size_t first, PatchGrid& grid) {
-  const auto share_square = [&](std::size_t a, std::size_t b) {
-    return grid.x[a] / kSquareSide == grid.x[b] / kSquareSide && grid.y[a] / kSquareSide == grid.y[b] / kSquareSide;
-  };
-  for (std::size_t last = first; first < grid.size(); first = last) {
-    while (last < grid.size() && share_square(first, last)) ++last;
-    grid.squares.push_back({first, last - first});
-  }
-}
-
 }  // namespace
 
 void PatchGrid::clear() {
@@ -100,43 +91,53 @@ void PatchGrid::clear() {
   point_camera.clear();
   cell_px.clear();
   area.clear();
-  squares.clear();
 }
 
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
-                 const PatchSettings& patch, const PatchSpacing& spacing, PatchGrid& grid) {
+                 const PatchLayout& layout, PatchGrid& grid) {
+  const PatchSpacing& spacing = layout.spacing;
   const Thinning thinning(spacing, frame.camera);
   std::array<float, kThinnings + 1> sides{};  // working pixels between patches
   for (int t = 0; t <= kThinnings; ++t) sides[t] = static_cast<float>(spacing.stride * std::pow(2.0, 0.5 * t));
   const auto metres_per_px = static_cast<float>(frame.camera.metres_per_px(1.0));
-  const std::size_t first = grid.size();
   for_places(frame.filled_depth.size(), spacing.stride, [&](int x, int y) {
     const float z = frame.filled_depth.at<float>(y, x);
     if (!level.holds(z) || !thinning.leaves(thinnings_survived(x / spacing.stride, y / spacing.stride), z)) return;
     const float side = sides[thinning.count(z)];
     const float side_metres = side * metres_per_px * z;
     add_place(x, y, level, level_index, side, grid);
-    grid.scale.push_back(patch_scale(patch, frame.camera.fx, z));
+    grid.scale.push_back(patch_scale(layout.patch, frame.camera.fx, z));
     grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
     grid.area.push_back(side_metres * side_metres);
   });
-  if (spacing.stride == 1 && spacing.metres == 0.0F) list_squares(first, grid);
+}
+
+void place_patches(const WorkingImages& images, const PatchLayout& layout, PatchGrid& grid) {
+  grid.clear();
+  grid.tiles.resize(images.levels.size());
+  for (std::size_t level = 0; level < images.levels.size(); ++level) {
+    const WorkingFrame& frame = images.frames[level];
+    FeatureTiles& tiles = grid.tiles[level];
+    const std::size_t first = grid.size();
+    add_patches(frame, images.levels[level], static_cast<std::uint8_t>(level), layout, grid);
+    tiles.clear(frame.colour.size());
+    for (std::size_t p = first; p < grid.size(); ++p) {
+      tiles.add_patch(grid.x[p], grid.y[p], farthest_offset(layout.patch, grid.scale[p]));
+    }
+  }
 }
 
 void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
                             int stride, PatchGrid& grid) {
   const std::int32_t scale = limited_scale(patch, patch.unit);
-  const std::size_t first = grid.size();
   reserve_places(frame.filled_depth.size(), stride, grid);
   for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
     add_place(x, y, level, 0, static_cast<float>(stride), grid);
     grid.scale.push_back(scale);
   });
-  if (stride == 1) list_squares(first, grid);
 }
 
 std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
-  if (!patches.squares.empty()) return patches.squares;
   constexpr std::size_t kPatches = 512;
   std::vector<PatchRun> runs;
   for (std::size_t begin = 0; begin < patches.size();) {

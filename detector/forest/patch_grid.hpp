@@ -5,12 +5,11 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "detector/detector_settings.hpp"
+#include "detector/features/feature_tiles.hpp"
 #include "detector/features/working_frame.hpp"
+#include "detector/forest/patch_settings.hpp"
 
 namespace houghstream {
-
-constexpr int kSquareSide = 32;  ///< patches a side, so that a row of them is a word with a bit each
 
 /// Patches that are looked at together: all of one level, one after another in the grid.
 struct PatchRun {
@@ -27,16 +26,16 @@ struct PatchGrid {
   std::vector<Eigen::Vector3f> point_camera;  ///< the surface point seen at the centre, metres
   std::vector<cv::Rect2f> cell_px;            ///< the part of the frame that the patch stands for, frame pixels
   std::vector<float> area;                    ///< the same on the surface, facing the camera, square metres
-  std::vector<PatchRun> squares;  ///< all patches by square of kSquareSide pixels; none where they stand farther apart
+  std::vector<FeatureTiles> tiles;            ///< by level: where its patches look; filled by place_patches only
 
   std::size_t size() const { return x.size(); }
   void clear();  ///< keeps the memory
 };
 
-/// How far apart patches stand, see DetectionSettings.
-struct PatchSpacing {
-  int stride = 1;       ///< working pixels
-  float metres = 0.0F;  ///< on a surface that faces the camera; 0 = by the stride alone
+/// What the patches of a frame are like.
+struct PatchLayout {
+  PatchSettings patch;
+  PatchSpacing spacing;
 };
 
 /// Appends the patches whose depth the level holds, square by square. They stand `stride` working pixels apart (paper,
@@ -44,14 +43,17 @@ struct PatchSpacing {
 /// long as the rest stand no farther apart: each time by a factor of sqrt(2). Which ones are left out depends on the
 /// place and the depth there only.
 void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint8_t level_index,
-                 const PatchSettings& patch, const PatchSpacing& spacing, PatchGrid& grid);
+                 const PatchLayout& layout, PatchGrid& grid);
+
+/// The patches of all levels of a frame, and the tiles that they look at. What `grid` held is overwritten and its
+/// memory used again.
+void place_patches(const WorkingImages& images, const PatchLayout& layout, PatchGrid& grid);
 
 /// For a level of a scale space: a patch every `stride` pixels, whatever its depth; without points and areas.
 void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level, const PatchSettings& patch,
                             int stride, PatchGrid& grid);
 
-/// The grid in runs small enough for their pixels to stay in the cache from tree to tree: its squares where it has
-/// some.
+/// The grid in runs small enough for their pixels to stay in the cache from tree to tree.
 std::vector<PatchRun> patch_runs(const PatchGrid& patches);
 
 }  // namespace houghstream

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "detector/detector_settings.hpp"
 #include "detector/features/feature_image.hpp"
+#include "detector/forest/patch_settings.hpp"
 
 namespace houghstream {
 

@@ -7,10 +7,11 @@
 #include "detector/features/feature_image.hpp"
 #include "detector/forest/forest.hpp"
 #include "detector/forest/patch_grid.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 
-/// After how many trees a patch may be given up, and when, see DetectionSettings.
+/// After how many trees a patch may be given up, and when, see LeafSettings.
 struct EarlyEnd {
   int trees = 0;       ///< 0 = no patch is given up
   float share = 0.0F;  ///< mean of LeafHead::certainty that must be reached
@@ -20,24 +21,41 @@ struct EarlyEnd {
   bool goes_on(float sum) const { return sum >= share * static_cast<float>(trees); }
 };
 
+/// Which patches walk down which trees.
+struct LeafInput {
+  const Forest& forest;
+  const std::vector<FeatureImage>& features;  ///< one image for each level
+  const PatchGrid& patches;
+  const std::vector<PatchRun>& runs;
+  EarlyEnd early_end;
+};
+
 /// The leaves of those patches of a run that were not given up.
 struct RunLeaves {
   std::size_t run = 0;
   std::size_t count = 0;                   ///< patches
   const std::uint32_t* patches = nullptr;  ///< into the PatchGrid, in its order
   const std::int32_t* leaves = nullptr;    ///< tree by tree: leaves[tree * count + i] is that of patches[i]
+  int worker = 0;                          ///< that visits the run, see parallel_for_workers
 };
 
 using LeafVisitor = std::function<void(const RunLeaves&)>;
 
-/// Leaf of every patch in every tree, but for patches that are given up; `features` holds one image per level. Patches
-/// are walked many at once, and runs are visited at the same time; the leaves are those of find_leaf.
-void find_leaves(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                 const std::vector<PatchRun>& runs, const EarlyEnd& early_end, int threads, const LeafVisitor& visit);
+/// What find_leaves needs for itself, to be kept from frame to frame.
+struct LeafMemory {
+  struct Worker {
+    std::vector<std::int32_t> leaves;    ///< tree by tree, of the patches that are left
+    std::vector<std::uint32_t> patches;  ///< those left, into the grid
+    std::vector<float> sums;             ///< of the leaves' certainties
+    std::vector<std::int16_t> x;         ///< of those left
+    std::vector<std::int16_t> y;
+    std::vector<std::int32_t> scale;
+  };
+  PerWorker<Worker> workers;
+};
 
-/// The same leaves, found one after another by find_leaf; with more than one thread, runs are visited at the same time.
-void find_leaves_readably(const Forest& forest, const std::vector<FeatureImage>& features, const PatchGrid& patches,
-                          const std::vector<PatchRun>& runs, const EarlyEnd& early_end, int threads,
-                          const LeafVisitor& visit);
+/// Leaf of every patch in every tree, but for patches that are given up. Patches are walked many at once, and runs are
+/// visited at the same time; the leaves are those of find_leaf.
+void find_leaves(const LeafInput& input, int threads, LeafMemory& memory, const LeafVisitor& visit);
 
 }  // namespace houghstream

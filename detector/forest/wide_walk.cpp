@@ -40,27 +40,27 @@ struct Walkers {
 };
 
 /// Some of the patches, as they set out.
-struct Party {
+struct Batch {
   PerWalker<std::int32_t> centre;
   PerWalker<std::int32_t> scale;
   std::size_t count = 0;
 };
 
-Party gather_party(const WalkingPatches& patches, std::size_t first) {
-  Party party;
-  party.count = std::min(kMost, static_cast<std::size_t>(patches.count) - first);
-  for (std::size_t i = 0; i < party.count; ++i) {
+Batch gather_batch(const WalkingPatches& patches, std::size_t first) {
+  Batch batch;
+  batch.count = std::min(kMost, static_cast<std::size_t>(patches.count) - first);
+  for (std::size_t i = 0; i < batch.count; ++i) {
     const std::size_t p = first + i;
-    party.centre[i] = patches.y[p] * patches.image->row_stride() + patches.x[p] * patches.image->pixel_stride();
-    party.scale[i] = patches.scale[p];
+    batch.centre[i] = patches.y[p] * patches.image->row_stride() + patches.x[p] * patches.image->pixel_stride();
+    batch.scale[i] = patches.scale[p];
   }
-  return party;
+  return batch;
 }
 
-void set_out(const Party& party, std::int32_t root, Walkers& w) {
-  w.count = party.count;
-  w.centre = party.centre;
-  w.scale = party.scale;
+void set_out(const Batch& batch, std::int32_t root, Walkers& w) {
+  w.count = batch.count;
+  w.centre = batch.centre;
+  w.scale = batch.scale;
   std::fill_n(w.at.begin(), w.count, root);
   std::iota(w.who.begin(), w.who.begin() + static_cast<std::ptrdiff_t>(w.count), 0);
 }
@@ -159,9 +159,9 @@ void take_step(Walkers& w) {
   }
 }
 
-void walk_tree(const PackedTrees& trees, std::size_t tree, const FeatureImage& image, const Party& party, Walkers& w,
+void walk_tree(const PackedTrees& trees, std::size_t tree, const FeatureImage& image, const Batch& batch, Walkers& w,
                std::int32_t* leaves) {
-  set_out(party, trees.roots[tree], w);
+  set_out(batch, trees.roots[tree], w);
   for (;;) {
     fetch_nodes(trees.nodes.data(), w.at.data(), w.count, w.nodes.data());
     close_up(w, leaves);
@@ -177,9 +177,9 @@ void walk(const PackedTrees& trees, TreeRange range, const WalkingPatches& patch
   const auto count = static_cast<std::size_t>(patches.count);
   Walkers w;
   for (std::size_t first = 0; first < count; first += kMost) {
-    const Party party = gather_party(patches, first);
+    const Batch batch = gather_batch(patches, first);
     for (std::size_t tree = range.first; tree < range.last; ++tree) {
-      walk_tree(trees, tree, *patches.image, party, w, leaves + (tree - range.first) * count + first);
+      walk_tree(trees, tree, *patches.image, batch, w, leaves + (tree - range.first) * count + first);
     }
   }
 }

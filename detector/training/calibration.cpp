@@ -1,10 +1,10 @@
 #include "detector/training/calibration.hpp"
 
 #include "detector/training/tree_trainer.hpp"
-#include "detector/voting/voting.hpp"
+#include "detector/voting/hough_space.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 /// Weight that a leaf's votes give to the true centre.
@@ -63,4 +63,4 @@ void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, 
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

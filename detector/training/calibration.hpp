@@ -3,11 +3,11 @@
 #include "detector/forest/forest.hpp"
 #include "detector/training/pictures/training_set.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// Sets each class's expected_mass: the vote mass (see Hypothesis) of a wholly visible object, as trees see it that
 /// did not learn from the picture. A score of 1 then means "as well seen as an average training view",
 /// for every class and at every distance. `forest` must be that of the set and the settings.
 void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma, Forest& forest);
 
-}  // namespace houghstream
+}  // namespace houghstream::training

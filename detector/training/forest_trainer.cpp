@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "detector/extensions.hpp"
 #include "detector/forest/packed_trees.hpp"
 #include "detector/training/calibration.hpp"
 #include "detector/training/pictures/hard_negatives.hpp"
@@ -13,7 +14,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 std::int32_t moved(std::int32_t child, std::int32_t first_node, std::int32_t first_leaf) {
@@ -117,6 +118,7 @@ void number_after(const Forest& old, std::vector<TrainingView>& views) {
 }  // namespace
 
 Forest train_forest(const std::vector<TrainingView>& views, const Profile& profile, const Progress& progress) {
+  require_extensions(profile.features, fmt::format("profile '{}'", profile.name));
   const TrainingSettings& settings = profile.training;
   const Rooms rooms = share_rooms(views, settings.scoring);
   TrainingSet set = make_training_set(rooms.for_trees, profile);
@@ -132,7 +134,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
   note_leaf_heads(forest);
   pack_trees(forest);
-  calibrate_masses(set, settings, profile.detection.vote_sigma, forest);
+  calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
   if (settings.scoring == Scoring::kVotes) return forest;
   train_score_model(rooms.objects, rooms.for_score, profile, forest);
   progress(
@@ -142,6 +144,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
 
 Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile,
                    const Progress& progress) {
+  require_extensions(profile.features, fmt::format("profile '{}'", profile.name));
   require(profile.training.trees == static_cast<int>(old.roots.size()),
           "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
   number_after(old, views);
@@ -163,9 +166,9 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
   note_leaf_heads(forest);
   pack_trees(forest);
-  calibrate_masses(set, profile.training, profile.detection.vote_sigma, forest);
+  calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
   if (forest.scoring == Scoring::kEvidence) train_score_model(rooms.objects, rooms.for_score, profile, forest);
   return forest;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -8,7 +8,7 @@
 #include "detector/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// Teaches the objects in `views` (backgrounds are those of class_id 0). Same views, settings and seed: same forest,
 /// bit for bit, for any number of threads. `progress` is called with one line per finished step, from any thread
@@ -23,4 +23,4 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
 Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile,
                    const Progress& progress);
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <map>
 
-#include "detector/detection_candidates.hpp"
-#include "detector/training/pictures/near_loss.hpp"
+#include "detector/extensions.hpp"
+#include "detector/stages.hpp"
+#include "detector/training/pictures/sensor_errors.hpp"
 #include "detector/training/pictures/validation_frames.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 /// What counts as found in the paper's protocol (Section 4).
@@ -58,6 +59,19 @@ ValidationFrame compose(const std::vector<const TrainingView*>& objects, const R
   return composed;
 }
 
+/// What the forest offers in a frame, by the stages of Detector::detect up to the evidence.
+std::vector<Candidate> search_frame(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
+  if (search.forest.features.handling == ScaleHandling::kScaleSpace) {
+    StageClock clock;
+    return extensions().search_scale_space(search, frame, clock);
+  }
+  make_working_images(search, frame, workspace);
+  compute_features(search, workspace);
+  find_posteriors(search, workspace);
+  const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
+  return weigh_evidence(search, frame, hypotheses, workspace);
+}
+
 }  // namespace
 
 void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
@@ -67,16 +81,18 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
   detection.threads = 1;
   const auto first_view = static_cast<std::uint32_t>(forest.views.size() - objects.size());
   std::vector<Examples> by_frame(static_cast<std::size_t>(settings.validation_frames));
-  parallel_for(settings.threads, settings.validation_frames, [&](int f) {
+  PerWorker<DetectorWorkspace> workspaces;
+  workspaces.make_room(settings.threads);
+  parallel_for_workers(settings.threads, settings.validation_frames, [&](int worker, int f) {
     Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(f));
     const TrainingView& room = *rooms[static_cast<std::size_t>(f) % rooms.size()];
     const ValidationFrame validation = compose(objects, room.frame, settings, random);
-    StageClock clock;
     std::vector<std::uint32_t> shown = validation.look_alikes;
     for (const ValidationFrame::Object& object : validation.objects) shown.push_back(object.view);
     for (std::uint32_t& view : shown) view += first_view;
+    const Search search{forest, detection, fast_engine(), shown};
     by_frame[static_cast<std::size_t>(f)] =
-        judge(find_candidates(forest, validation.frame, detection, clock, shown), validation);
+        judge(search_frame(search, validation.frame, workspaces[worker]), validation);
   });
   Examples by_class;
   std::vector<ScoreExample> all;
@@ -95,4 +111,4 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

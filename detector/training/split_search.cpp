@@ -5,7 +5,7 @@
 
 #include "detector/features/features.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 SplitSearch::SplitSearch(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings,
                          std::vector<float> label_weights, bool trusts_light)
@@ -282,4 +282,4 @@ std::optional<PixelTest> SplitSearch::best_test(const std::vector<std::uint32_t>
   return best;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -8,7 +8,7 @@
 #include "detector/training/pictures/training_set.hpp"
 #include "pipeline/base/random.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// What a node's test should bring (Gall et al. 2011, Section 3.2): pure classes or agreeing offsets.
 enum class Objective { kClass, kOffset };
@@ -115,4 +115,4 @@ class SplitSearch {
   std::vector<Sums> all_;          // per label
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::training

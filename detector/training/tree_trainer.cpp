@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "detector/training/leaf_builder.hpp"
-#include "detector/training/leaf_mixer.hpp"
+#include "detector/training/leaves.hpp"
 #include "detector/training/split_search.hpp"
 #include "pipeline/base/random.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 using Samples = std::vector<std::uint32_t>;
@@ -93,7 +92,7 @@ class TreeGrower {
 
   std::int32_t make_leaf(const Samples& samples) {
     const std::int32_t leaf =
-        add_leaf(set_, samples, label_weights_, static_cast<float>(bag_.size()), settings_, forest_);
+        add_leaf({set_, settings_, label_weights_, static_cast<float>(bag_.size())}, samples, forest_);
     if (known_) mix_in(*known_, static_cast<float>(samples.size()) / static_cast<float>(known_samples_), forest_);
     return -1 - leaf;
   }
@@ -176,4 +175,4 @@ Forest grow_tree(const TrainingSet& set, const PatchSettings& patch, const Train
   return TreeGrower(set, patch, settings, tree).grow();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -3,7 +3,7 @@
 #include "detector/forest/forest.hpp"
 #include "detector/training/pictures/training_set.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// Whether a tree learns from a picture. Whole pictures are in or out, since patches of one picture are not
 /// independent; what is out tests the tree (Breiman 2001).
@@ -17,4 +17,4 @@ Forest grow_tree(const TrainingSet& set, const PatchSettings& patch, const Train
 Forest regrow_tree(const TrainingSet& set, const PatchSettings& patch, const TrainingSettings& settings, int tree,
                    const Forest& old);
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -1,8 +1,6 @@
 #include "detector/voting/boxes.hpp"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "detector/voting/weighted_median.hpp"
 
@@ -12,11 +10,11 @@ namespace {
 /// Left, top, right and bottom of a box, frame pixels; 0 is the left edge of the first pixel.
 using Sides = std::array<float, 4>;
 
-/// Where the supporting patches lie. Patches that hardly believe in the object lie beside it; the median supporter
-/// says what believing is here.
-Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches) {
-  static thread_local std::vector<float> weights;  // both kept from hypothesis to hypothesis
-  static thread_local std::array<std::vector<float>, 4> values;
+/// Where the supporting patches lie. Patches that support the object weakly lie beside it; the median supporter says
+/// what is weak here.
+Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches, BoxMemory& memory) {
+  std::vector<float>& weights = memory.weights;
+  std::array<std::vector<float>, 4>& values = memory.sides;
   weights.clear();
   for (const auto& [patch, weight] : hypothesis.patches) weights.push_back(weight);
   std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
@@ -41,11 +39,11 @@ Sides supporting_sides(const Hypothesis& hypothesis, const PatchGrid& patches) {
 }
 
 /// Where the remembered training views have their sides: weighted medians.
-Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera) {
+Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const Camera& camera, BoxMemory& memory) {
   const Eigen::Vector3d centre = hypothesis.centre_camera.cast<double>();
   const Eigen::Vector2d centre_px = camera.project(centre);
   const auto px_per_metre = static_cast<float>(1.0 / camera.metres_per_px(centre.z()));
-  static thread_local std::vector<std::pair<float, float>> values;  // kept from side to side
+  std::vector<std::pair<float, float>>& values = memory.remembered;
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     values.clear();
@@ -62,11 +60,11 @@ Sides remembered_sides(const Forest& forest, const Hypothesis& hypothesis, const
 }  // namespace
 
 cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis, const PatchGrid& patches,
-                             const Camera& camera) {
+                             const Camera& camera, BoxMemory& memory) {
   if (hypothesis.patches.empty() || hypothesis.views.empty()) return {};
   constexpr float kHidden = 0.3F;  // of the object's width or height: from here on a side is taken to be hidden
-  const Sides seen = supporting_sides(hypothesis, patches);
-  const Sides whole = remembered_sides(forest, hypothesis, camera);
+  const Sides seen = supporting_sides(hypothesis, patches, memory);
+  const Sides whole = remembered_sides(forest, hypothesis, camera, memory);
   Sides sides{};
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const float size = whole[(i % 2) + 2] - whole[i % 2];
@@ -77,7 +75,7 @@ cv::Rect2f backprojected_box(const Forest& forest, const Hypothesis& hypothesis,
   return box & cv::Rect2f(0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
 }
 
-std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const DetectionSettings& settings) {
+std::vector<Detection> suppress_overlaps(std::vector<Detection> detections, const SuppressionSettings& settings) {
   std::stable_sort(detections.begin(), detections.end(),
                    [](const Detection& a, const Detection& b) { return a.score > b.score; });
   std::vector<Detection> kept;

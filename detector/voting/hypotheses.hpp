@@ -1,13 +1,17 @@
 #pragma once
 
+#include <cstdint>
+#include <utility>
 #include <vector>
 
-#include "detector/voting/voting.hpp"
+#include "detector/voting/hough_space.hpp"
+#include "detector/voting/maxima.hpp"
 
 namespace houghstream {
 
 /// A maximum of the 3-D vote density of one class, with everything that supports it.
 struct Hypothesis {
+  std::size_t class_index = 0;                              ///< into Forest::classes
   Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< metres
   float mass = 0.0F;    ///< votes' weight times the area of their patches, square metres: what is seen of the object
   float weight = 0.0F;  ///< votes' weight
@@ -16,9 +20,48 @@ struct Hypothesis {
   std::vector<std::pair<std::uint32_t, float>> views;    ///< remembered training view and its weight, heaviest first
 };
 
-/// The maxima of a class's votes with at least `least_mass`, strongest first.
-std::vector<Hypothesis> find_hypotheses(const Forest& forest, const HoughSpace& space, const PatchGrid& patches,
-                                        const Camera& working_camera, float least_mass,
-                                        const DetectionSettings& settings);
+/// Sums by index that are 0 where nothing was added, kept so from use to use.
+class SparseSums {
+ public:
+  using Weights = std::vector<std::pair<std::uint32_t, float>>;
+
+  void make_room(std::size_t count);
+  void add(std::uint32_t index, float value) {
+    touched_[index / kBits] |= std::uint64_t{1} << index % kBits;
+    sums_[index] += value;
+  }
+  /// Indices and sums in order of the index; they are 0 afterwards.
+  void take(Weights& out);
+
+ private:
+  static constexpr std::size_t kBits = 64;
+  std::vector<float> sums_;
+  std::vector<std::uint64_t> touched_;  // a bit for each sum, so that they need no sorting
+};
+
+/// What find_hypotheses needs for itself, to be kept from frame to frame.
+struct VotingMemory {
+  struct Worker {
+    HoughSpace space;
+    CastMemory casting;
+    MaximaMemory maxima;
+    std::vector<VoteRange> ranges;
+    SparseSums::Weights supports;  ///< of a range's votes
+    SparseSums voter_sums;
+    SparseSums view_sums;
+    SparseSums::Weights by_voter;
+    SparseSums::Weights by_patch;
+  };
+  PerWorker<Worker> workers;
+};
+
+/// The maxima of a class's votes in own.space with at least `least_mass`, of which at most `limit` are looked at,
+/// strongest first.
+std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, float least_mass, int limit,
+                                         VotingMemory::Worker& own);
+
+/// Casts the votes of every class and finds their maxima: class by class in one pass, so that a class's Hough space is
+/// still in the cache. Ordered by class, each class's strongest first; the same for any number of threads.
+std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingMemory& memory);
 
 }  // namespace houghstream

@@ -1,19 +1,11 @@
 #include "detector/voting/maxima.hpp"
 
 #include <algorithm>
-#include <utility>
 
-#include "detector/voting/mean_shift.hpp"
 #include "detector/voting/weighted_median.hpp"
 
 namespace houghstream {
 namespace {
-
-struct Cell {
-  int x = 0;
-  int y = 0;
-  float value = 0.0F;
-};
 
 /// Of equal neighbours the first in reading order counts.
 bool is_maximum(const HoughSpace& space, int x, int y) {
@@ -31,11 +23,10 @@ bool is_maximum(const HoughSpace& space, int x, int y) {
   return true;
 }
 
-/// Local maxima of the Hough image, strongest first; valid until the thread's next call.
-const std::vector<Cell>& image_maxima(const HoughSpace& space, const DetectionSettings& settings) {
+/// Local maxima of the Hough image, strongest first.
+void list_maxima(const HoughSpace& space, float min_relative_peak, int limit, std::vector<HoughCell>& maxima) {
   const float largest = *std::max_element(space.image.begin(), space.image.end());
-  const float least = std::max(1e-4F, settings.min_relative_peak * largest);
-  static thread_local std::vector<Cell> maxima;  // kept from class to class
+  const float least = std::max(1e-4F, min_relative_peak * largest);
   maxima.clear();
   for (int y = 0; y < space.height; ++y) {
     const float* row = space.image.data() + static_cast<std::ptrdiff_t>(y) * space.width;
@@ -43,47 +34,44 @@ const std::vector<Cell>& image_maxima(const HoughSpace& space, const DetectionSe
       if (row[x] > least && is_maximum(space, x, y)) maxima.push_back({x, y, row[x]});
     }
   }
-  std::stable_sort(maxima.begin(), maxima.end(), [](const Cell& a, const Cell& b) { return a.value > b.value; });
-  const auto limit = static_cast<std::size_t>(settings.candidates_per_class);
-  if (maxima.size() > limit) maxima.resize(limit);
-  return maxima;
+  std::stable_sort(maxima.begin(), maxima.end(),
+                   [](const HoughCell& a, const HoughCell& b) { return a.value > b.value; });
+  if (maxima.size() > static_cast<std::size_t>(limit)) maxima.resize(static_cast<std::size_t>(limit));
 }
 
 /// Weighted median depth of the votes of a cell's neighbourhood: the start of the mean shift.
-float start_depth(const HoughSpace& space, const Cell& cell) {
-  static thread_local std::vector<VoteRange> ranges;  // both kept from cell to cell
-  static thread_local std::vector<std::pair<float, float>> depths;
-  ranges_near(space, cell.x, cell.y, 1, ranges);
-  depths.clear();
-  for (const VoteRange& range : ranges) {
+float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaMemory& memory) {
+  ranges_near(space, cell.x, cell.y, 1, memory.ranges);
+  memory.depths.clear();
+  for (const VoteRange& range : memory.ranges) {
     for (std::uint32_t v = range.begin; v < range.end; ++v) {
-      depths.emplace_back(space.votes[v].centre_camera.z(), space.votes[v].weight);
+      memory.depths.emplace_back(space.votes[v].centre_camera.z(), space.votes[v].weight);
     }
   }
-  return weighted_median(depths);
+  return weighted_median(memory.depths);
 }
 
 }  // namespace
 
-int candidates_of_each(const DetectionSettings& settings, std::size_t classes) {
+int candidates_of_each(const VotingSettings& settings, std::size_t classes) {
   constexpr int kFewClasses = 4;
   constexpr int kLeast = 6;
   const int shared = settings.candidates_per_class * kFewClasses / std::max(static_cast<int>(classes), kFewClasses);
   return std::max(shared, std::min(settings.candidates_per_class, kLeast));
 }
 
-std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& working_camera,
-                                         const DetectionSettings& settings) {
-  const std::vector<Cell>& cells = image_maxima(space, settings);
+std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& camera, const VotingSettings& settings,
+                                         int limit, MaximaMemory& memory) {
+  list_maxima(space, settings.min_relative_peak, limit, memory.cells);
   std::vector<Eigen::Vector3f> centres;
-  centres.reserve(cells.size());
-  for (const Cell& cell : cells) {
-    const float z = start_depth(space, cell);
+  centres.reserve(memory.cells.size());
+  for (const HoughCell& cell : memory.cells) {
+    const float z = start_depth(space, cell, memory);
     if (z <= 0.0F) continue;
     const double u = (cell.x + 0.5) * space.cell_px - 0.5;
     const double v = (cell.y + 0.5) * space.cell_px - 0.5;
-    const Eigen::Vector3f start = working_camera.backproject(u, v, z).cast<float>();
-    const Eigen::Vector3f centre = climb(space, working_camera, start, settings.vote_sigma);
+    const Eigen::Vector3f start = camera.backproject(u, v, z).cast<float>();
+    const Eigen::Vector3f centre = climb(space, camera, start, settings.vote_sigma, memory.ranges);
     const auto meets = [&](const Eigen::Vector3f& other) {
       return (other - centre).norm() < 2.0F * settings.vote_sigma;
     };

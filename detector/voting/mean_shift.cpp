@@ -42,17 +42,17 @@ HWY_INLINE void add_votes(const float* votes, std::size_t count, const Sums& cen
 }
 
 /// `lanes` gets the partial sums of x, y, z and the support.
-void sum_lanes(const Vote* votes, const VoteRange* ranges, std::size_t range_count, const Eigen::Vector3f& centre,
-               float reach_sq, SumLanes& lanes) {
+void sum_lanes(const Vote* votes, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre, float reach_sq,
+               SumLanes& lanes) {
   const Float d;
   constexpr std::size_t kLanes = hn::MaxLanes(Float());
   const Sums at = {hn::Set(d, centre.x()), hn::Set(d, centre.y()), hn::Set(d, centre.z()), hn::Zero(d)};
   const Floats reach = hn::Set(d, reach_sq);
   Sums sums[kVectors];
   for (Sums& s : sums) s = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  for (const VoteRange* range = ranges; range != ranges + range_count; ++range) {
-    for (std::size_t v = range->begin; v < range->end; v += kSumLanes) {
-      const std::size_t left = range->end - v;
+  for (const VoteRange& range : ranges) {
+    for (std::size_t v = range.begin; v < range.end; v += kSumLanes) {
+      const std::size_t left = range.end - v;
       for (std::size_t i = 0; i < kVectors; ++i) {
         const std::size_t count = left > i * kLanes ? left - i * kLanes : 0;
         add_votes(votes[v + i * kLanes].centre_camera.data(), count, at, reach, sums[i]);
@@ -81,7 +81,7 @@ float sum_of(const std::array<float, kSumLanes>& l) {
   return ((l[0] + l[1]) + (l[2] + l[3])) + ((l[4] + l[5]) + (l[6] + l[7]));
 }
 
-Support support_of(const SumLanes& lanes) {
+VoteSupport support_of(const SumLanes& lanes) {
   return {{sum_of(lanes[0]), sum_of(lanes[1]), sum_of(lanes[2])}, sum_of(lanes[3])};
 }
 
@@ -111,38 +111,21 @@ void ranges_around(const HoughSpace& space, const Camera& camera, const Eigen::V
   ranges_near(space, x, y, static_cast<int>(reach_px / space.cell_px) + 1, ranges);
 }
 
-Support sum_support(const HoughSpace& space, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre,
-                    float vote_sigma) {
+VoteSupport sum_support(const HoughSpace& space, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre,
+                        float vote_sigma) {
   SumLanes lanes;
   HWY_DYNAMIC_DISPATCH(sum_lanes)
-  (space.votes.data(), ranges.data(), ranges.size(), centre, reach_sq_of(vote_sigma), lanes);
+  (space.votes.data(), ranges, centre, reach_sq_of(vote_sigma), lanes);
   return support_of(lanes);
 }
 
-Support sum_support_readably(const HoughSpace& space, const std::vector<VoteRange>& ranges,
-                             const Eigen::Vector3f& centre, float vote_sigma) {
-  SumLanes lanes{};
-  for (const VoteRange& range : ranges) {
-    for (std::uint32_t v = range.begin; v < range.end; ++v) {
-      const Vote& vote = space.votes[v];
-      const Eigen::Vector3f from = vote.centre_camera - centre;
-      const float distance_sq = (from.x() * from.x() + from.y() * from.y()) + from.z() * from.z();
-      const float k = vote_kernel(distance_sq, vote_sigma) * vote.weight;
-      const std::size_t lane = (v - range.begin) % kSumLanes;
-      for (int i = 0; i < 3; ++i) lanes[static_cast<std::size_t>(i)][lane] += k * vote.centre_camera[i];
-      lanes[3][lane] += k;
-    }
-  }
-  return support_of(lanes);
-}
-
-Eigen::Vector3f climb(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma) {
+Eigen::Vector3f climb(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma,
+                      std::vector<VoteRange>& ranges) {
   constexpr int kSteps = 8;
-  constexpr float kArrived = 0.0005F;                 // metres
-  static thread_local std::vector<VoteRange> ranges;  // kept from step to step
+  constexpr float kArrived = 0.0005F;  // metres
   for (int step = 0; step < kSteps; ++step) {
     ranges_around(space, camera, centre, vote_sigma, ranges);
-    const Support support = sum_support(space, ranges, centre, vote_sigma);
+    const VoteSupport support = sum_support(space, ranges, centre, vote_sigma);
     if (support.total <= 0.0F) break;
     const Eigen::Vector3f next = support.moment / support.total;
     const bool arrived = (next - centre).norm() < kArrived;

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "detector/voting/voting.hpp"
+#include "detector/voting/hough_space.hpp"
 #include "pipeline/types/camera.hpp"
 
 namespace houghstream {
@@ -26,21 +26,19 @@ using SumLanes = std::array<std::array<float, kSumLanes>, 4>;
 static_assert(kSpareVotes == kSumLanes - 1);
 
 /// Votes' centres times what each supports a maximum with, and the support itself: both summed.
-struct Support {
+struct VoteSupport {
   Eigen::Vector3f moment = Eigen::Vector3f::Zero();
   float total = 0.0F;
 };
 
 /// Support of `centre` by the votes in the ranges. Many votes are looked at at once, in an order that is the same on
-/// every machine: see sum_support_readably.
-Support sum_support(const HoughSpace& space, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre,
-                    float vote_sigma);
+/// every machine: vote v of a range adds to partial sum v % kSumLanes of each coordinate, and these are added in pairs,
+/// pairs of pairs, and so on.
+VoteSupport sum_support(const HoughSpace& space, const std::vector<VoteRange>& ranges, const Eigen::Vector3f& centre,
+                        float vote_sigma);
 
-/// The same, bit for bit, one vote after another.
-Support sum_support_readably(const HoughSpace& space, const std::vector<VoteRange>& ranges,
-                             const Eigen::Vector3f& centre, float vote_sigma);
-
-/// Moves a centre to the nearest maximum of the votes (mean shift, Comaniciu & Meer 2002).
-Eigen::Vector3f climb(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma);
+/// Moves a centre to the nearest maximum of the votes (mean shift, Comaniciu & Meer 2002). `ranges` is overwritten.
+Eigen::Vector3f climb(const HoughSpace& space, const Camera& camera, Eigen::Vector3f centre, float vote_sigma,
+                      std::vector<VoteRange>& ranges);
 
 }  // namespace houghstream

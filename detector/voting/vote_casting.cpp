@@ -54,9 +54,16 @@ HWY_INLINE hn::Vec<Int> cells_of(Floats x, Floats y, Floats z, const CellGrid& g
   return hn::IfThenElse(hn::RebindMask(di, seen), cell, hn::Set(di, static_cast<std::int32_t>(grid.outside())));
 }
 
+/// What the votes of one voter have in common.
+struct Ballot {
+  float probability;  // p(class | leaf)
+  float share;        // of one tree
+  std::uint32_t voter;
+};
+
 /// Writes the votes of one vector's leaf votes to the place `at`.
-HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, float probability, float share, std::uint32_t voter,
-                          const CellGrid& grid, std::size_t at, CastVotes& cast) {
+HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, const Ballot& ballot, const CellGrid& grid,
+                          std::size_t at, CastVotes& cast) {
   const Float d;
   const Int di;
   Floats x, y, z, weight;
@@ -64,10 +71,10 @@ HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, float probab
   const Floats cx = moved(m.xx, m.xy, m.xz, m.x, x, y, z);
   const Floats cy = moved(m.yx, m.yy, m.yz, m.y, x, y, z);
   const Floats cz = moved(m.zx, m.zy, m.zz, m.z, x, y, z);
-  const Floats w = hn::Mul(hn::Mul(hn::Set(d, probability), weight), hn::Set(d, share));
+  const Floats w = hn::Mul(hn::Mul(hn::Set(d, ballot.probability), weight), hn::Set(d, ballot.share));
   hn::StoreInterleaved4(cx, cy, cz, w, d, cast.votes[at].centre_camera.data());
   hn::StoreU(cells_of(cx, cy, cz, grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
-  hn::StoreU(hn::Set(di, static_cast<std::int32_t>(voter)), di,
+  hn::StoreU(hn::Set(di, static_cast<std::int32_t>(ballot.voter)), di,
              reinterpret_cast<std::int32_t*>(cast.voters.data() + at));
 }
 
@@ -97,6 +104,7 @@ std::size_t cast_from(const Forest& forest, const PatchGrid& patches, const std:
     const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
     if (count + entry.vote_count > room) break;
     if (voters[i].patch != patch) motion = motion_to(patches.point_camera[patch = voters[i].patch]);
+    const Ballot ballot{entry.probability, share, static_cast<std::uint32_t>(i)};
     for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
       const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
       std::array<LeafVote, kLanes> last;
@@ -104,8 +112,7 @@ std::size_t cast_from(const Forest& forest, const PatchGrid& patches, const std:
         std::copy(votes, forest.votes.data() + forest.votes.size(), last.begin());
         votes = last.data();
       }
-      cast_some(votes->offset.data(), motion, entry.probability, share, static_cast<std::uint32_t>(i), grid, count + v,
-                cast);
+      cast_some(votes->offset.data(), motion, ballot, grid, count + v, cast);
     }
     count += entry.vote_count;
   }

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "detector/voting/voting.hpp"
+#include "detector/voting/hough_space.hpp"
 #include "pipeline/types/camera.hpp"
 
 namespace houghstream {
@@ -19,16 +19,6 @@ struct CellGrid {
   float fy = 0.0F;
   float cx = 0.0F;
   float cy = 0.0F;
-};
-
-/// Votes in the order of those who cast them.
-struct CastVotes {
-  static constexpr std::size_t kSlack = 4;  ///< elements behind the last that are written but not meant
-
-  std::size_t count = 0;  ///< of the vectors' elements, which may be more
-  std::vector<Vote> votes;
-  std::vector<std::uint32_t> cells;   ///< CellGrid::outside() of votes not seen in the image or nearer than 10 cm
-  std::vector<std::uint32_t> voters;  ///< index of who cast it
 };
 
 /// Casts the votes of all voters, several at once: the same on every machine, since each vote's numbers depend on it

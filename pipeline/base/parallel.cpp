@@ -13,16 +13,16 @@
 namespace houghstream {
 namespace {
 
-/// The items of one call of parallel_for.
+/// The items of one call of parallel_for_workers.
 class Items {
  public:
-  Items(const ItemWork& work, int count) : work_(work), count_(count), error_index_(count) {}
+  Items(const WorkerItemWork& work, int count) : work_(work), count_(count), error_index_(count) {}
 
   /// Works until there are no more.
-  void work() {
+  void work(int worker) {
     for (int i = next_++; i < count_; i = next_++) {
       try {
-        work_(i);
+        work_(worker, i);
       } catch (...) {
         const std::lock_guard lock(error_mutex_);
         if (i < error_index_) {
@@ -38,7 +38,7 @@ class Items {
   }
 
  private:
-  const ItemWork& work_;
+  const WorkerItemWork& work_;
   int count_;
   std::atomic<int> next_{0};
   std::mutex error_mutex_;
@@ -61,10 +61,11 @@ class Helper {
     thread_.join();
   }
 
-  void start(Items& items) {
+  void start(Items& items, int worker) {
     {
       const std::lock_guard lock(mutex_);
       items_ = &items;
+      worker_ = worker;
     }
     changed_.notify_all();
   }
@@ -84,8 +85,9 @@ class Helper {
       if (ending_) return;
       working_ = true;
       Items& items = *items_;
+      const int worker = worker_;
       lock.unlock();
-      items.work();
+      items.work(worker);
       lock.lock();
       working_ = false;
       items_ = nullptr;
@@ -96,6 +98,7 @@ class Helper {
   std::mutex mutex_;
   std::condition_variable changed_;
   Items* items_ = nullptr;
+  int worker_ = 0;
   bool working_ = false;
   bool ending_ = false;
   std::thread thread_;  // last: it uses the others
@@ -130,7 +133,7 @@ IdleHelpers& idle_helpers() {
 /// A helper at work on the items until it goes out of scope.
 class BorrowedHelper {
  public:
-  explicit BorrowedHelper(Items& items) : helper_(idle_helpers().take()) { helper_->start(items); }
+  BorrowedHelper(Items& items, int worker) : helper_(idle_helpers().take()) { helper_->start(items, worker); }
   BorrowedHelper(const BorrowedHelper&) = delete;
   BorrowedHelper& operator=(const BorrowedHelper&) = delete;
   ~BorrowedHelper() {
@@ -143,16 +146,20 @@ class BorrowedHelper {
 };
 
 void work_with_helpers(Items& items, int helpers) {
-  if (helpers == 0) return items.work();
-  const BorrowedHelper helper(items);
+  if (helpers == 0) return items.work(0);
+  const BorrowedHelper helper(items, helpers);
   work_with_helpers(items, helpers - 1);
 }
 
 }  // namespace
 
 void parallel_for(int threads, int count, const ItemWork& work) {
+  parallel_for_workers(threads, count, [&](int, int item) { work(item); });
+}
+
+void parallel_for_workers(int threads, int count, const WorkerItemWork& work) {
   if (threads <= 1 || count <= 1) {
-    for (int i = 0; i < count; ++i) work(i);
+    for (int i = 0; i < count; ++i) work(0, i);
     return;
   }
   Items items(work, count);

@@ -1,25 +1,54 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
+#include <vector>
+
 namespace houghstream {
 
-/// A callable `void(int)` that outlives the call it is passed to. Unlike std::function it never allocates.
-class ItemWork {
+/// A callable `void(Arguments...)` that outlives the call it is passed to. Unlike std::function it never allocates.
+template <typename... Arguments>
+class WorkRef {
  public:
   template <typename Callable>
-  ItemWork(const Callable& callable)  // NOLINT(google-explicit-constructor): a lambda is passed as it is
-      : callable_(&callable), call_([](const void* it, int item) { (*static_cast<const Callable*>(it))(item); }) {}
-  void operator()(int item) const { call_(callable_, item); }
+  WorkRef(const Callable& callable)  // NOLINT(google-explicit-constructor): a lambda is passed as it is
+      : callable_(&callable),
+        call_([](const void* it, Arguments... arguments) { (*static_cast<const Callable*>(it))(arguments...); }) {}
+  void operator()(Arguments... arguments) const { call_(callable_, arguments...); }
 
  private:
   const void* callable_;
-  void (*call_)(const void*, int);
+  void (*call_)(const void*, Arguments...);
 };
+
+using ItemWork = WorkRef<int>;             ///< of an item
+using WorkerItemWork = WorkRef<int, int>;  ///< of a worker and an item
 
 /// Calls work(i) for every i in [0, count), on `threads` threads, the caller's among them; one thread means no others.
 /// Items are handed out in order, so work must write only to item i's own place: then the result does not depend on
 /// `threads`. The first exception (lowest i among those thrown) is rethrown when all have ended. May be called from
-/// several threads at once and from within work. The other threads are kept from call to call, and with them whatever
-/// work keeps in thread_local memory.
+/// several threads at once and from within work. The other threads are kept from call to call.
 void parallel_for(int threads, int count, const ItemWork& work);
+
+/// The same, but calls work(worker, i): no two items of one worker are worked on at the same time, so that they may
+/// share memory. Workers are numbered from 0; there are at most max(threads, 1). Which items a worker gets is chance.
+void parallel_for_workers(int threads, int count, const WorkerItemWork& work);
+
+/// Memory for each worker of parallel_for_workers, kept from call to call by whoever holds this. Each worker's lies in
+/// a place of its own, which does not move.
+template <typename T>
+class PerWorker {
+ public:
+  /// To be called before the workers start.
+  void make_room(int threads) {
+    while (parts_.empty() || parts_.size() < static_cast<std::size_t>(threads < 0 ? 0 : threads)) {
+      parts_.push_back(std::make_unique<T>());
+    }
+  }
+  T& operator[](int worker) { return *parts_[static_cast<std::size_t>(worker)]; }
+
+ private:
+  std::vector<std::unique_ptr<T>> parts_;
+};
 
 }  // namespace houghstream

@@ -5,6 +5,8 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/baseline/reference_engine.hpp"
+#include "detector/stages.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/same_detections.hpp"
@@ -14,14 +16,14 @@ namespace houghstream {
 namespace {
 
 const Forest& toy_forest() {
-  static const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  static const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   return forest;
 }
 
 Detections detect(const RgbdFrame& frame, int threads) {
   DetectionSettings settings;
   settings.threads = threads;
-  settings.threshold = 0.5F;  // toys have learnt their scores from few pictures
+  settings.evidence.threshold = 0.5F;  // toys have learnt their scores from few pictures
   return Detector(toy_forest(), settings).detect(frame);
 }
 
@@ -88,12 +90,12 @@ TEST(Detector, NothingIsFoundWhereThereIsNoDepth) {
   EXPECT_TRUE(detect(frame, 1).detections.empty());
 }
 
-TEST(Detector, AnyNumberOfThreadsAndTheReadableEngineGiveTheSameDetections) {
+TEST(Detector, AnyNumberOfThreadsAndTheReferenceEngineGiveTheSameDetections) {
   RgbdFrame frame = toy::room(80);
   toy::put_tile(0, 90, 100, 0.7, frame);
   toy::put_tile(1, 230, 120, 0.8, frame);
   DetectionSettings settings;
-  settings.first_trees = 1;  // the toy forest has few
+  settings.leaves.first_trees = 1;  // the toy forest has few
   settings.threads = 1;
   const Detections serial = Detector(toy_forest(), settings).detect(frame);
   ASSERT_GE(serial.detections.size(), 2U);
@@ -101,8 +103,41 @@ TEST(Detector, AnyNumberOfThreadsAndTheReadableEngineGiveTheSameDetections) {
     settings.threads = threads;
     expect_same(Detector(toy_forest(), settings).detect(frame), serial);
   }
-  settings.readable = true;
-  expect_same(Detector(toy_forest(), settings).detect(frame), serial);
+  expect_same(Detector(toy_forest(), settings, baseline::reference_engine()).detect(frame), serial);
+}
+
+TEST(Detector, StagesAreTimedInTheOrderOfThePage) {
+  RgbdFrame frame = toy::room(78);
+  frame.stages = {{"capture.read", 5}};
+  std::vector<std::string> names;
+  for (const StageTime& time : detect(frame, 1).stages) names.push_back(time.stage);
+  EXPECT_EQ(names, (std::vector<std::string>{"capture.read", "detect.resize", "detect.features", "detect.leaves",
+                                             "detect.votes", "detect.evidence", "detect.suppression"}));
+}
+
+TEST(Detector, AWorkspaceLeavesNothingOfTheFramesBefore) {
+  RgbdFrame frame = toy::room(82);
+  toy::put_tile(1, 200, 120, 0.7, frame);
+  RgbdFrame other = toy::room(83);
+  toy::put_tile(0, 60, 60, 0.55, other);
+  toy::put_tile(1, 250, 180, 1.1, other);
+  DetectionSettings settings;
+  settings.threads = 3;
+  const Detector detector(toy_forest(), settings);
+  DetectorWorkspace workspace;
+  detector.detect(other, workspace);
+  const Detections found = detector.detect(frame, workspace);
+  ASSERT_FALSE(found.detections.empty());
+  expect_same(found, detector.detect(frame));
+}
+
+TEST(Detector, AForestThatNeedsTheBaselineIsRefusedWithoutIt) {
+  Forest forest = toy_forest();
+  forest.features.handling = ScaleHandling::kScaleSpace;
+  EXPECT_THROW(Detector(forest, {}), InputError);
+  forest.features = toy_forest().features;
+  forest.features.families |= kHonv;
+  EXPECT_THROW(Detector(forest, {}), InputError);
 }
 
 TEST(Detector, FramesOfWrongSizesAreRefused) {

@@ -12,8 +12,8 @@ constexpr int kOffsetPlane = 8;  ///< rises where the offset is +0.05 m and is f
 constexpr int kNoisePlane = 20;  ///< tells nothing
 
 /// A set whose answer is known: 16 pictures, every other one background, and 50 samples of each.
-inline TrainingSet planted_set() {
-  TrainingSet set;
+inline training::TrainingSet planted_set() {
+  training::TrainingSet set;
   set.classes.resize(1);
   set.views.resize(1);
   Random random(3);
@@ -30,7 +30,7 @@ inline TrainingSet planted_set() {
     picture.replicate_border();
     set.pictures.push_back(picture);
     for (int s = 0; s < 50; ++s) {
-      TrainingSample sample;
+      training::TrainingSample sample;
       sample.picture = i;
       sample.x = static_cast<std::int16_t>(random.between(12, 19));
       sample.y = static_cast<std::int16_t>(random.between(12, 19));

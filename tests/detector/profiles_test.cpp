@@ -43,8 +43,8 @@ TEST(Profiles, GallIsTheOriginalHoughForest) {
   EXPECT_EQ(limited_scale(gall.patch, gall.patch.unit), 256);
   EXPECT_EQ(gall.training.scoring, Scoring::kVotes);
   EXPECT_EQ(gall.training.alone_share, 0.0);
-  EXPECT_EQ(gall.detection.stride, 1);
-  EXPECT_EQ(gall.detection.first_trees, 0);
+  EXPECT_EQ(gall.detection.spacing.stride, 1);
+  EXPECT_EQ(gall.detection.leaves.first_trees, 0);
   std::vector<float> sizes;
   for (const FeatureLevel& level : feature_levels(gall.features)) sizes.push_back(level.scale);
   EXPECT_EQ(sizes, (std::vector<float>{0.33F, 0.66F, 1.0F, 1.66F, 2.33F}));
@@ -57,17 +57,17 @@ TEST(Profiles, PaperHasPatchesOfTenPixelsAtOneMetre) {
   EXPECT_EQ(paper.features.families, kIntensity | kDepthValue | kDepthDerivatives | kDepthHog);
   EXPECT_EQ(paper.features.handling, ScaleHandling::kDepthNormalised);
   EXPECT_EQ(feature_levels(paper.features).size(), 1U);
-  EXPECT_EQ(paper.detection.stride, 1);
-  EXPECT_EQ(paper.detection.patch_spacing, 0.0F);
-  EXPECT_EQ(paper.detection.first_trees, 0);
+  EXPECT_EQ(paper.detection.spacing.stride, 1);
+  EXPECT_EQ(paper.detection.spacing.metres, 0.0F);
+  EXPECT_EQ(paper.detection.leaves.first_trees, 0);
 }
 
 TEST(Profiles, RealtimeLooksAtFewerPixelsThanPaper) {
   const Profile realtime = make_profile("realtime");
   EXPECT_LT(realtime.features.image_scale, make_profile("paper").features.image_scale);
-  EXPECT_EQ(realtime.detection.stride, 2);
-  EXPECT_GT(realtime.detection.patch_spacing, 0.0F);
-  EXPECT_GT(realtime.detection.first_trees, 0);
+  EXPECT_EQ(realtime.detection.spacing.stride, 2);
+  EXPECT_GT(realtime.detection.spacing.metres, 0.0F);
+  EXPECT_GT(realtime.detection.leaves.first_trees, 0);
   EXPECT_EQ(realtime.features.families, make_profile("paper").features.families);
   EXPECT_EQ(feature_levels(realtime.features).size(), 2U);
 }
@@ -89,8 +89,8 @@ TEST(ScaleHandling, NormalisedPatchesAreAsLargeWhereObjectsAreTaught) {
   EXPECT_NEAR(patch_scale(profile.patch, kFocal, 1.0F), in_scale_space, 1);
   EXPECT_NEAR(patch_scale(profile.patch, kFocal, 2.0F), 0.5 * in_scale_space, 1);
   EXPECT_EQ(feature_levels(profile.features).size(), 1U);
-  EXPECT_EQ(profile.detection.vote_sigma, DetectionSettings{}.vote_sigma);
-  EXPECT_EQ(profile.training.merge_radius, TrainingSettings{}.merge_radius);
+  EXPECT_EQ(profile.detection.voting.vote_sigma, DetectionSettings{}.voting.vote_sigma);
+  EXPECT_EQ(profile.training.merge_radius, training::TrainingSettings{}.merge_radius);
 }
 
 TEST(ScaleHandling, WhatIsNormalisedAlreadyStaysAsItIs) {
@@ -112,26 +112,26 @@ TEST(ForestsSettings, AreThoseItWasTrainedBy) {
       Profile profile = make_profile(name);
       set_scale_handling(profile, handling);
       const DetectionSettings settings = detection_settings(forest_of(profile));
-      EXPECT_EQ(settings.vote_sigma, profile.detection.vote_sigma) << name << " " << handling;
-      EXPECT_EQ(settings.stride, profile.detection.stride);
-      EXPECT_EQ(settings.patch_spacing, profile.detection.patch_spacing);
-      EXPECT_EQ(settings.first_trees, profile.detection.first_trees);
-      EXPECT_EQ(settings.threshold, profile.detection.threshold);
-      EXPECT_EQ(settings.min_mass_share, profile.detection.min_mass_share);
-      EXPECT_EQ(settings.min_class_share, profile.detection.min_class_share);
+      EXPECT_EQ(settings.voting.vote_sigma, profile.detection.voting.vote_sigma) << name << " " << handling;
+      EXPECT_EQ(settings.spacing.stride, profile.detection.spacing.stride);
+      EXPECT_EQ(settings.spacing.metres, profile.detection.spacing.metres);
+      EXPECT_EQ(settings.leaves.first_trees, profile.detection.leaves.first_trees);
+      EXPECT_EQ(settings.evidence.threshold, profile.detection.evidence.threshold);
+      EXPECT_EQ(settings.voting.min_mass_share, profile.detection.voting.min_mass_share);
+      EXPECT_EQ(settings.leaves.min_class_share, profile.detection.leaves.min_class_share);
     }
   }
 }
 
 TEST(ForestsSettings, GallsPatchesVoteForWhatIsLikelierThanByChance) {
   Forest forest = forest_of(make_profile("gall"));
-  EXPECT_EQ(detection_settings(forest).min_class_share, 0.2F);  // four objects and the background
+  EXPECT_EQ(detection_settings(forest).leaves.min_class_share, 0.2F);  // four objects and the background
   forest.classes.resize(7);
-  EXPECT_EQ(detection_settings(forest).min_class_share, 0.125F);
+  EXPECT_EQ(detection_settings(forest).leaves.min_class_share, 0.125F);
   forest = forest_of(make_profile("realtime"));
-  const float ours = detection_settings(forest).min_class_share;
+  const float ours = detection_settings(forest).leaves.min_class_share;
   forest.classes.resize(20);
-  EXPECT_EQ(detection_settings(forest).min_class_share, ours);
+  EXPECT_EQ(detection_settings(forest).leaves.min_class_share, ours);
 }
 
 float patch_reach(const Profile& profile) {
@@ -146,13 +146,13 @@ TEST(Profiles, UnknownNamesAreRefused) {
 
 TEST(Profiles, PatchesOfAScaleSpaceShrinkWithTheImage) {
   Profile profile = make_profile("gall");
-  const float smoothing = profile.detection.vote_sigma;
+  const float smoothing = profile.detection.voting.vote_sigma;
   set_image_scale(profile, 0.5F);
   EXPECT_EQ(profile.features.image_scale, 0.5F);
   EXPECT_EQ(profile.patch.radius, 4);
   set_scale_handling(profile, "five");
   EXPECT_EQ(profile.patch.unit, 1.0F);
-  EXPECT_EQ(profile.detection.vote_sigma, smoothing);  // counted as on an object at 1 m
+  EXPECT_EQ(profile.detection.voting.vote_sigma, smoothing);  // counted as on an object at 1 m
 }
 
 TEST(Profiles, PatchesOfTheTiniestImageHaveAnExtent) {

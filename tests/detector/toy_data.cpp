@@ -81,7 +81,7 @@ std::vector<TrainingView> training_views() {
 
 Profile quick_profile() {
   Profile profile = make_profile("realtime");
-  TrainingSettings& settings = profile.training;
+  training::TrainingSettings& settings = profile.training;
   settings.trees = 5;
   settings.max_depth = 14;
   settings.tests_per_node = 80;

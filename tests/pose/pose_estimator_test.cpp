@@ -193,7 +193,7 @@ TEST(PoseEstimator, SameResultForAnyNumberOfThreads) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   Detections detections = only(detection_of("mug", scene.object, scene.truth, 5));
   for (int i = 6; i < 11; ++i) detections.detections.push_back(detection_of("mug", scene.object, scene.truth, i));
-  detections.stages = {{"detect.forest", 7}};
+  detections.stages = {{"detect.leaves", 7}};
   PoseSettings settings;
   const ObjectPoses serial = estimator_for("mug", mug(), settings).estimate(scene.frame, detections);
   settings.threads = 3;
@@ -208,7 +208,7 @@ TEST(PoseEstimator, SameResultForAnyNumberOfThreads) {
   for (const ObjectPoses& poses : {serial, parallel}) {
     std::vector<std::string> names;
     for (const StageTime& time : poses.stages) names.push_back(time.stage);
-    EXPECT_EQ(names, (std::vector<std::string>{"detect.forest", "pose.region", "pose.candidates", "pose.registration",
+    EXPECT_EQ(names, (std::vector<std::string>{"detect.leaves", "pose.region", "pose.candidates", "pose.registration",
                                                "pose.choice", "pose.verification"}));
   }
 }

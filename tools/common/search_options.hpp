@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "detector/engine.hpp"
+#include "detector/extensions.hpp"
 #include "detector/profiles.hpp"
 #include "tools/common/command_line.hpp"
 
@@ -13,18 +15,19 @@ struct SearchOptions {
   std::optional<float> threshold;
   std::optional<float> min_mass_share;
   int threads = 2;
-  bool readable = false;
+  bool reference = false;  ///< by the reference engine, where the program has one
 
   DetectionSettings settings_for(const Forest& forest) const {
     DetectionSettings settings = detection_settings(forest);
-    if (stride) settings.patch_spacing = 0.0F;  // what was asked for is a patch at every so many-th pixel
-    settings.stride = stride.value_or(settings.stride);
-    settings.threshold = threshold.value_or(settings.threshold);
-    settings.min_mass_share = min_mass_share.value_or(settings.min_mass_share);
+    if (stride) settings.spacing.metres = 0.0F;  // what was asked for is a patch at every so many-th pixel
+    settings.spacing.stride = stride.value_or(settings.spacing.stride);
+    settings.evidence.threshold = threshold.value_or(settings.evidence.threshold);
+    settings.voting.min_mass_share = min_mass_share.value_or(settings.voting.min_mass_share);
     settings.threads = threads;
-    settings.readable = readable;
     return settings;
   }
+
+  const Engine& engine() const { return reference ? *extensions().reference_engine : fast_engine(); }
 };
 
 inline void add_search_options(CommandLine& app, SearchOptions& options) {
@@ -33,6 +36,8 @@ inline void add_search_options(CommandLine& app, SearchOptions& options) {
   app.add_option("--stride", options.stride,
                  "patch offset, working pixels, whatever the distance; default: the profile's")
       .range(1, 64);
+  if (extensions().reference_engine == nullptr) return;
+  app.add_flag("--reference", options.reference, "search by the slow reference engine; the same detections");
 }
 
 }  // namespace houghstream

@@ -1,5 +1,6 @@
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
+#include "detector/stages.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/process/detect_process.hpp"
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
       log_debug("class {}: {}", object.class_id, object.name);
     }
     LcmBus bus(url, output_log);
-    run_detect_process(bus, options, [&](const RgbdFrame& frame) { return detector.detect(frame); });
+    DetectorWorkspace workspace;
+    run_detect_process(bus, options, [&](const RgbdFrame& frame) { return detector.detect(frame, workspace); });
   });
 }

@@ -1,8 +1,11 @@
+#include "tools/evaluate/evaluate_main.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
+#include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
@@ -11,9 +14,8 @@
 #include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/report.hpp"
 
+namespace houghstream {
 namespace {
-
-using namespace houghstream;
 
 struct EvaluateOptions {
   std::string scene;
@@ -62,6 +64,12 @@ Evaluation measure(const EvaluateOptions& options, const BopScene& scene, const 
   return evaluation;
 }
 
+PublishedResults search_in_process(const EvaluateOptions& options, const BopScene& scene, const Forest& forest,
+                                   const std::map<std::string, Mesh>& models) {
+  const Detector detector(forest, options.search.settings_for(forest), options.search.engine());
+  return run_in_process(scene, detector, options.every, models);
+}
+
 void run(const EvaluateOptions& options) {
   require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
   const BopScene scene(options.scene);
@@ -73,8 +81,7 @@ void run(const EvaluateOptions& options) {
   const std::map<std::string, Mesh> meshes =
       options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
   const PublishedResults results =
-      options.log.empty() ? run_in_process(scene, *forest, options.search.settings_for(*forest), options.every, meshes)
-                          : read_result_log(options.log, options.channel);
+      options.log.empty() ? search_in_process(options, scene, *forest, meshes) : read_result_log(options.log, options.channel);
   const std::string source = options.log.empty() ? options.scene : options.log;
   frames = every_nth(std::move(frames), options.every);
   add_results(frames, results, source);
@@ -103,7 +110,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--out", options.out,
                  "folder for summary.json, curves.csv, poses.csv, and bop_results.csv where there are poses");
   EvaluationRules& rules = options.rules;
-  rules.operating_score = DetectionSettings{}.threshold;  // what hs-detect publishes unless told otherwise
+  rules.operating_score = EvidenceSettings{}.threshold;  // what hs-detect publishes unless told otherwise
   app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection").capture_default_str();
   app.add_option("--min-visible", rules.detection.min_visible, "less visible objects are ignored")
       .capture_default_str();
@@ -116,14 +123,15 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   add_search_options(app, options.search);
   app.add_option("--min-mass", options.search.min_mass_share,
                  "in-process: vote mass, over a whole object's, from which a maximum counts; default: the profile's");
-  app.add_flag("--readable", options.search.readable, "in-process: the slow, readable engine; the same detections");
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CommandLine app("Compares detections and poses with the truth of a scene", "hs-evaluate");
+int evaluate_main(int argc, char** argv, const std::string& name) {
+  CommandLine app("Compares detections and poses with the truth of a scene", name);
   EvaluateOptions options;
   add_options(app, options);
-  return houghstream::run_tool(app, argc, argv, [&] { run(options); });
+  return run_tool(app, argc, argv, [&] { run(options); });
 }
+
+}  // namespace houghstream

@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "detector/features/tiles/tile_plane.hpp"
-#include "detector/features/tiles/tile_rows.hpp"
 
 namespace houghstream {
 

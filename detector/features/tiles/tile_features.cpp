@@ -1,13 +1,16 @@
 #include "detector/features/tiles/tile_features.hpp"
 
-#include "detector/features/features.hpp"
-
 namespace houghstream {
 namespace {
 
 constexpr int kWindow = 2;  // pixels that a histogram's window reaches
 
 }  // namespace
+
+DepthSteps depth_steps(const WorkingFrame& frame, const FeatureSettings& settings) {
+  if (settings.handling == ScaleHandling::kDepthNormalised) return {FeatureLayout::kWrapStep, StepBytes::kWrapped};
+  return {FeatureLayout::kScaledStep * frame.size_ratio, StepBytes::kLimited};
+}
 
 int lab_margin(const FeatureSettings& settings) {
   return Neighbourhood{settings.min_max_px}.before() + kWindow + 1;

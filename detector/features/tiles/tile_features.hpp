@@ -8,7 +8,7 @@
 #include "detector/features/tiles/tile_derivatives.hpp"
 #include "detector/features/tiles/tile_extremes.hpp"
 #include "detector/features/tiles/tile_histograms.hpp"
-#include "detector/features/tiles/tile_rows.hpp"
+#include "detector/features/tiles/tile_plane.hpp"
 #include "detector/features/working_frame.hpp"
 
 namespace houghstream {
@@ -52,6 +52,18 @@ class TileFeatures {
   BinPlanes bins_;
   TileRows rows_;
 };
+
+// Gains of gradient histograms, which map gradients to 0..255: times the largest gradient they stay below 2000, so that
+// sums fit into 16 bits.
+constexpr float kIntensityGain = 8.0F;  ///< of gradients of the lightness per pixel
+constexpr float kDepthGain = 160.0F;    ///< of metres per metre
+
+/// The steps in which depth is told, see PlaneKind.
+struct DepthSteps {
+  float metres = 0.0F;
+  StepBytes bytes = StepBytes::kWrapped;
+};
+DepthSteps depth_steps(const WorkingFrame& frame, const FeatureSettings& settings);
 
 /// How far beyond a part its intensity planes look, pixels.
 int lab_margin(const FeatureSettings& settings);

@@ -14,7 +14,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kVector = TilePlane<float>::kVector;
 constexpr int kBinCount = HistogramSteps::kBins;
 
-/// As orientation_bin in hog.cpp, operation by operation.
+/// Orientations of gradients in [0, 9) bins, unsigned; a polynomial arctangent (error below 0.3 degrees), so that the
+/// result does not depend on the machine's mathematics library.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V orientation_bins(D d, V dx, V dy) {
   const auto zero = hn::Zero(d);

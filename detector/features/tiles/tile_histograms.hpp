@@ -7,7 +7,8 @@
 
 namespace houghstream {
 
-/// Arithmetic of the histograms of oriented gradients: see gradient_histograms.
+/// Arithmetic of the histograms of oriented gradients, one per pixel: 9 unsigned orientations, soft-binned, summed over
+/// a 5x5 Gaussian window (Dalal & Triggs 2005 without block normalisation, as in Gall et al. 2011).
 struct HistogramSteps {
   static constexpr int kBins = 9;
   static constexpr float kPerByte = 16.0F;  ///< steps of a gradient's share of a bin

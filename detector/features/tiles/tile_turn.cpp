@@ -7,13 +7,27 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
-#include "detector/features/tiles/byte_turn-inl.hpp"
-
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
 namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kTurnSide = 16;  // bytes of a block of a vector
+
+/// Turns squares of kTurnSide x kTurnSide bytes about their diagonal: byte j of row i becomes byte i of row j, in each
+/// block of the vectors of tag `d`.
+template <class D>
+HWY_INLINE void turn_bytes(D d, hn::Vec<D> (&rows)[kTurnSide]) {
+  for (int round = 0; round < 4; ++round) {  // each one merges row i with row i + 8
+    hn::Vec<D> merged[kTurnSide];
+    for (int i = 0; i < kTurnSide / 2; ++i) {
+      merged[2 * i] = hn::InterleaveLower(d, rows[i], rows[i + kTurnSide / 2]);
+      merged[2 * i + 1] = hn::InterleaveUpper(d, rows[i], rows[i + kTurnSide / 2]);
+    }
+    for (int i = 0; i < kTurnSide; ++i) rows[i] = merged[i];
+  }
+}
 
 /// Bytes of kTurnSide planes side by side, then of the kTurnSide planes that follow, ...
 template <std::size_t kSize>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "detector/features/feature_image.hpp"
-#include "detector/features/tiles/tile_rows.hpp"
+#include "detector/features/tiles/tile_plane.hpp"
 
 namespace houghstream {
 

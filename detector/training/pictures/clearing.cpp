@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 /// The value below which `rank` of the counted pixels lie.
@@ -60,4 +60,4 @@ cv::Mat sharpened(const cv::Mat& colour, double sharpness) {
   return sharp;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

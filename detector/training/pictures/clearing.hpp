@@ -4,7 +4,7 @@
 
 #include "pipeline/base/random.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// An object taught in haze or in weak light as it may look without: the darkest of it becomes darker, all of it
 /// brighter and its colours stronger, by random shares of what its own range allows.
@@ -14,4 +14,4 @@ void clear_haze(const cv::Mat& mask, cv::Mat& colour, Random& random);
 /// pixels takes from the picture (CV_8UC3) is added `sharpness` times. 0: the picture itself, its pixels shared.
 cv::Mat sharpened(const cv::Mat& colour, double sharpness);
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -8,7 +8,7 @@
 #include "detector/training/pictures/clearing.hpp"
 #include "detector/training/pictures/occluders.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 std::uint8_t to_byte(double value) {
@@ -34,14 +34,20 @@ Patchwork resized_object(const TrainingView& view, double scale, double sharpnes
   return part;
 }
 
-void paste(const Patchwork& part, cv::Point at, float depth_shift, double extra_sigma, Composite& out, Random& random) {
+/// What a surface's depth becomes at another distance.
+struct DepthChange {
+  float shift;         // metres
+  double extra_sigma;  // of the noise that the other distance adds, metres
+};
+
+void paste(const Patchwork& part, cv::Point at, const DepthChange& change, Composite& out, Random& random) {
   for (int y = 0; y < part.mask.rows; ++y) {
     for (int x = 0; x < part.mask.cols; ++x) {
       if (part.mask.at<std::uint8_t>(y, x) == 0) continue;
       const cv::Point to(at.x + x, at.y + y);
       out.frame.colour.at<cv::Vec3b>(to) = part.colour.at<cv::Vec3b>(y, x);
-      const auto noise = static_cast<float>(extra_sigma > 0 ? extra_sigma * random.normal() : 0.0);
-      out.frame.depth.at<float>(to) = part.depth.at<float>(y, x) + depth_shift + noise;
+      const auto noise = static_cast<float>(change.extra_sigma > 0 ? change.extra_sigma * random.normal() : 0.0);
+      out.frame.depth.at<float>(to) = part.depth.at<float>(y, x) + change.shift + noise;
       out.mask.at<std::uint8_t>(to) = 255;
     }
   }
@@ -129,11 +135,12 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   vary_light(lit.colour, settings.light_variation, -0.4, 0.4, random);
   const double sigma_sq =
       axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
-  paste(lit, cv::Point(kMargin, kMargin), out.depth_shift, sigma_sq > 0 ? std::sqrt(sigma_sq) : 0.0, out, random);
+  const DepthChange change{out.depth_shift, sigma_sq > 0 ? std::sqrt(sigma_sq) : 0.0};
+  paste(lit, cv::Point(kMargin, kMargin), change, out, random);
   out.whole_px = cv::countNonZero(out.mask);
   if (random.uniform() < settings.occluded_share) add_occluder(background, distance, out, random);
   vary_exposure(out.frame.colour, settings.light_variation, random);
   return out;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

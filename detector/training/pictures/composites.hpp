@@ -2,11 +2,11 @@
 
 #include <optional>
 
-#include "detector/detector_settings.hpp"
+#include "detector/training/training_settings.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// A training view put into a room at another distance, in another light: what the camera could have seen there.
 /// Made from training data only.
@@ -35,4 +35,4 @@ void vary_light(cv::Mat& colour, double strength, double darkest_stops, double b
 /// The same with the limits of a camera's exposure: dim rooms are commoner than overexposed ones.
 void vary_exposure(cv::Mat& colour, double strength, Random& random);
 
-}  // namespace houghstream
+}  // namespace houghstream::training

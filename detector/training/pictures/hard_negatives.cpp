@@ -5,7 +5,7 @@
 #include "detector/training/tree_trainer.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 constexpr int kScouts = 3;
@@ -59,4 +59,4 @@ void add_hard_negatives(const PatchSettings& patch, const TrainingSettings& sett
   set.spare_background.clear();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

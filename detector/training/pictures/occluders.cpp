@@ -6,7 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 constexpr double kBaselineM = 0.075;  // projector to camera, PrimeSense and Kinect
@@ -82,4 +82,4 @@ void add_occluder(const RgbdFrame& room, double object_distance, Composite& comp
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

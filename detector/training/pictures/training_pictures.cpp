@@ -5,11 +5,10 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "detector/features/features.hpp"
 #include "detector/training/pictures/composites.hpp"
-#include "detector/training/pictures/far_noise.hpp"
+#include "detector/training/pictures/sensor_errors.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 bool in_scale_space(const Profile& profile) {
@@ -114,14 +113,11 @@ Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const 
   return canvas;
 }
 
-/// All features of a picture; they stay until this thread's next picture. Memory that pictures share is written to much
-/// faster than new memory: the system has to clear that first.
-const FeatureImage& shared_features(const WorkingFrame& frame, const FeatureSettings& settings) {
-  static thread_local FeatureImage features;
-  static thread_local FeatureTiles tiles;
-  tiles.want_all(frame.colour.size());
-  compute_features(frame, settings, tiles, 1, features);
-  return features;
+/// All features of a picture; they stay until the next one.
+const FeatureImage& all_features(const WorkingFrame& frame, const FeatureSettings& settings, PictureWorkspace& own) {
+  own.tiles.want_all(frame.colour.size());
+  compute_features({frame, settings, own.tiles}, 1, own.feature_memory, own.features);
+  return own.features;
 }
 
 /// What the patches of a picture look at.
@@ -160,8 +156,9 @@ cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& leve
 
 }  // namespace
 
-TrainingPicture object_picture(const TrainingView& view, int label, std::uint32_t view_index,
-                               const RgbdFrame& background, const Profile& profile, Random& random) {
+TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const Profile& profile,
+                               Random& random, PictureWorkspace& own) {
+  const TrainingView& view = taught.view;
   const TrainingSettings& settings = profile.training;
   TrainingPicture picture;
   double distance = draw_distance(view, profile, random);
@@ -190,8 +187,8 @@ TrainingPicture object_picture(const TrainingView& view, int label, std::uint32_
     TrainingSample sample = sample_at(at, canvas.frame, profile);
     const float depth = canvas.frame.filled_depth.at<float>(at);
     sample.offset = centre_offset(view, *composite, canvas.frame_px(at), depth, profile);
-    sample.label = static_cast<std::uint16_t>(label);
-    sample.view = view_index;
+    sample.label = static_cast<std::uint16_t>(taught.label);
+    sample.view = taught.index;
     picture.samples.push_back(sample);
   }
   for (const cv::Point at : draw_pixels(canvas.mask.size(), count / 4, random, beside)) {
@@ -199,12 +196,12 @@ TrainingPicture object_picture(const TrainingView& view, int label, std::uint32_
   }
   const double px = composite->frame.camera.metres_per_px(needs_depth ? distance : 1.0);
   picture.whole_area = static_cast<float>(composite->whole_px * px * px);
-  picture.features = shared_features(canvas.frame, profile.features).cut_out(seen_by(picture, profile.patch));
+  picture.features = all_features(canvas.frame, profile.features, own).cut_out(seen_by(picture, profile.patch));
   return picture;
 }
 
 TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const Profile& profile,
-                                   Random& random) {
+                                   Random& random, PictureWorkspace& own) {
   const TrainingSettings& settings = profile.training;
   const cv::Rect place = background_window(background, level, profile, random);
   RgbdFrame part;
@@ -222,8 +219,8 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
     auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;
     list.push_back(sample_at(at, frame, profile));
   }
-  picture.features = shared_features(frame, profile.features).cut_out(seen_by(picture, profile.patch));
+  picture.features = all_features(frame, profile.features, own).cut_out(seen_by(picture, profile.patch));
   return picture;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

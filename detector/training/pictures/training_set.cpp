@@ -9,7 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 /// What the pose process and the boxes need to remember of a view.
@@ -98,19 +98,21 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
   const int object_count = static_cast<int>(objects.size()) * copies;
   const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundPictures;
   std::vector<TrainingPicture> pictures(static_cast<std::size_t>(total));
-  parallel_for(settings.threads, total, [&](int i) {
+  PerWorker<PictureWorkspace> workspaces;
+  workspaces.make_room(settings.threads);
+  parallel_for_workers(settings.threads, total, [&](int worker, int i) {
     Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(i));
     auto& picture = pictures[static_cast<std::size_t>(i)];
     if (i < object_count) {
       const auto v = static_cast<std::size_t>(i / copies);
       const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
-      picture =
-          object_picture(*objects[v], labels[v], static_cast<std::uint32_t>(v), backgrounds[b]->frame, profile, random);
+      picture = object_picture({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, profile,
+                               random, workspaces[worker]);
     } else {
       const int b = i - object_count;
       const FeatureLevel& level = levels[static_cast<std::size_t>(b) % levels.size()];
       picture = background_picture(backgrounds[static_cast<std::size_t>(b / kBackgroundPictures)]->frame, level,
-                                   profile, random);
+                                   profile, random, workspaces[worker]);
     }
   });
   measure_classes(pictures, set);
@@ -128,4 +130,4 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
   return set;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -11,7 +11,7 @@
 #include "detector/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// One patch to learn from.
 struct TrainingSample {
@@ -41,4 +41,4 @@ struct TrainingSet {
 /// Throws InputError when a class or the background is missing or a mask is empty.
 TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile);
 
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -5,17 +5,25 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/training/pictures/composites.hpp"
-#include "detector/training/pictures/misfits.hpp"
+#include "detector/training/pictures/sensor_errors.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 double draw_distance(const TrainingSettings& settings, Random& random) {
   return std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
 }
 
-/// Copies the composite into the whole frame it was cut from; `labels` says which object each pixel shows.
-void put_back(const Composite& composite, std::uint8_t label, RgbdFrame& frame, cv::Mat& labels) {
+/// A frame in the making.
+struct Stage {
+  RgbdFrame& frame;
+  cv::Mat labels;  // CV_8UC1: which object each pixel shows, 0 = none
+};
+
+/// Copies the composite into the whole frame it was cut from.
+void put_back(const Composite& composite, std::uint8_t label, Stage& stage) {
+  RgbdFrame& frame = stage.frame;
+  cv::Mat& labels = stage.labels;
   const cv::Rect place(static_cast<int>(std::lround(frame.camera.cx - composite.frame.camera.cx)),
                        static_cast<int>(std::lround(frame.camera.cy - composite.frame.camera.cy)), composite.mask.cols,
                        composite.mask.rows);
@@ -63,18 +71,20 @@ TrainingView resized(const TrainingView& view, Random& random) {
   return out;
 }
 
-/// Puts things that look nearly like objects into the frame, `count` of each sort.
-void add_look_alikes(const std::vector<const TrainingView*>& objects, int count, const TrainingSettings& settings,
-                     ValidationFrame& out, cv::Mat& labels, Random& random) {
+/// Puts things that look nearly like objects into the frame, `count` of each sort; returns the views they were made of.
+std::vector<std::uint32_t> add_look_alikes(const std::vector<const TrainingView*>& objects, int count,
+                                           const TrainingSettings& settings, Stage& stage, Random& random) {
+  std::vector<std::uint32_t> views;
   for (int i = 0; i < 2 * count; ++i) {
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
-    out.look_alikes.push_back(static_cast<std::uint32_t>(index));
+    views.push_back(static_cast<std::uint32_t>(index));
     const TrainingView other = i % 2 == 0 ? recoloured(*objects[index], random) : resized(*objects[index], random);
     const double distance = draw_distance(settings, random);
-    const TrainingView misfit = bent(other, settings.misfit, random);
-    const std::optional<Composite> composite = make_composite(misfit, out.frame, distance, settings, random);
-    if (composite) put_back(*composite, 0, out.frame, labels);
+    const TrainingView bent_view = bent(other, settings.depth_error, random);
+    const std::optional<Composite> composite = make_composite(bent_view, stage.frame, distance, settings, random);
+    if (composite) put_back(*composite, 0, stage);
   }
+  return views;
 }
 
 }  // namespace
@@ -89,31 +99,31 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   out.frame = room;
   out.frame.colour = room.colour.clone();
   out.frame.depth = room.depth.clone();
-  cv::Mat labels = cv::Mat::zeros(room.colour.size(), CV_8UC1);
+  Stage stage{out.frame, cv::Mat::zeros(room.colour.size(), CV_8UC1)};
   std::vector<int> whole_px;
-  add_look_alikes(objects, things.look_alikes, even_light, out, labels, random);
+  out.look_alikes = add_look_alikes(objects, things.look_alikes, even_light, stage, random);
   for (int label = 1; label <= things.objects; ++label) {
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     const TrainingView& view = *objects[index];
     const double distance = draw_distance(settings, random);
-    const TrainingView misfit = bent(view, settings.misfit, random);
-    const std::optional<Composite> composite = make_composite(misfit, out.frame, distance, even_light, random);
+    const TrainingView bent_view = bent(view, settings.depth_error, random);
+    const std::optional<Composite> composite = make_composite(bent_view, out.frame, distance, even_light, random);
     out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
     whole_px.push_back(composite ? composite->whole_px : 1);
-    if (composite) put_back(*composite, static_cast<std::uint8_t>(label), out.frame, labels);
+    if (composite) put_back(*composite, static_cast<std::uint8_t>(label), stage);
   }
   for (int label = 1; label <= things.objects; ++label) {
     const auto index = static_cast<std::size_t>(label - 1);
     ValidationFrame::Object& object = out.objects[index];
-    const cv::Mat seen = labels == label;
+    const cv::Mat seen = stage.labels == label;
     object.box_visible_px = cv::boundingRect(seen);
     object.visible_fraction = static_cast<double>(cv::countNonZero(seen)) / whole_px[index];
   }
   const auto unseen = [](const ValidationFrame::Object& object) { return object.box_visible_px.empty(); };
   out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());
-  misregister(settings.misfit, out.frame.depth, random);
+  misregister(settings.depth_error, out.frame.depth, random);
   vary_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
   return out;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::training

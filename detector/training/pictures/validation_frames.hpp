@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "detector/detector_settings.hpp"
+#include "detector/training/training_settings.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 
 /// A room into which training views were put, to see what the finished forest makes of it.
 struct ValidationFrame {
@@ -28,8 +28,8 @@ struct ComposedThings {
 };
 
 /// Random views in one room, each as in a composite: other distance, light, half of them partly hidden; behind them the
-/// look-alikes. Depth misfits colours and views, see misfits.hpp.
+/// look-alikes. Depth has the errors of sensor_errors.hpp.
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
                                       const ComposedThings& things, const TrainingSettings& settings, Random& random);
 
-}  // namespace houghstream
+}  // namespace houghstream::training

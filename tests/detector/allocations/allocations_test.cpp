@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "detector/detector.hpp"
+#include "detector/stages.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "tests/detector/toy_data.hpp"
 
@@ -70,9 +71,9 @@ struct Allocations {
 };
 
 /// Of one frame.
-Allocations allocations_of(const Detector& detector, const RgbdFrame& frame) {
+Allocations allocations_of(const Detector& detector, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   const Allocations before{small_ones, large_ones};
-  const Detections found = detector.detect(frame);
+  const Detections found = detector.detect(frame, workspace);
   EXPECT_FALSE(found.detections.empty());
   return {small_ones - before.small, large_ones - before.large};
 }
@@ -86,7 +87,7 @@ TEST(Allocations, AreCounted) {
 }
 
 TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
-  const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   RgbdFrame frame = toy::room(5);
   toy::put_tile(0, 90, 120, 0.8, frame);
   toy::put_tile(1, 230, 120, 0.9, frame);
@@ -94,9 +95,10 @@ TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
     DetectionSettings settings = toy::quick_profile().detection;
     settings.threads = threads;
     const Detector detector(forest, settings);
-    for (int warm_up = 1; warm_up < 5; ++warm_up) allocations_of(detector, frame);
+    DetectorWorkspace workspace;
+    for (int warm_up = 1; warm_up < 5; ++warm_up) allocations_of(detector, frame, workspace);
     for (int number = 5; number <= 10; ++number) {
-      const Allocations seen = allocations_of(detector, frame);
+      const Allocations seen = allocations_of(detector, frame, workspace);
       EXPECT_LE(seen.small, kFew) << "frame " << number << ", " << threads << " threads";
       EXPECT_EQ(seen.large, 0U) << "frame " << number << ", " << threads << " threads";
     }

@@ -5,9 +5,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/training/forest_trainer.hpp"
+#include "tests/detector/baseline/with_baseline.hpp"
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 constexpr int kRings = 1;
@@ -21,7 +22,7 @@ Forest quickly_trained(const std::string& profile_name) {
   profile.training.min_distance = 0.5F;
   profile.training.max_distance = 1.2F;
   profile.training.validation_frames = 24;
-  return train_forest(toy::training_views(), profile, [](const auto&) {});
+  return training::train_forest(toy::training_views(), profile, [](const auto&) {});
 }
 
 const Forest& normalised_forest() {
@@ -34,6 +35,11 @@ const Forest& scale_space_forest() {
   return forest;
 }
 
+cv::Mat image_of(const Forest& forest, int class_index, const RgbdFrame& frame) {
+  const DetectionSettings settings = detection_settings(forest);
+  return hough_image({forest, settings}, class_index, frame);
+}
+
 cv::Point strongest(const cv::Mat& image) {
   cv::Point at;
   cv::minMaxLoc(image, nullptr, nullptr, nullptr, &at);
@@ -44,7 +50,7 @@ cv::Point strongest(const cv::Mat& image) {
 cv::Point error_of(const Forest& forest, double u_px, double v_px, double distance) {
   RgbdFrame frame = toy::room(77);
   toy::put_tile(kRings, u_px, v_px, distance, frame);
-  const cv::Mat image = hough_image(forest, kRings, frame, detection_settings(forest));
+  const cv::Mat image = image_of(forest, kRings, frame);
   EXPECT_EQ(image.type(), CV_32FC1);
   EXPECT_EQ(image.size(), frame.colour.size());
   return strongest(image) - cv::Point(cvRound(u_px), cvRound(v_px));
@@ -68,7 +74,7 @@ TEST(HoughImages, FrameOfOddSizeIsCoveredToo) {
   frame.depth = frame.depth(part).clone();
   frame.camera.width = part.width;
   frame.camera.height = part.height;
-  const cv::Mat image = hough_image(normalised_forest(), kRings, frame, detection_settings(normalised_forest()));
+  const cv::Mat image = image_of(normalised_forest(), kRings, frame);
   EXPECT_EQ(image.size(), part.size());
   EXPECT_LE(cv::norm(strongest(image) - cv::Point(230, 110)), 5.0);
 }
@@ -77,12 +83,11 @@ TEST(HoughImages, AnotherClassGetsFewerVotes) {
   RgbdFrame frame = toy::room(77);
   toy::put_tile(kRings, 159.5, 119.5, 0.7, frame);
   for (const Forest* forest : {&normalised_forest(), &scale_space_forest()}) {
-    const DetectionSettings settings = detection_settings(*forest);
     const cv::Point centre(160, 120);
-    EXPECT_LT(hough_image(*forest, 1 - kRings, frame, settings).at<float>(centre),
-              0.5F * hough_image(*forest, kRings, frame, settings).at<float>(centre));
+    EXPECT_LT(image_of(*forest, 1 - kRings, frame).at<float>(centre),
+              0.5F * image_of(*forest, kRings, frame).at<float>(centre));
   }
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

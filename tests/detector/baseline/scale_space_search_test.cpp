@@ -8,31 +8,33 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/baseline/reference_engine.hpp"
 #include "detector/detector.hpp"
 #include "detector/training/forest_trainer.hpp"
+#include "tests/detector/baseline/with_baseline.hpp"
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 /// Three of the five sizes are enough for the distances below.
 const Forest& toy_forest() {
   static const Forest forest = [] {
     Profile profile = make_profile("gall");
-    const TrainingSettings quick = toy::quick_profile().training;
+    const training::TrainingSettings quick = toy::quick_profile().training;
     profile.training.trees = quick.trees;
     profile.training.max_depth = quick.max_depth;
     profile.training.tests_per_node = quick.tests_per_node;
     profile.training.patches_per_view = quick.patches_per_view;
     profile.features.scales = {0.66F, 1.0F, 1.66F};
-    return train_forest(toy::training_views(), profile, [](const auto&) {});
+    return training::train_forest(toy::training_views(), profile, [](const auto&) {});
   }();
   return forest;
 }
 
 DetectionSettings quick_settings() {
   DetectionSettings settings = detection_settings(toy_forest());
-  settings.stride = 2;
+  settings.spacing.stride = 2;
   return settings;
 }
 
@@ -47,9 +49,10 @@ Scene tile_at(int kind, double u_px, double v_px, double distance) {
   return scene;
 }
 
-std::vector<Candidate> search(const RgbdFrame& frame, const DetectionSettings& settings) {
+std::vector<Candidate> search(const RgbdFrame& frame, const DetectionSettings& settings,
+                              const Engine& engine = fast_engine()) {
   StageClock clock;
-  return search_scale_space(toy_forest(), frame, settings, clock);
+  return search_scale_space({toy_forest(), settings, engine}, frame, clock);
 }
 
 const Candidate& strongest(const std::vector<Candidate>& candidates) {
@@ -80,7 +83,7 @@ TEST(ScaleSpaceSearch, FindsTheTaughtObjectsInEverySize) {
       const Candidate& best = strongest(found);
       EXPECT_EQ(best.detection.class_id, kind + 1) << distance;
       EXPECT_EQ(best.detection.class_name, kind == 0 ? "stripes" : "rings");
-      EXPECT_GT(best.detection.score, quick_settings().threshold) << distance;
+      EXPECT_GT(best.detection.score, quick_settings().evidence.threshold) << distance;
       EXPECT_GT(box_iou(best.detection.box_px, scene.box_px), 0.75F) << distance << " m, kind " << kind;
       EXPECT_GT(best.detection.vote_count, 0);
       EXPECT_EQ(best.detection.score, vote_score(best.evidence.mass_share));
@@ -111,17 +114,17 @@ TEST(ScaleSpaceSearch, AnyNumberOfThreadsGivesTheSameCandidates) {
   }
 }
 
-TEST(ScaleSpaceSearch, TheReadableEngineFindsTheSameCandidates) {
+TEST(ScaleSpaceSearch, TheReferenceEngineFindsTheSameCandidates) {
   const Scene scene = tile_at(1, 150, 120, 0.7);
-  DetectionSettings settings = quick_settings();
+  const DetectionSettings settings = quick_settings();
   const std::vector<Candidate> fast = search(scene.frame, settings);
-  settings.readable = true;
-  expect_same(fast, search(scene.frame, settings));
+  expect_same(fast, search(scene.frame, settings, reference_engine()));
 }
 
 TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
   const Scene scene = tile_at(0, 120, 110, 0.7 * 1.66);
-  const std::vector<cv::Mat> images = scale_space_hough_images(toy_forest(), 0, scene.frame, quick_settings());
+  const DetectionSettings settings = quick_settings();
+  const std::vector<cv::Mat> images = scale_space_hough_images({toy_forest(), settings}, 0, scene.frame);
   constexpr std::array<float, 3> kSizes = {0.66F, 1.0F, 1.66F};
   ASSERT_EQ(images.size(), kSizes.size());
   std::array<double, 3> peaks{};
@@ -159,8 +162,8 @@ TEST(ScaleSpaceSearch, TheDetectorReportsTheStrongestOfAllSizes) {
   }
   std::vector<std::string> names;
   for (const StageTime& time : found.stages) names.push_back(time.stage);
-  EXPECT_EQ(names, (std::vector<std::string>{"detect.resize", "detect.features", "detect.forest", "detect.voting",
-                                             "detect.hypotheses"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"detect.resize", "detect.features", "detect.leaves", "detect.votes",
+                                             "detect.suppression"}));
 }
 
 TEST(ScaleSpaceSearch, AnEmptyRoomOffersLittle) {
@@ -170,5 +173,54 @@ TEST(ScaleSpaceSearch, AnEmptyRoomOffersLittle) {
   }
 }
 
+ScalePeak peak(int size, float x_px, float mass, std::int32_t class_id = 1) {
+  ScalePeak out;
+  out.candidate.detection.class_id = class_id;
+  out.candidate.evidence.mass_share = mass;
+  out.at_px = {x_px, 50.0F};
+  out.reach_px = 8.0F;
+  out.size = size;
+  return out;
+}
+
+std::vector<float> kept_masses(const std::vector<ScalePeak>& peaks) {
+  std::vector<float> masses;
+  for (const Candidate& candidate : maxima_over_sizes(peaks)) masses.push_back(candidate.evidence.mass_share);
+  return masses;
+}
+
+using Masses = std::vector<float>;
+
+TEST(ScalePeaks, OfTwoInNeighbouringSizesTheHigherIsTheMaximum) {
+  EXPECT_EQ(kept_masses({peak(1, 100, 0.4F), peak(2, 104, 0.6F)}), Masses({0.6F}));
+  EXPECT_EQ(kept_masses({peak(1, 100, 0.6F), peak(2, 104, 0.4F)}), Masses({0.6F}));
+}
+
+TEST(ScalePeaks, OfEqualNeighboursTheFirstCounts) {
+  EXPECT_EQ(kept_masses({peak(1, 100, 0.5F), peak(2, 104, 0.5F)}), Masses({0.5F}));
+}
+
+TEST(ScalePeaks, WhatIsNoNeighbourStays) {
+  const ScalePeak low = peak(1, 100, 0.4F);
+  EXPECT_EQ(kept_masses({low, peak(2, 109, 0.6F)}), Masses({0.4F, 0.6F}));     // out of reach
+  EXPECT_EQ(kept_masses({low, peak(3, 100, 0.6F)}), Masses({0.4F, 0.6F}));     // two sizes away
+  EXPECT_EQ(kept_masses({low, peak(1, 100, 0.6F)}), Masses({0.4F, 0.6F}));     // the same size decides by itself
+  EXPECT_EQ(kept_masses({low, peak(2, 100, 0.6F, 2)}), Masses({0.4F, 0.6F}));  // another object
+}
+
+TEST(ScalePeaks, TheLargerReachCounts) {
+  ScalePeak coarse = peak(0, 100, 0.6F);
+  coarse.reach_px = 20.0F;
+  EXPECT_EQ(kept_masses({coarse, peak(1, 115, 0.4F)}), Masses({0.6F}));
+}
+
+TEST(ScalePeaks, ASlopeHidesWhatIsLowerThanItself) {
+  EXPECT_EQ(kept_masses({peak(0, 100, 0.3F), peak(1, 106, 0.4F), peak(2, 112, 0.6F)}), Masses({0.6F}));
+}
+
+TEST(ScalePeaks, NothingGivesNothing) {
+  EXPECT_TRUE(maxima_over_sizes({}).empty());
+}
+
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

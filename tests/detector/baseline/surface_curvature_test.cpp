@@ -4,7 +4,7 @@
 
 #include "tests/detector/baseline/surface_scene.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 using Layout = CurvatureLayout;
@@ -89,4 +89,4 @@ TEST(SurfaceCurvature, AnyNumberOfThreadsGivesTheSamePlanes) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

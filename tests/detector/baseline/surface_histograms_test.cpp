@@ -6,7 +6,7 @@
 
 #include "tests/detector/baseline/surface_scene.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 using Values = std::vector<int>;
@@ -141,4 +141,4 @@ TEST(SurfaceHistograms, AnyNumberOfThreadsGivesTheSamePlanes) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -4,7 +4,7 @@
 
 #include "tests/detector/baseline/surface_scene.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 using Values = std::vector<int>;
@@ -86,4 +86,4 @@ TEST(SurfaceHonv, AnyNumberOfThreadsGivesTheSamePlanes) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -7,7 +7,7 @@
 
 #include "tests/detector/baseline/surface_scene.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 PointHistogramSettings settings() {
@@ -82,4 +82,4 @@ TEST(SurfaceNeighbours, NormalsAreThoseOfTheSurfaceForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -7,7 +7,7 @@
 
 #include "tests/detector/baseline/surface_scene.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 constexpr int kNeighbours = 100;
@@ -102,4 +102,4 @@ TEST(SurfaceNormals, AnyNumberOfThreadsGivesTheSameNormals) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -13,7 +13,7 @@
 #include "detector/baseline/surface_normals.hpp"
 #include "tests/detector/baseline/surface_scene.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 using Points = pcl::PointCloud<pcl::PointXYZ>;
@@ -168,4 +168,4 @@ TEST(SurfacePcl, HistogramsAgree) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -7,7 +7,7 @@
 
 #include "tests/detector/baseline/surface_scene.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 TEST(SurfaceWindow, TheOddSquareNearestToTheNumberOfNeighbours) {
@@ -28,7 +28,8 @@ TEST(SurfaceWindow, EveryNeighbourIsVisitedOnce) {
   const cv::Size size(9, 6);
   for (int y = 0; y < size.height; ++y) {
     cv::Mat visits = cv::Mat::zeros(size.width, size.area(), CV_32SC1);  // row: the pixel of row y; column: neighbour
-    for_each_shift(size, y, 2, [&](int v, int dx, int first_x, int last_x) {
+    for_each_shift(size, y, 2, [&](const WindowShift& shift) {
+      const auto [v, dx, first_x, last_x] = shift;
       for (int x = first_x; x < last_x; ++x) ++visits.at<int>(x, v * size.width + x + dx);
     });
     for (int x = 0; x < size.width; ++x) {
@@ -91,4 +92,4 @@ TEST(SurfaceWindow, MomentsAreThoseOfTheNeighboursOnTheSameSurface) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/evidence/view_fit.hpp"
+#include "detector/features/working_frame.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::toy {
@@ -20,6 +21,14 @@ inline TrainedView remembered_view() {
   out.box = {side(box.x, 159.5), side(box.y, 119.5), side(box.br().x, 159.5), side(box.br().y, 119.5)};
   out.appearance = remember_appearance(view.frame, view.mask, box, kDistance);
   return out;
+}
+
+/// The frame with another picture's colours, `scale` times its size, as views are compared with it.
+inline LabFrame lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
+  cv::Mat blurred;
+  cv::Mat lab;
+  averaged_lab(colour, blurred, lab);
+  return {frame, lab, scale};
 }
 
 /// The view of an object so many times as large, seen from as far.

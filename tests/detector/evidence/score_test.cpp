@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pipeline/base/random.hpp"
+#include "tests/detector/listed_terms.hpp"
 
 namespace houghstream {
 namespace {
@@ -26,6 +27,16 @@ TEST(Score, IsAProbabilityThatGrowsWithTheMass) {
   }
 }
 
+TEST(ScoreTerms, EachOneIsListedOnce) {
+  ScoreTerms terms;
+  float next = 0.0F;
+  for (const auto term : kScoreTermList) terms.*term = ++next;
+  const std::array<float, kScoreTerms> values = listed(terms);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], static_cast<float>(i + 1)) << "listed twice";
+  EXPECT_EQ(terms.constant, 1.0F);
+  EXPECT_EQ(terms.unevenness_sq, static_cast<float>(kScoreTerms));
+}
+
 TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {
   const ScoreModel model;
   Evidence evidence = with_mass(0.5F);
@@ -42,8 +53,8 @@ TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {
 
 TEST(Score, MassAndLikenessWeighOtherwiseWhereDepthIsUnknown) {
   ScoreModel model;
-  model.weights[10] = -1.0F;
-  model.weights[11] = 2.0F;
+  model.weights.unknown_mass = -1.0F;
+  model.weights.unknown_likeness = 2.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.fit.likeness = 0.7F;
   const float known = score(model, evidence);
@@ -55,7 +66,7 @@ TEST(Score, MassAndLikenessWeighOtherwiseWhereDepthIsUnknown) {
 
 TEST(Score, MissingDepthIsAnotherThingFarAway) {
   ScoreModel model;
-  model.weights[12] = -2.0F;
+  model.weights.unknown_distance = -2.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.distance = 2.0F;
   EXPECT_EQ(score(model, evidence), score(ScoreModel{}, evidence)) << "where depth is known, distance is nothing";
@@ -64,12 +75,12 @@ TEST(Score, MissingDepthIsAnotherThingFarAway) {
   evidence.distance = 0.4F;
   EXPECT_GT(score(model, evidence), far);
   evidence.distance = 0.0F;
-  EXPECT_TRUE(std::isfinite(score_terms(evidence)[12]));
+  EXPECT_TRUE(std::isfinite(score_terms(evidence).unknown_distance));
 }
 
 TEST(Score, LikenessInOtherHuesWeighsOtherwise) {
   ScoreModel model;
-  model.weights[13] = -3.0F;
+  model.weights.likeness_hue_conflict = -3.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.fit.likeness = 0.7F;
   EXPECT_EQ(score(model, evidence), score(ScoreModel{}, evidence));
@@ -79,7 +90,7 @@ TEST(Score, LikenessInOtherHuesWeighsOtherwise) {
 
 TEST(Score, WhatAgreesBetterInAnotherSizeIsAnotherThing) {
   ScoreModel model;
-  model.weights[14] = -3.0F;
+  model.weights.other_size = -3.0F;
   Evidence evidence = with_mass(0.3F);
   const float usual = score(model, evidence);
   evidence.other_size = 0.2F;
@@ -89,35 +100,37 @@ TEST(Score, WhatAgreesBetterInAnotherSizeIsAnotherThing) {
 
 TEST(Score, ManyUncertainPatchesAreLessThanFewCertainOnes) {
   ScoreModel model;
-  model.weights[15] = 1.5F;
+  model.weights.certainty = 1.5F;
   Evidence evidence = with_mass(0.3F);
   evidence.certainty = 2.0F;
   const float certain = score(model, evidence);
   evidence.certainty = 0.5F;
   EXPECT_LT(score(model, evidence), certain);
   evidence.certainty = 0.0F;
-  EXPECT_TRUE(std::isfinite(score_terms(evidence)[15]));
+  EXPECT_TRUE(std::isfinite(score_terms(evidence).certainty));
 }
 
 TEST(Score, WhatIsMuchHiddenOrAgreesMuchBetterInAnotherSizeWeighsMoreThanItsShare) {
-  const auto change = [](std::size_t term, const auto& set) {  // of the score's log-odds per unit of the term's weight
+  const auto change = [](float ScoreTerms::*term,
+                         const auto& set) {  // of the score's log-odds per unit of the term's weight
     ScoreModel model;
-    model.weights[term] = 1.0F;
+    model.weights.*term = 1.0F;
     Evidence evidence = with_mass(0.3F);
     evidence.other_size = 0.0F;
     set(evidence);
     const auto odds = [&](const ScoreModel& m) { return std::log(score(m, evidence) / (1.0F - score(m, evidence))); };
     return odds(model) - odds(ScoreModel{});
   };
-  EXPECT_NEAR(change(16, [](Evidence& e) { e.fit.hidden = 0.52F; }), std::log(2.0F) * std::log(2.0F), 1e-3F);
-  EXPECT_NEAR(change(17, [](Evidence& e) { e.other_size = -0.4F; }), 0.16F, 1e-3F);
-  EXPECT_NEAR(change(20, [](Evidence& e) { e.fit.unevenness = 0.5F; }), 0.25F, 1e-3F);
+  EXPECT_NEAR(change(&ScoreTerms::shown_sq, [](Evidence& e) { e.fit.hidden = 0.52F; }), std::log(2.0F) * std::log(2.0F),
+              1e-3F);
+  EXPECT_NEAR(change(&ScoreTerms::other_size_sq, [](Evidence& e) { e.other_size = -0.4F; }), 0.16F, 1e-3F);
+  EXPECT_NEAR(change(&ScoreTerms::unevenness_sq, [](Evidence& e) { e.fit.unevenness = 0.5F; }), 0.25F, 1e-3F);
 }
 
 TEST(Score, WhatIsSeenThroughWeighsByTheCertaintyAndHuesByTheForeignColour) {
   ScoreModel model;
-  model.weights[18] = 1.0F;
-  model.weights[19] = -1.0F;
+  model.weights.seen_through_certainty = 1.0F;
+  model.weights.hue_conflict_foreign_colour = -1.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.certainty = 2.0F;
   evidence.fit.hue_conflict = 0.5F;
@@ -152,7 +165,8 @@ TEST(Score, TheModelThatMadeTheExamplesComesBack) {
   ScoreModel truth;
   truth.weights = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F, -1.2F};
   const ScoreModel fitted = fit_score_model(drawn_from(truth, 40000), ScoreModel{});
-  for (std::size_t i = 0; i < kScoreTerms; ++i) EXPECT_NEAR(fitted.weights[i], truth.weights[i], 0.35F) << i;
+  for (std::size_t i = 0; i < kScoreTerms; ++i)
+    EXPECT_NEAR(listed(fitted.weights)[i], listed(truth.weights)[i], 0.35F) << i;
 }
 
 TEST(Score, ExamplesThatAreToldApartWithoutErrorMoveTheWeightsOnlySoFar) {
@@ -162,21 +176,21 @@ TEST(Score, ExamplesThatAreToldApartWithoutErrorMoveTheWeightsOnlySoFar) {
     examples.push_back({score_terms(evidence), i % 2 == 0});
   }
   const ScoreModel fitted = fit_score_model(examples, ScoreModel{});
-  for (const float weight : fitted.weights) EXPECT_LT(std::abs(weight), 20.0F);
+  for (const float weight : listed(fitted.weights)) EXPECT_LT(std::abs(weight), 20.0F);
   EXPECT_GT(score(fitted, with_mass(1.0F)), 0.95F);
   EXPECT_LT(score(fitted, with_mass(0.001F)), 0.05F);
 }
 
 TEST(Score, WithoutExamplesThePriorStays) {
   const ScoreModel prior{{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F, 8.0F}};
-  EXPECT_EQ(fit_score_model({}, prior).weights, prior.weights);
+  EXPECT_EQ(listed(fit_score_model({}, prior).weights), listed(prior.weights));
 }
 
 TEST(Score, SeparableExamplesGiveFiniteWeights) {
   std::vector<ScoreExample> examples;
   examples.reserve(50);
   for (int i = 0; i < 50; ++i) examples.push_back({score_terms(with_mass(i < 25 ? 0.01F : 1.0F)), i >= 25});
-  for (const float weight : fit_score_model(examples, ScoreModel{}).weights) EXPECT_LT(std::abs(weight), 20.0F);
+  for (const float weight : listed(fit_score_model(examples, ScoreModel{}).weights)) EXPECT_LT(std::abs(weight), 20.0F);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
   const TrainingView seen = toy::training_views().front();
   const TrainedView view = toy::remembered_view();
-  const LabFrame frame = make_lab_frame(seen.frame, seen.frame.colour, 1.0F);
+  const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const cv::Rect2f truth(cv::boundingRect(seen.mask));
   const float cell = (view.box[2] - view.box[0]) / Appearance::kBoxSide;
   for (const float sideways : {-2.0F, 2.0F}) {
@@ -29,7 +29,7 @@ TEST(ViewAlignment, AVoteBesideTheCentreFindsItsWayBack) {
 TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
   const TrainingView seen = toy::training_views().front();
   const TrainedView view = toy::remembered_view();
-  const LabFrame frame = make_lab_frame(seen.frame, seen.frame.colour, 1.0F);
+  const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const Eigen::Vector3f outside(3.0F, 0.0F, toy::kDistance);
   const PlacedView nothing = {0, outside, fit_view(view, outside, frame)};
   const PlacedView aligned = align_view({view}, nothing, frame);
@@ -40,7 +40,7 @@ TEST(ViewAlignment, WhereNothingIsBetterNothingMoves) {
 /// The votes meet beside the centre, where a plain grey view of the same shape agrees better than the right one.
 TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
   const TrainingView seen = toy::training_views().front();
-  const LabFrame frame = make_lab_frame(seen.frame, seen.frame.colour, 1.0F);
+  const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const TrainedView right = toy::remembered_view();
   const float cell = (right.box[2] - right.box[0]) / Appearance::kBoxSide;
   const Eigen::Vector3f beside(cell, 0.0F, toy::kDistance);
@@ -60,7 +60,7 @@ TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
 
 TEST(ViewAlignment, AnObjectOfAnotherSizeAgreesBetterInThatSize) {
   const TrainingView seen = toy::training_views().front();
-  const LabFrame frame = make_lab_frame(seen.frame, seen.frame.colour, 1.0F);
+  const LabFrame frame = toy::lab_frame(seen.frame, seen.frame.colour, 1.0F);
   const TrainedView right = toy::remembered_view();
   const Eigen::Vector3f centre(0.0F, 0.0F, toy::kDistance);
   const auto gain = [&](const TrainedView& view) {

@@ -113,7 +113,7 @@ TEST(ViewFit, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
 
 TEST(ViewFit, AViewMayBeTakenForOneOfALargerObject) {
   const RgbdFrame frame = tile_frame();
-  const LabFrame lab = make_lab_frame(frame, frame.colour, 1.0F);
+  const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
   const ViewFit own = fit_view(toy::remembered_view(), kCentre, lab);
   const ViewFit resized = fit_view(toy::resized(toy::remembered_view(), 0.5F), kCentre, lab, 2.0F);
   EXPECT_NEAR(resized.visible, own.visible, 0.01F);
@@ -151,7 +151,7 @@ TEST(ViewFit, ColoursAreAveragedOverNeighbours) {
   const RgbdFrame frame = tile_frame();
   cv::Mat speck = cv::Mat(9, 9, CV_8UC3, cv::Scalar(90, 90, 90));
   speck.at<cv::Vec3b>(4, 4) = {180, 180, 180};
-  const LabFrame in_lab = make_lab_frame(frame, speck, 0.5F);
+  const LabFrame in_lab = toy::lab_frame(frame, speck, 0.5F);
   cv::Mat lab;
   cv::cvtColor(cv::Mat(1, 1, CV_8UC3, cv::Scalar(100, 100, 100)), lab, cv::COLOR_BGR2Lab);
   EXPECT_EQ(in_lab.lab.at<cv::Vec3b>(4, 4), lab.at<cv::Vec3b>(0, 0));

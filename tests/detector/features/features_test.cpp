@@ -26,7 +26,7 @@ WorkingFrame flat_frame(float depth) {
 
 TEST(Features, MinimaLieBelowMaximaAndDiffer) {
   FeatureSettings settings;
-  settings.families = kIntensity | kDepthDerivatives | kDepthHog | kCurvature;  // depth itself wraps
+  settings.families = kIntensity | kDepthDerivatives | kDepthHog;  // depth itself wraps
   const FeatureImage image = compute_features(toy_frame(), settings, 1);
   const FeatureLayout layout(settings);
   for (const FeatureBlock& block : layout.blocks()) {

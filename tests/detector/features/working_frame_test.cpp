@@ -30,21 +30,51 @@ TEST(WorkingFrame, TheNearestSurfaceOfABlockCountsAndNeverAMixture) {
   EXPECT_FLOAT_EQ(working.filled_depth.at<float>(0, 0), 2.0F);
 }
 
-TEST(WorkingFrame, MemoryIsUsedAgainButNeverThatOfTheFrameItself) {
+TEST(WorkingImages, MemoryIsUsedAgainButNeverThatOfTheFrameItself) {
+  FeatureSettings whole;
+  whole.image_scale = 1.0F;
+  whole.far_distance = whole.max_distance;
+  FeatureSettings half = whole;
+  half.image_scale = 0.5F;
   const RgbdFrame small = flat_frame(8, 8, 2.0F);
-  WorkingFrame working;
-  make_working_frame(small, 1.0F, {}, working);
-  EXPECT_EQ(working.colour.data, small.colour.data);
+  WorkingImages images;
+  make_working_images(small, whole, 1, images);
+  ASSERT_EQ(images.frames.size(), 1U);
+  EXPECT_EQ(images.frames[0].colour.data, small.colour.data);
   RgbdFrame large = flat_frame(16, 16, 1.0F);
   large.colour.setTo(cv::Scalar(90, 90, 90));
-  make_working_frame(large, 0.5F, {}, working);
+  make_working_images(large, half, 1, images);
   EXPECT_EQ(small.colour.at<cv::Vec3b>(3, 3), cv::Vec3b(10, 20, 30));
-  EXPECT_EQ(working.colour.at<cv::Vec3b>(3, 3), cv::Vec3b(90, 90, 90));
-  const auto* colour = working.colour.data;
-  const auto* depth = working.filled_depth.data;
-  make_working_frame(large, 0.5F, {}, working);
-  EXPECT_EQ(working.colour.data, colour);
-  EXPECT_EQ(working.filled_depth.data, depth);
+  EXPECT_EQ(images.frames[0].colour.at<cv::Vec3b>(3, 3), cv::Vec3b(90, 90, 90));
+  const auto* colour = images.frames[0].colour.data;
+  const auto* depth = images.frames[0].filled_depth.data;
+  const auto* lab = images.lab.data;
+  make_working_images(large, half, 1, images);
+  EXPECT_EQ(images.frames[0].colour.data, colour);
+  EXPECT_EQ(images.frames[0].filled_depth.data, depth);
+  EXPECT_EQ(images.lab.data, lab);
+}
+
+TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
+  RgbdFrame frame = flat_frame(64, 48, 1.0F);
+  frame.depth.colRange(20, 30).setTo(kNone);
+  frame.colour.colRange(0, 13).setTo(cv::Scalar(200, 90, 10));
+  const std::vector<FeatureLevel> levels = feature_levels({});
+  for (const int threads : {1, 3}) {
+    WorkingImages images;
+    make_working_images(frame, {}, threads, images);
+    ASSERT_EQ(images.frames.size(), levels.size());
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      const WorkingFrame expected = make_working_frame(frame, levels[l].scale, {});
+      EXPECT_EQ(images.frames[l].camera, expected.camera);
+      EXPECT_EQ(cv::norm(images.frames[l].colour, expected.colour, cv::NORM_INF), 0.0);
+      EXPECT_EQ(cv::norm(images.frames[l].filled_depth, expected.filled_depth, cv::NORM_INF), 0.0);
+    }
+    cv::Mat blurred;
+    cv::Mat lab;
+    averaged_lab(images.frames[0].colour, blurred, lab);
+    EXPECT_EQ(cv::norm(images.lab, lab, cv::NORM_INF), 0.0);
+  }
 }
 
 TEST(WorkingFrame, ASinglePixelOfDepthIsEnoughForABlock) {

@@ -21,7 +21,7 @@ class ForestFile : public ::testing::Test {
     Profile profile = toy::quick_profile();
     profile.training.trees = 2;
     profile.training.max_depth = 8;
-    forest = train_forest(toy::training_views(), profile, [](const auto&) {});
+    forest = training::train_forest(toy::training_views(), profile, [](const auto&) {});
   }
   void SetUp() override {
     file = std::filesystem::temp_directory_path() / "houghstream_forest_file_test.forest";

@@ -18,7 +18,7 @@ PatchGrid wall(float distance, const PatchSpacing& spacing) {
   frame.camera = {128, 96, 100, 100, 63.5, 47.5};
   frame.filled_depth = cv::Mat(96, 128, CV_32FC1, cv::Scalar(distance));
   PatchGrid grid;
-  add_patches(frame, kEverything, 0, PatchSettings{}, spacing, grid);
+  add_patches(frame, kEverything, 0, {PatchSettings{}, spacing}, grid);
   return grid;
 }
 
@@ -44,58 +44,62 @@ double nearest_neighbour(const PatchGrid& grid) {
   return nearest;
 }
 
-TEST(PatchGrid, ItsSquaresHoldAllPatchesRowByRow) {
+TEST(PatchGrid, ItsRunsHoldAllPatchesInTheirOrderLevelByLevel) {
+  WorkingFrame frame = wall({96, 48, 60, 60, 47.5, 23.5});
+  frame.filled_depth(cv::Rect(10, 0, 60, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
+  PatchGrid grid;
+  for (const std::uint8_t level : {std::uint8_t{0}, std::uint8_t{1}}) {
+    add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, level, {PatchSettings{}, {1, 0.0F}}, grid);
+  }
+  ASSERT_EQ(grid.size(), 2U * 36U * 48U);
+  std::size_t next = 0;
+  for (const PatchRun& run : patch_runs(grid)) {
+    EXPECT_EQ(run.first, next);
+    EXPECT_GT(run.count, 0U);
+    EXPECT_EQ(grid.level[run.first], grid.level[run.first + run.count - 1]);
+    next += run.count;
+  }
+  EXPECT_EQ(next, grid.size());
+}
+
+TEST(PatchGrid, EveryPixelIsAPlaceOfAScaleSpaceSquareBySquare) {
   WorkingFrame frame;
   frame.filled_depth = cv::Mat(40, 70, CV_32FC1, cv::Scalar(1.0));
   PatchGrid grid;
   add_patches_everywhere(frame, {}, PatchSettings{}, 1, grid);
   ASSERT_EQ(grid.size(), 40U * 70U);
-  ASSERT_EQ(grid.squares.size(), 6U);
-  std::size_t next = 0;
-  for (const PatchRun& square : patch_runs(grid)) {
-    EXPECT_EQ(square.first, next);
-    for (std::size_t i = 0; i < square.count; ++i, ++next) {
-      const int width = std::min(kSquareSide, 70 - grid.x[square.first]);
-      EXPECT_EQ(grid.x[next], grid.x[square.first] + static_cast<int>(i) % width);
-      EXPECT_EQ(grid.y[next], grid.y[square.first] + static_cast<int>(i) / width);
-    }
-  }
-  EXPECT_EQ(next, grid.size());
+  EXPECT_EQ(places(grid).size(), grid.size());
+  EXPECT_EQ(grid.x[32], 0);  // the second row of the first square
+  EXPECT_EQ(grid.y[32], 1);
+  EXPECT_EQ(grid.x[32 * 32], 32);
 }
 
-TEST(PatchGrid, SquaresHaveNoPatchesWhereThereIsNoDepth) {
-  WorkingFrame frame = wall({96, 48, 60, 60, 47.5, 23.5});
-  frame.filled_depth(cv::Rect(10, 0, 60, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
+TEST(PatchGrid, TilesAreWantedAsFarAsPatchesLook) {
+  WorkingImages images;
+  images.levels = {{0.5F, 1.0F, 0.0F, 3.0F}, {1.0F, 1.0F, 3.0F, 9.0F}};
+  images.frames = {wall({96, 48, 60, 60, 47.5, 23.5}), wall({192, 96, 120, 120, 95.5, 47.5})};
+  for (WorkingFrame& frame : images.frames) frame.colour.create(frame.filled_depth.size(), CV_8UC3);
+  images.frames[0].filled_depth.colRange(20, 96).setTo(std::numeric_limits<float>::quiet_NaN());
   PatchGrid grid;
-  add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 0, PatchSettings{}, {1, 0.0F}, grid);
-  add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 1, PatchSettings{}, {1, 0.0F}, grid);
-  ASSERT_EQ(grid.size(), 2U * 36U * 48U);
-  const std::vector<PatchRun> runs = patch_runs(grid);
-  ASSERT_EQ(runs.size(), 2U * 4U);
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    EXPECT_EQ(runs[r].first, r == 0 ? 0 : runs[r - 1].first + runs[r - 1].count);
-    EXPECT_EQ(runs[r].count, (r % 2 == 0 ? 10U : 26U) * (r % 4 < 2 ? 32U : 16U)) << r;
-    EXPECT_EQ(grid.level[runs[r].first], r / 4);
-  }
-}
-
-TEST(PatchGrid, HasNoSquaresWherePatchesStandApart) {
-  WorkingFrame frame = wall({64, 48, 60, 60, 31.5, 23.5});
-  for (const PatchSpacing spacing : {PatchSpacing{2, 0.0F}, PatchSpacing{1, 0.2F}}) {
-    PatchGrid grid;
-    add_patches(frame, {0.5F, 1.0F, 0.0F, 3.0F}, 0, PatchSettings{}, spacing, grid);
-    EXPECT_GT(grid.size(), 0U);
-    EXPECT_TRUE(grid.squares.empty());
-  }
+  place_patches(images, {PatchSettings{}, {2, 0.0F}}, grid);
+  place_patches(images, {PatchSettings{}, {2, 0.0F}}, grid);  // in the same memory
+  ASSERT_EQ(grid.size(), 10U * 24U);
+  ASSERT_EQ(grid.tiles.size(), 2U);
+  std::vector<cv::Rect> near;
+  std::vector<cv::Rect> far;
+  grid.tiles[0].list_parts(0, 128, near);
+  grid.tiles[1].list_parts(0, 128, far);
+  EXPECT_EQ(near, (std::vector<cv::Rect>{{0, 0, 32, 32}}));  // patches of 10 steps look less than a pixel far
+  EXPECT_TRUE(far.empty());
 }
 
 TEST(PatchGrid, StandsOnDepthThatItsLevelHolds) {
   WorkingFrame frame = wall({64, 48, 60, 60, 31.5, 23.5});
   frame.filled_depth(cv::Rect(0, 0, 32, 48)).setTo(std::numeric_limits<float>::quiet_NaN());
   PatchGrid grid;
-  add_patches(frame, {0.5F, 1.0F, 0.0F, 1.9F}, 0, PatchSettings{}, {2, 0.0F}, grid);
+  add_patches(frame, {0.5F, 1.0F, 0.0F, 1.9F}, 0, {PatchSettings{}, {2, 0.0F}}, grid);
   EXPECT_EQ(grid.size(), 0U);
-  add_patches(frame, {0.5F, 1.0F, 1.9F, 3.0F}, 1, PatchSettings{}, {2, 0.0F}, grid);
+  add_patches(frame, {0.5F, 1.0F, 1.9F, 3.0F}, 1, {PatchSettings{}, {2, 0.0F}}, grid);
   ASSERT_EQ(grid.size(), 16U * 24U);
   EXPECT_GE(*std::min_element(grid.x.begin(), grid.x.end()), 32);
   EXPECT_EQ(grid.level[0], 1);

@@ -5,7 +5,7 @@
 #include "detector/forest/forest.hpp"
 #include "detector/training/tree_trainer.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 constexpr float kArea = 0.02F;
@@ -87,4 +87,4 @@ TEST(Calibration, AnyNumberOfThreadsGivesTheSame) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

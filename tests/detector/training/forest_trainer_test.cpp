@@ -14,7 +14,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 const auto kQuiet = [](const std::string&) {};
@@ -125,4 +125,4 @@ TEST(AddObjects, AnObjectThatIsKnownIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -7,9 +7,10 @@
 
 #include "detector/evidence/score.hpp"
 #include "detector/training/forest_trainer.hpp"
+#include "tests/detector/listed_terms.hpp"
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 struct Toys {
@@ -80,9 +81,9 @@ TEST(ScoreTraining, AnyNumberOfThreadsGivesTheSameModel) {
   const Forest serial = with_score_trained(toys, forest, 1);
   const Forest parallel = with_score_trained(toys, forest, 3);
   for (std::size_t c = 0; c < serial.classes.size(); ++c) {
-    EXPECT_EQ(serial.classes[c].score_model.weights, parallel.classes[c].score_model.weights);
+    EXPECT_EQ(listed(serial.classes[c].score_model.weights), listed(parallel.classes[c].score_model.weights));
   }
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -8,7 +8,7 @@
 
 #include "tests/detector/planted_set.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 std::vector<std::uint32_t> every_sample(const TrainingSet& set) {
@@ -256,4 +256,4 @@ TEST(SplitSearch, TestsStayInsideThePatchAndWrapDepthOnly) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -7,7 +7,7 @@
 #include "detector/profiles.hpp"
 #include "tests/detector/planted_set.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 TrainingSettings quick() {
@@ -136,4 +136,4 @@ TEST(TreeTrainer, WhatAPatchIsWorthToAnObjectDoesNotDependOnHowManyOthersWereTau
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

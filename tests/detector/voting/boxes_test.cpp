@@ -22,7 +22,8 @@ cv::Rect2f box_of(const cv::Rect& supported) {
       patches.cell_px.emplace_back(x, y, 2, 2);
     }
   }
-  return backprojected_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5});
+  BoxMemory memory;
+  return backprojected_box(forest, hypothesis, patches, Camera{640, 480, 500, 500, 319.5, 239.5}, memory);
 }
 
 TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
@@ -39,7 +40,8 @@ TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
 }
 
 TEST(Boxes, WithoutSupportThereIsNoBox) {
-  EXPECT_EQ(backprojected_box({}, {}, {}, kCamera), cv::Rect2f());
+  BoxMemory memory;
+  EXPECT_EQ(backprojected_box({}, {}, {}, kCamera, memory), cv::Rect2f());
 }
 
 Detection boxed(float score, float x) {
@@ -52,7 +54,7 @@ Detection boxed(float score, float x) {
 TEST(Boxes, OfOverlappingBoxesTheStrongerStays) {
   // 0 and 20 overlap by IoU 0.67, 20 and 40 too, 0 and 40 by 0.43.
   const std::vector<Detection> kept =
-      suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, DetectionSettings{});
+      suppress_overlaps({boxed(0.5F, 20), boxed(0.4F, 40), boxed(0.9F, 0)}, SuppressionSettings{});
   ASSERT_EQ(kept.size(), 2U);
   EXPECT_EQ(kept[0].score, 0.9F);
   EXPECT_EQ(kept[1].score, 0.4F);  // only the dropped one overlapped it
@@ -61,10 +63,10 @@ TEST(Boxes, OfOverlappingBoxesTheStrongerStays) {
 TEST(Boxes, AnotherClassMustBeSignificantlyStrongerToSuppress) {
   Detection other = boxed(0.3F, 10);
   other.class_id = 2;
-  EXPECT_EQ(suppress_overlaps({boxed(0.55F, 0), other}, DetectionSettings{}).size(), 2U);
-  EXPECT_EQ(suppress_overlaps({boxed(0.7F, 0), other}, DetectionSettings{}).size(), 1U);
+  EXPECT_EQ(suppress_overlaps({boxed(0.55F, 0), other}, SuppressionSettings{}).size(), 2U);
+  EXPECT_EQ(suppress_overlaps({boxed(0.7F, 0), other}, SuppressionSettings{}).size(), 1U);
   other.score = 0.1F;  // five times weaker, but than something that nobody would report
-  EXPECT_EQ(suppress_overlaps({boxed(0.45F, 0), other}, DetectionSettings{}).size(), 2U);
+  EXPECT_EQ(suppress_overlaps({boxed(0.45F, 0), other}, SuppressionSettings{}).size(), 2U);
 }
 
 }  // namespace

@@ -41,13 +41,15 @@ void add_cluster(const Eigen::Vector3f& centre, float area, PatchGrid& patches) 
 std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
   const Forest forest = centre_forest();
   const std::vector<std::int32_t> leaves(patches.size(), 0);
-  PatchBeliefs beliefs(forest, 1, 0.0F);
+  PatchPosteriors posteriors(forest, 1, 0.0F);
   std::vector<std::uint32_t> all(patches.size());
   std::iota(all.begin(), all.end(), 0U);
-  beliefs.note({0, all.size(), all.data(), leaves.data()});
-  HoughSpace space;
-  cast_votes(forest, 0, patches, beliefs, kCamera, {}, space);
-  return find_hypotheses(forest, space, patches, kCamera, least_mass, {});
+  posteriors.note({0, all.size(), all.data(), leaves.data()});
+  const VotingSettings settings;
+  const VotingInput input{forest, patches, posteriors, kCamera, settings};
+  VotingMemory::Worker own;
+  cast_votes(input, 0, own.casting, own.space);
+  return class_hypotheses(input, 0, least_mass, settings.candidates_per_class, own);
 }
 
 TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
@@ -61,7 +63,7 @@ TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
   EXPECT_LT((found[0].centre_camera - right).norm(), 0.001F) << found[0].centre_camera.transpose();
   EXPECT_LT((found[1].centre_camera - left).norm(), 0.001F) << found[1].centre_camera.transpose();
   EXPECT_EQ(found[0].vote_count, 4);
-  const float kernel = vote_kernel(0.004F * 0.004F, DetectionSettings{}.vote_sigma);
+  const float kernel = vote_kernel(0.004F * 0.004F, VotingSettings{}.vote_sigma);
   EXPECT_NEAR(found[0].mass, 4 * 0.0002F * kernel, 1e-6F);
   EXPECT_NEAR(found[0].weight, 4 * kernel, 0.01F);
   ASSERT_EQ(found[0].patches.size(), 4U);

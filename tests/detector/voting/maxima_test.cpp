@@ -32,41 +32,43 @@ HoughSpace space_of(const std::vector<Placed>& placed) {
   return space;
 }
 
+std::vector<Eigen::Vector3f> maxima_of(const HoughSpace& space, int limit = 24) {
+  MaximaMemory memory;
+  return find_maxima(space, kCamera, {}, limit, memory);
+}
+
 TEST(Maxima, TheHighestComesFirst) {
-  const std::vector<Eigen::Vector3f> found =
-      find_maxima(space_of({{10, 10, 1.0F, 0.2F}, {60, 10, 1.0F, 0.5F}}), kCamera, {});
+  const std::vector<Eigen::Vector3f> found = maxima_of(space_of({{10, 10, 1.0F, 0.2F}, {60, 10, 1.0F, 0.5F}}));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_GT(found[0].x(), 0.2F);
   EXPECT_LT(found[1].x(), -0.2F);
 }
 
 TEST(Maxima, OfEqualNeighboursTheFirstCounts) {
-  EXPECT_EQ(find_maxima(space_of({{20, 10, 1.0F, 0.2F}, {21, 10, 1.5F, 0.2F}}), kCamera, {}).size(), 1U);
+  EXPECT_EQ(maxima_of(space_of({{20, 10, 1.0F, 0.2F}, {21, 10, 1.5F, 0.2F}})).size(), 1U);
 }
 
 TEST(Maxima, ThoseThatMeetAreOne) {
   // two cells apart: 3 cm, within reach of each other
-  EXPECT_EQ(find_maxima(space_of({{20, 10, 1.0F, 0.2F}, {22, 10, 1.0F, 0.2F}}), kCamera, {}).size(), 1U);
+  EXPECT_EQ(maxima_of(space_of({{20, 10, 1.0F, 0.2F}, {22, 10, 1.0F, 0.2F}})).size(), 1U);
 }
 
 TEST(Maxima, TheMedianDepthIsWhereTheClimbStarts) {
   const HoughSpace space = space_of({{20, 10, 0.7F, 0.1F}, {20, 10, 1.2F, 0.5F}, {20, 10, 1.4F, 0.2F}});
-  const std::vector<Eigen::Vector3f> found = find_maxima(space, kCamera, {});
+  const std::vector<Eigen::Vector3f> found = maxima_of(space);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].z(), 1.2F, 1e-3F);
 }
 
 TEST(Maxima, LowOnesAndTooManyAreNotLookedAt) {
   const HoughSpace space = space_of({{10, 10, 1.0F, 1.0F}, {40, 10, 1.0F, 0.5F}, {70, 10, 1.0F, 0.05F}});
-  EXPECT_EQ(find_maxima(space, kCamera, {}).size(), 2U);
-  DetectionSettings settings;
-  settings.candidates_per_class = 1;
-  EXPECT_EQ(find_maxima(space, kCamera, settings).size(), 1U);
-  EXPECT_TRUE(find_maxima(space_of({}), kCamera, {}).empty());
+  EXPECT_EQ(maxima_of(space).size(), 2U);
+  EXPECT_EQ(maxima_of(space, 1).size(), 1U);
+  EXPECT_TRUE(maxima_of(space_of({})).empty());
 }
 
 TEST(Maxima, OfManyClassesFewerOfEachAreLookedAt) {
-  DetectionSettings settings;
+  VotingSettings settings;
   settings.candidates_per_class = 24;
   EXPECT_EQ(candidates_of_each(settings, 1), 24);
   EXPECT_EQ(candidates_of_each(settings, 4), 24);

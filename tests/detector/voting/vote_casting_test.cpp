@@ -29,7 +29,7 @@ Forest random_forest(Random& random) {
   return forest;
 }
 
-/// One vote, readably.
+/// One vote, as vote casting is to compute it.
 Vote vote_of(const Forest& forest, const LeafClass& entry, const LeafVote& leaf_vote, const Eigen::Vector3f& point) {
   const float share = 1.0F / static_cast<float>(forest.roots.size());
   const Eigen::Matrix3f R = ray_rotation(point);

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -55,6 +57,35 @@ TEST(ParallelFor, KeepsItsThreads) {
     });
   }
   EXPECT_LE(ids.size(), 2U);
+}
+
+TEST(ParallelForWorkers, AWorkerDoesOneItemAtATime) {
+  for (const int threads : {0, 1, 2, 5}) {
+    const auto workers = static_cast<std::size_t>(std::max(threads, 1));
+    std::vector<std::atomic<int>> at_work(workers);
+    std::vector<int> by_worker(workers, 0);  // not atomic: each counts its own
+    parallel_for_workers(threads, 1000, [&](int worker, int) {
+      ASSERT_GE(worker, 0);
+      ASSERT_LT(worker, static_cast<int>(workers));
+      const auto w = static_cast<std::size_t>(worker);
+      EXPECT_EQ(at_work[w]++, 0);
+      ++by_worker[w];
+      --at_work[w];
+    });
+    EXPECT_EQ(std::accumulate(by_worker.begin(), by_worker.end(), 0), 1000) << threads << " threads";
+  }
+}
+
+TEST(PerWorker, MemoryStaysWhereItIsWhenThereAreMore) {
+  PerWorker<std::vector<int>> memory;
+  memory.make_room(0);  // one worker works at any rate
+  memory[0].assign(10, 7);
+  const int* const before = memory[0].data();
+  memory.make_room(4);
+  EXPECT_EQ(memory[0].data(), before);
+  EXPECT_TRUE(memory[3].empty());
+  memory.make_room(2);
+  EXPECT_TRUE(memory[3].empty());
 }
 
 }  // namespace

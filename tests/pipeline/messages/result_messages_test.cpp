@@ -26,7 +26,7 @@ Detections make_detections() {
   Detections all;
   all.frame = {"OPENNI_FRAME", 77};
   all.detections = {mug};
-  all.stages = {{"capture.read", 5}, {"detect.forest", 9000}};
+  all.stages = {{"capture.read", 5}, {"detect.leaves", 9000}};
   return all;
 }
 
@@ -78,7 +78,7 @@ TEST(ResultMessages, DetectionsComeBack) {
   EXPECT_EQ(mug.rotations[0].R_camera_object.coeffs(), sent.detections[0].rotations[0].R_camera_object.coeffs());
   EXPECT_EQ(mug.rotations[1].weight, 1.0F);
   ASSERT_EQ(back.stages.size(), 2U);
-  EXPECT_EQ(back.stages[1].stage, "detect.forest");
+  EXPECT_EQ(back.stages[1].stage, "detect.leaves");
 }
 
 TEST(ResultMessages, EmptyResultsAreResults) {

@@ -94,7 +94,7 @@ TEST(WireCheck, DamagedResultsNeverCrash) {
   detection.class_name = "bowl";
   detection.rotations.resize(3);
   detections.detections = {detection};
-  detections.stages = {{"detect.forest", 3}};
+  detections.stages = {{"detect.leaves", 3}};
   const std::vector<std::uint8_t> whole = encode_message(to_message(detections));
   EXPECT_EQ(decode_message<detections_t>(view(whole)).n_detections, 1);
   for (std::size_t i = 0; i < whole.size(); ++i) {

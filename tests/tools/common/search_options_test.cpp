@@ -27,27 +27,39 @@ TEST(SearchOptions, WithoutOptionsAForestIsSearchedAsItsProfileSays) {
   for (const std::string& name : profile_names()) {
     const DetectionSettings expected = make_profile(name).detection;
     const DetectionSettings settings = parsed({}).settings_for(forest_of(name));
-    EXPECT_EQ(settings.stride, expected.stride) << name;
-    EXPECT_EQ(settings.patch_spacing, expected.patch_spacing) << name;
-    EXPECT_EQ(settings.threshold, expected.threshold) << name;
-    EXPECT_EQ(settings.min_mass_share, expected.min_mass_share) << name;
-    EXPECT_EQ(settings.min_class_share, expected.min_class_share) << name;
-    EXPECT_EQ(settings.vote_sigma, expected.vote_sigma) << name;
-    EXPECT_FALSE(settings.readable);
+    EXPECT_EQ(settings.spacing.stride, expected.spacing.stride) << name;
+    EXPECT_EQ(settings.spacing.metres, expected.spacing.metres) << name;
+    EXPECT_EQ(settings.evidence.threshold, expected.evidence.threshold) << name;
+    EXPECT_EQ(settings.voting.min_mass_share, expected.voting.min_mass_share) << name;
+    EXPECT_EQ(settings.leaves.min_class_share, expected.leaves.min_class_share) << name;
+    EXPECT_EQ(settings.voting.vote_sigma, expected.voting.vote_sigma) << name;
   }
 }
 
 TEST(SearchOptions, WhatIsAskedForReplacesTheProfilesOwn) {
   SearchOptions options = parsed({"--threads", "3", "--stride", "4", "--threshold", "0.25"});
   options.min_mass_share = 0.07F;
-  options.readable = true;
   const DetectionSettings settings = options.settings_for(forest_of("gall"));
   EXPECT_EQ(settings.threads, 3);
-  EXPECT_EQ(settings.stride, 4);
-  EXPECT_EQ(settings.patch_spacing, 0.0F);
-  EXPECT_EQ(settings.threshold, 0.25F);
-  EXPECT_EQ(settings.min_mass_share, 0.07F);
-  EXPECT_TRUE(settings.readable);
+  EXPECT_EQ(settings.spacing.stride, 4);
+  EXPECT_EQ(settings.spacing.metres, 0.0F);
+  EXPECT_EQ(settings.evidence.threshold, 0.25F);
+  EXPECT_EQ(settings.voting.min_mass_share, 0.07F);
+}
+
+TEST(SearchOptions, TheReferenceEngineIsOfferedWhereTheProgramHasOne) {
+  EXPECT_EQ(&parsed({}).engine(), &fast_engine());
+  SearchOptions options;
+  CommandLine without("words", "name");
+  add_search_options(without, options);
+  EXPECT_NE(without.parse({"--reference"}).value_or(0), 0);
+  static constexpr Engine kOther = {nullptr, nullptr};
+  Extensions some;
+  some.reference_engine = &kOther;
+  extend_detector(some);
+  EXPECT_EQ(&parsed({"--reference"}).engine(), &kOther);
+  EXPECT_EQ(&parsed({}).engine(), &fast_engine());
+  extend_detector({});
 }
 
 TEST(SearchOptions, AbsurdValuesAreRefused) {

@@ -98,7 +98,7 @@ TEST(BopEstimates, CarryTheIdsOfTheScene) {
   refused.T_camera_object.reset();
   frames[1].poses = ObjectPoses{{"", frames[1].utime},
                                 {refused, pose_of("mug"), pose_of("stranger")},
-                                {{"detect.forest", 200000}, {"pose", 50000}}};
+                                {{"detect.leaves", 200000}, {"pose", 50000}}};
   const std::vector<BopEstimate> estimates = bop_estimates(frames, scene, {{3, "mug"}});
   ASSERT_EQ(estimates.size(), 1U) << "no pose, and no id";
   EXPECT_EQ(estimates[0].scene_id, 48);

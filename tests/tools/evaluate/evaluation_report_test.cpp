@@ -36,12 +36,12 @@ std::vector<EvaluatedFrame> two_frames() {
     frames[i].objects = {mug};
   }
   frames[0].detections =
-      Detections{{}, {detect("mug", kBox, 0.9F), detect("bottle", kBox, 0.4F)}, {{"detect.forest", 4000}}};
+      Detections{{}, {detect("mug", kBox, 0.9F), detect("bottle", kBox, 0.4F)}, {{"detect.leaves", 4000}}};
   ObjectPose pose;
   pose.detection_index = 0;
   pose.status = PoseStatus::kValid;
   pose.T_camera_object = Eigen::Isometry3d::Identity();
-  frames[0].poses = ObjectPoses{{}, {pose}, {{"detect.forest", 4000}, {"pose.icp", 2000}}};
+  frames[0].poses = ObjectPoses{{}, {pose}, {{"detect.leaves", 4000}, {"pose.icp", 2000}}};
   return frames;
 }
 

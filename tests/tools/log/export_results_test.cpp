@@ -28,7 +28,7 @@ Detections make_detections(std::int64_t utime, int count, const std::string& cam
     if (i > 0) d.centre_camera.setConstant(std::numeric_limits<float>::quiet_NaN());
     found.detections.push_back(d);
   }
-  found.stages = {{"detect.forest", 1000}};
+  found.stages = {{"detect.leaves", 1000}};
   return found;
 }
 
@@ -43,7 +43,7 @@ ObjectPoses make_poses(std::int64_t utime, const std::string& camera = "OPENNI_F
   pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.25, 2.0));
   pose.quality = 0.875F;
   poses.poses.push_back(pose);
-  poses.stages = {{"detect.forest", 1000}, {"pose.refinement", 500}};
+  poses.stages = {{"detect.leaves", 1000}, {"pose.refinement", 500}};
   return poses;
 }
 

@@ -2,6 +2,7 @@
 
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
+#include "detector/stages.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
@@ -16,7 +17,7 @@ struct FailureOptions {
   std::string forest;
   std::vector<std::string> scenes;
   std::string out;
-  float operating_score = DetectionSettings{}.threshold;
+  float operating_score = EvidenceSettings{}.threshold;
   int every = 1;
   int count = 8;
   int columns = 4;
@@ -27,8 +28,9 @@ struct FailureOptions {
 std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& detector, const FailureOptions& options) {
   const BopScene scene(folder);
   std::vector<EvaluatedFrame> frames = every_nth(read_truth(scene, find_bop_names(folder)), options.every);
+  DetectorWorkspace workspace;
   for (std::size_t f = 0; f < frames.size(); ++f) {
-    frames[f].detections = detector.detect(scene.read_frame(f * static_cast<std::size_t>(options.every)));
+    frames[f].detections = detector.detect(scene.read_frame(f * static_cast<std::size_t>(options.every)), workspace);
   }
   std::vector<std::string> classes;
   for (const ObjectClass& known : detector.forest().classes) classes.push_back(known.name);
@@ -47,7 +49,7 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
 void run(const FailureOptions& options) {
   Forest forest = load_forest(options.forest);
   const DetectionSettings settings = options.search.settings_for(forest);
-  const Detector detector(std::move(forest), settings);
+  const Detector detector(std::move(forest), settings, options.search.engine());
   std::vector<cv::Mat> tiles;
   for (const std::string& scene : options.scenes) {
     for (const cv::Mat& tile : failures_in(scene, detector, options)) tiles.push_back(tile);

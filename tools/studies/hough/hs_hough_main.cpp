@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "detector/baseline/hough_images.hpp"
+#include "detector/baseline/use_baseline.hpp"
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "drivers/files/image_file.hpp"
@@ -41,12 +42,14 @@ std::vector<NamedBox> true_boxes(const EvaluatedFrame& frame, const Forest& fore
   return boxes;
 }
 
-std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const DetectionSettings& settings) {
-  const Detections found = Detector(forest, settings).detect(frame);
+std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const SearchOptions& options) {
+  const DetectionSettings settings = options.settings_for(forest);
+  const Search by{forest, settings, options.engine()};
+  const Detections found = Detector(forest, settings, by.engine).detect(frame);
   std::vector<HoughPanel> panels;
   for (std::size_t c = 0; c < forest.classes.size(); ++c) {
     const ObjectClass& object = forest.classes[c];
-    HoughPanel panel{object.name, hough_image(forest, static_cast<int>(c), frame, settings), {}};
+    HoughPanel panel{object.name, baseline::hough_image(by, static_cast<int>(c), frame), {}};
     for (const Detection& detection : found.detections) {
       if (detection.class_id != object.class_id) continue;
       panel.found.push_back({detection.box_px, fmt::format("{:.2f}", detection.score), class_colour(object.class_id)});
@@ -65,13 +68,14 @@ void run(const HoughOptions& options) {
   const EvaluatedFrame truth = read_truth(scene, find_bop_names(options.scene))[index];
   const Forest forest = load_forest(options.forest);
   const RgbdFrame frame = scene.read_frame(index);
-  const std::vector<HoughPanel> panels = search(forest, frame, options.search.settings_for(forest));
+  const std::vector<HoughPanel> panels = search(forest, frame, options.search);
   write_png(draw_hough_panels(frame.colour, true_boxes(truth, forest), panels), options.out);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  baseline::use_baseline();
   CommandLine app("Draws the votes for each class over a frame of a scene, with what was found and what is true",
                   "hs-hough");
   HoughOptions options;

@@ -6,6 +6,7 @@
 
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
+#include "detector/stages.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/baseline/register_pcl.hpp"
@@ -56,7 +57,8 @@ std::string name_of(const std::string& scene_folder) {
 
 DetectedScene detect_scene(const std::string& name, const BopScene& scene, const Detector& detector, int every) {
   DetectedScene out{name, scene, every_nth(read_truth(scene, find_bop_names(scene.folder())), every)};
-  for (EvaluatedFrame& frame : out.frames) frame.detections = detector.detect(scene.read_frame(frame.image));
+  DetectorWorkspace workspace;
+  for (EvaluatedFrame& frame : out.frames) frame.detections = detector.detect(scene.read_frame(frame.image), workspace);
   log_info("{}: {} frames", name, out.frames.size());
   return out;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detector/stages.hpp"
 #include "drivers/files/frame_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/studies/recorded/pose_sheets.hpp"
@@ -75,10 +76,11 @@ OrderedJson to_json(const ComparedFrame& frame) {
 RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const BenchedMethod& method,
                          const ComparedObject& object) {
   RealBench bench;
+  DetectorWorkspace workspace;
   std::int64_t utime = 0;
   for (const FramePair& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, drawn.camera, ++utime);
-    const Detections detections = method.detector.detect(frame);
+    const Detections detections = method.detector.detect(frame, workspace);
     const ObjectPoses poses = method.estimator.estimate(frame, detections);
     const ObjectPoses withheld = withheld_poses(detections, poses, method.unchecked.estimate(frame, detections),
                                                 boxes_of(pair.name, drawn.frames));

@@ -8,9 +8,9 @@
 namespace houghstream {
 namespace {
 
-EvaluatedFrame to_truth(const ValidationFrame& composed, const std::vector<const TrainingView*>& shown) {
+EvaluatedFrame to_truth(const training::ValidationFrame& composed, const std::vector<const TrainingView*>& shown) {
   EvaluatedFrame truth;
-  for (const ValidationFrame::Object& object : composed.objects) {
+  for (const training::ValidationFrame::Object& object : composed.objects) {
     NamedObject named;
     named.class_name = shown[object.view]->class_name;
     named.truth.box_visible_px = object.box_visible_px;
@@ -26,7 +26,7 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
                                   int pictures) {
   constexpr int kShownOneIn = 4;
   constexpr std::uint64_t kSeed = 20110701;
-  constexpr ComposedThings kThings = {4, 2};
+  constexpr training::ComposedThings kThings = {4, 2};
   ComposedExamples out;
   std::vector<const TrainingView*> shown;
   std::vector<const TrainingView*> rooms;
@@ -43,13 +43,13 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
   }
   require(!shown.empty() && !rooms.empty(), "{} views to show in {} background views, expected some of each",
           shown.size(), rooms.size());
-  TrainingSettings settings;
+  training::TrainingSettings settings;
   settings.min_distance = min_distance;
   settings.max_distance = max_distance;
   for (std::size_t f = 0; f < static_cast<std::size_t>(pictures); ++f) {
     Random random = Random::for_item(kSeed, f);
-    const ValidationFrame composed =
-        make_validation_frame(shown, rooms[f % rooms.size()]->frame, kThings, settings, random);
+    const training::ValidationFrame composed =
+        training::make_validation_frame(shown, rooms[f % rooms.size()]->frame, kThings, settings, random);
     out.frames.push_back(composed.frame);
     out.truth.push_back(to_truth(composed, shown));
   }

@@ -10,6 +10,7 @@
 
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
+#include "detector/stages.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
 
@@ -56,8 +57,8 @@ void grant(const std::string& wish, const std::string& text, Wishes& wishes, Con
   const std::size_t equals = std::min(wish.find('='), wish.size());
   const std::string name = wish.substr(0, equals);
   const std::string value = wish.substr(std::min(equals + 1, wish.size()));
-  if (wish == "readable") {
-    wishes.search.readable = true;
+  if (wish == "reference") {
+    wishes.search.reference = true;
   } else if (name == "threads") {
     wishes.search.threads = positive_count(value, text);
   } else if (name == "trees") {
@@ -73,7 +74,7 @@ void grant(const std::string& wish, const std::string& text, Wishes& wishes, Con
   } else if (name == "set") {
     contender.instruction_set = instruction_set(value);
   } else {
-    fail("{}: '{}', expected threads=N, trees=N, frames=N, scale=X, threshold=X, min-mass=X, set=NAME or readable",
+    fail("{}: '{}', expected threads=N, trees=N, frames=N, scale=X, threshold=X, min-mass=X, set=NAME or reference",
          text, wish);
   }
 }
@@ -95,8 +96,9 @@ Contender parse_contender(const std::string& text) {
   require(trees <= forest.roots.size(), "{}: the forest has {} trees", text, forest.roots.size());
   if (trees > 0) forest.roots.resize(trees);
   const DetectionSettings settings = wishes.search.settings_for(forest);
-  const auto detector = std::make_shared<const Detector>(std::move(forest), settings);
-  contender.detect = [detector](const RgbdFrame& frame) { return detector->detect(frame); };
+  const auto detector = std::make_shared<const Detector>(std::move(forest), settings, wishes.search.engine());
+  const auto workspace = std::make_shared<DetectorWorkspace>();
+  contender.detect = [detector, workspace](const RgbdFrame& frame) { return detector->detect(frame, *workspace); };
   return contender;
 }
 

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <memory>
 
+#include "detector/baseline/use_baseline.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -62,12 +63,13 @@ void run(const SpeedOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  baseline::use_baseline();
   CommandLine app("Measures what detectors take for the frames of a scene, side by side", "hs-bench-speed");
   SpeedOptions options;
   app.add_option("--scene", options.scene, "BOP scene folder");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--detector", options.detectors,
-                 "NAME=FOREST[,threads=N][,readable][,set=AVX2][,frames=N][,trees=N][,scale=X]"
+                 "NAME=FOREST[,threads=N][,reference][,set=AVX2][,frames=N][,trees=N][,scale=X]"
                  "[,threshold=X][,min-mass=X]; may be given again");
   app.add_option("--linemod-views", options.linemod_views.views, "measure LINEMOD taught by these views: bop:DIR");
   app.add_option("--linemod-frames", options.linemod_frames, "so many frames only");

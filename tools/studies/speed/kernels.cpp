@@ -2,10 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "detector/features/features.hpp"
-#include "detector/forest/seen_patches.hpp"
-#include "detector/voting/hypotheses.hpp"
-#include "detector/voting/voting.hpp"
+#include "detector/stages.hpp"
 #include "pipeline/messages/codecs.hpp"
 
 namespace houghstream {
@@ -47,29 +44,36 @@ void register_features(const RgbdFrame& frame, const Forest& forest) {
   });
 }
 
+/// The stages of Detector::detect from the images to the leaves.
+void see(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
+  make_working_images(search, frame, workspace);
+  compute_features(search, workspace);
+  find_posteriors(search, workspace);
+}
+
 void register_search(const RgbdFrame& frame, const Forest& forest, const DetectionSettings& settings) {
-  add("resize_features_forest", [&frame, &forest, &settings] {
-    static SeenPatches seen;  // its memory is kept, as the detector's is
-    StageClock clock;
-    classify_patches(forest, frame, settings, clock, seen);
-  });
-  static SeenPatches seen;
-  StageClock clock;
-  classify_patches(forest, frame, settings, clock, seen);
+  static DetectorWorkspace workspace;  // whose memory is kept, as the detector's is
+  add("resize_features_leaves", [&frame, &forest, &settings] { see({forest, settings}, frame, workspace); });
+  static DetectorWorkspace seen;
+  see({forest, settings}, frame, seen);
   add("votes", [&forest, &settings] {
-    static HoughSpace space;
+    static VotingMemory::Worker own;
+    const VotingInput input = voting_input({forest, settings}, seen);
     for (std::size_t c = 0; c < forest.classes.size(); ++c) {
-      cast_votes(forest, static_cast<int>(c), seen.grid, seen.beliefs, seen.hough_camera, settings, space);
+      cast_votes(input, static_cast<int>(c), own.casting, own.space);
     }
   });
-  static std::vector<HoughSpace> spaces(forest.classes.size());
-  for (std::size_t c = 0; c < spaces.size(); ++c) {
-    cast_votes(forest, static_cast<int>(c), seen.grid, seen.beliefs, seen.hough_camera, settings, spaces[c]);
+  static std::vector<VotingMemory::Worker> by_class(forest.classes.size());
+  const VotingInput input = voting_input({forest, settings}, seen);
+  for (std::size_t c = 0; c < by_class.size(); ++c) {
+    cast_votes(input, static_cast<int>(c), by_class[c].casting, by_class[c].space);
   }
   add("hypotheses", [&forest, &settings] {
-    for (std::size_t c = 0; c < spaces.size(); ++c) {
-      const float least = settings.min_mass_share * forest.classes[c].expected_mass;
-      benchmark::DoNotOptimize(find_hypotheses(forest, spaces[c], seen.grid, seen.hough_camera, least, settings));
+    const VotingInput again = voting_input({forest, settings}, seen);
+    for (std::size_t c = 0; c < by_class.size(); ++c) {
+      const float least = settings.voting.min_mass_share * forest.classes[c].expected_mass;
+      const int limit = settings.voting.candidates_per_class;
+      benchmark::DoNotOptimize(class_hypotheses(again, c, least, limit, by_class[c]));
     }
   });
 }

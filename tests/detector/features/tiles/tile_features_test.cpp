@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "detector/features/features.hpp"
+#include "detector/baseline/reference_features.hpp"
 #include "pipeline/base/random.hpp"
 #include "tests/every_target.hpp"
 
@@ -46,7 +46,7 @@ Picture noise(cv::Size size, std::uint32_t families, Random& random) {
   picture.kernels = sobel_kernels(picture.settings.depth_sobel_px);
   for (const FeatureBlock& block : picture.layout.blocks()) {
     picture.base.emplace_back();
-    if (block.family < kHonv) continue;
+    if (!is_surface_family(block.family)) continue;
     for (int i = 0; i < block.count; ++i) {
       cv::Mat_<std::uint8_t> plane(size);
       for (std::uint8_t& value : plane) value = byte(random);
@@ -72,10 +72,10 @@ int wrong_values(const TileRows& rows, const TileRows& expected, cv::Size part, 
   return wrong_values(rows, part, planes, [&](int x, int y, int p) { return expected.row(y, p)[x]; });
 }
 
-TEST(TileFeatures, AnyPartHasTheReadableValuesAndSpareOnesAreNone) {
+TEST(TileFeatures, AnyPartHasTheReferenceValuesAndSpareOnesAreNone) {
   Random random(1);
   const Picture picture = noise({150, 90}, 15, random);
-  const FeatureImage readable = compute_features_readably(picture.frame, picture.settings);
+  const FeatureImage reference = baseline::reference_features(picture.frame, picture.settings);
   const int planes = picture.layout.planes();
   ASSERT_LT(planes, picture.layout.pixel_stride());
   simd::with_every_target([&] {
@@ -83,7 +83,7 @@ TEST(TileFeatures, AnyPartHasTheReadableValuesAndSpareOnesAreNone) {
     for (const cv::Rect& part : {cv::Rect(0, 0, 128, 32), cv::Rect(128, 64, 22, 26), cv::Rect(50, 40, 1, 3)}) {
       features.compute(picture.sources(), part);
       const auto expected = [&](int x, int y, int p) {
-        return p < planes ? readable.at(part.x + x, part.y + y)[p] : std::uint8_t{0};
+        return p < planes ? reference.at(part.x + x, part.y + y)[p] : std::uint8_t{0};
       };
       EXPECT_EQ(wrong_values(features.rows(), part.size(), picture.layout.pixel_stride(), expected), 0) << part;
     }

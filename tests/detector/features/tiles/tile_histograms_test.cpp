@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "detector/features/features.hpp"
+#include "detector/baseline/reference_features.hpp"
 #include "pipeline/base/random.hpp"
 #include "tests/every_target.hpp"
 
@@ -95,7 +95,7 @@ TEST(TileHistograms, AreThoseOfTheReadableFeatures) {
             random.uniform() < 0.2 ? 0.0F : static_cast<float>(random.uniform(-1.0, 1.0) * random.uniform(0.0, 120.0));
       }
     }
-    const std::vector<cv::Mat> expected = gradient_histograms(dx, dy, 8.0F);
+    const std::vector<cv::Mat> expected = baseline::gradient_histograms(dx, dy, 8.0F);
     simd::with_every_target([&] {
       TilePlane<float> tile_dx;
       TilePlane<float> tile_dy;

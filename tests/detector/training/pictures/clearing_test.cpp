@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 /// A grey ramp from `dark` to `bright` with some red in it.
@@ -85,4 +85,4 @@ TEST(Sharpened, WhatIsEvenStaysAndZeroChangesNothing) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

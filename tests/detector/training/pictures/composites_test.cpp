@@ -8,7 +8,7 @@
 
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 TrainingSettings plain() {
@@ -158,4 +158,4 @@ TEST(VaryLight, StopsAreDoublings) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

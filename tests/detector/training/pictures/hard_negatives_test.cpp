@@ -6,7 +6,7 @@
 
 #include "tests/detector/planted_set.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 TrainingSettings quick(int threads = 2) {
@@ -75,4 +75,4 @@ TEST(HardNegatives, AnyNumberOfThreadsChoosesTheSame) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

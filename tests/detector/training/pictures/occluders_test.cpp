@@ -9,7 +9,7 @@
 
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 constexpr double kDistance = 0.9;
@@ -72,4 +72,4 @@ TEST(Occluders, WhatTheyDoNotHideStaysButForTheInfraredShadowToTheirLeft) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -9,7 +9,7 @@
 
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 constexpr double kFocal = 262.5;
@@ -37,7 +37,8 @@ Profile open_profile(const std::string& name) {
 
 TrainingPicture picture_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
   Random random(seed);
-  return object_picture(view, 2, 5, toy::room(3), profile, random);
+  PictureWorkspace own;
+  return object_picture({view, 2, 5}, toy::room(3), profile, random, own);
 }
 
 /// How much larger the picture shows the object than the view does, `image_scale` aside.
@@ -136,11 +137,12 @@ void expect_held(const TrainingPicture& picture, const PatchSettings& patch) {
 
 TEST(TrainingPictures, PicturesHoldWhatTheirPatchesLookAtOnly) {
   const Profile profile = open_profile("realtime");
+  PictureWorkspace own;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     expect_held(picture_of(round_view(), profile, seed), profile.patch);
     Random random(seed);
     for (const FeatureLevel& level : feature_levels(profile.features)) {
-      expect_held(background_picture(toy::room(3), level, profile, random), profile.patch);
+      expect_held(background_picture(toy::room(3), level, profile, random, own), profile.patch);
     }
   }
 }
@@ -201,7 +203,9 @@ TEST(TrainingPictures, ATooSmallBackgroundGivesNothing) {
   corner.depth = corner.depth(cv::Rect(0, 0, 120, 120)).clone();
   corner.camera = corner.camera.cropped(0, 0, 120, 120);
   Random random(1);
-  const TrainingPicture picture = object_picture(round_view(), 1, 0, corner, open_profile("gall"), random);
+  PictureWorkspace own;
+  const TrainingView view = round_view();
+  const TrainingPicture picture = object_picture({view, 1, 0}, corner, open_profile("gall"), random, own);
   EXPECT_TRUE(picture.samples.empty());
   EXPECT_EQ(picture.whole_area, 0.0F);
 }
@@ -216,7 +220,8 @@ TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
   for (const FeatureLevel& level : levels) {
     const float seen = level.min_distance > 0.0F ? 2.0F : 0.8F;
     Random random(7);
-    const TrainingPicture picture = background_picture(room, level, profile, random);
+    PictureWorkspace own;
+    const TrainingPicture picture = background_picture(room, level, profile, random, own);
     const auto drawn = static_cast<std::size_t>(profile.training.patches_per_view / kBackgroundPictures);
     EXPECT_EQ(picture.samples.size(), drawn);
     EXPECT_EQ(picture.spare_background.size(), drawn * static_cast<std::size_t>(profile.training.spare_background));
@@ -235,7 +240,8 @@ TEST(TrainingPictures, ABackgroundOfAScaleSpaceNeedsNoDepth) {
   const Profile profile = open_profile("gall");
   for (const FeatureLevel& level : feature_levels(profile.features)) {
     Random random(7);
-    const TrainingPicture picture = background_picture(room, level, profile, random);
+    PictureWorkspace own;
+    const TrainingPicture picture = background_picture(room, level, profile, random, own);
     EXPECT_EQ(picture.samples.size(), 30U) << level.size_ratio;
     EXPECT_TRUE(picture.spare_background.empty());
     for (const TrainingSample& sample : picture.samples) ASSERT_EQ(sample.scale, 256);
@@ -243,4 +249,4 @@ TEST(TrainingPictures, ABackgroundOfAScaleSpaceNeedsNoDepth) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

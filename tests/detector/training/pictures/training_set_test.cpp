@@ -9,7 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 constexpr float kTileArea = 0.0151F;  // 46 pixels of 0.7 m / 262.5 squared
@@ -135,4 +135,4 @@ TEST(TrainingSet, WhatCannotBeTaughtIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

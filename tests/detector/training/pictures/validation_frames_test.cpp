@@ -6,7 +6,7 @@
 
 #include "tests/detector/toy_data.hpp"
 
-namespace houghstream {
+namespace houghstream::training {
 namespace {
 
 struct Toys {
@@ -85,4 +85,4 @@ TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::training

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "detector/baseline/use_baseline.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
@@ -17,7 +18,8 @@ namespace {
 class ParseContender : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    save_forest(train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {}), forest_file());
+    baseline::use_baseline();
+    save_forest(training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {}), forest_file());
   }
   static void TearDownTestSuite() { std::filesystem::remove(forest_file()); }
   static std::string forest_file() {
@@ -39,10 +41,10 @@ TEST_F(ParseContender, ItDetectsAsTheDetectorDoes) {
   RgbdFrame frame = toy::room(77);
   toy::put_tile(0, 200, 200, 0.8, frame);
   const Detections fast = parse(",threads=2").detect(frame);
-  const Detections readable = parse(",threads=1,readable").detect(frame);
+  const Detections reference = parse(",threads=1,reference").detect(frame);
   ASSERT_FALSE(fast.detections.empty());
-  ASSERT_EQ(fast.detections.size(), readable.detections.size());
-  EXPECT_EQ(fast.detections[0].score, readable.detections[0].score);
+  ASSERT_EQ(fast.detections.size(), reference.detections.size());
+  EXPECT_EQ(fast.detections[0].score, reference.detections[0].score);
   EXPECT_FALSE(fast.stages.empty());
 }
 

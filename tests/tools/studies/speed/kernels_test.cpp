@@ -24,7 +24,7 @@ class Names : public benchmark::BenchmarkReporter {
 };
 
 TEST(Kernels, EachOneRuns) {
-  const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
   RgbdFrame frame = toy::room(5);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   DetectionSettings settings;
@@ -38,7 +38,7 @@ TEST(Kernels, EachOneRuns) {
   Names ran;
   benchmark::RunSpecifiedBenchmarks(&ran);
   const std::vector<std::string> expected = {
-      "jpeg", "unzip", "working_frame", "features", "resize_features_forest", "votes", "hypotheses"};
+      "jpeg", "unzip", "working_frame", "features", "resize_features_leaves", "votes", "hypotheses"};
   EXPECT_EQ(ran.names, expected);
 }
 

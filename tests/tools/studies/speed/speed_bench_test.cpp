@@ -23,7 +23,7 @@ Contender scribe(const std::string& name, std::size_t frames, std::string& words
   contender.detect = [name, &words](const RgbdFrame& frame) {
     words += name + std::to_string(frame.id.utime) + " ";
     Detections found;
-    found.stages = {{"detect.forest", 1500}};
+    found.stages = {{"detect.leaves", 1500}};
     found.detections.resize(2);
     return found;
   };
@@ -47,7 +47,7 @@ TEST(MeasureSpeed, StagesAndDetectionsAreAddedUp) {
   const nlohmann::json json = to_json(contenders, results);
   EXPECT_EQ(json["a"]["frames"], 4);
   EXPECT_EQ(json["a"]["detections"], 8);
-  EXPECT_EQ(json["a"]["stage_ms"]["detect.forest"], 1.5);
+  EXPECT_EQ(json["a"]["stage_ms"]["detect.leaves"], 1.5);
   EXPECT_LE(json["a"]["ms"]["p10"], json["a"]["ms"]["p90"]);
   EXPECT_NE(speed_table(contenders, results).find("a "), std::string::npos);
 }

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "detector/evidence/evidence_settings.hpp"
+#include "detector/evidence/score.hpp"
+#include "detector/evidence/view_alignment.hpp"
+#include "detector/voting/boxes.hpp"
+#include "detector/voting/hypotheses.hpp"
+#include "pipeline/types/detection.hpp"
+
+namespace houghstream {
+
+/// A hypothesis that the Hough space offers, weighed but not yet decided on.
+struct Candidate {
+  Detection detection;  ///< complete, with its score; without rotations below the threshold
+  Evidence evidence;
+};
+
+/// What hypotheses are weighed by.
+struct EvidenceInput {
+  const Forest& forest;
+  LabFrame frame;
+  const PatchGrid& patches;
+  const EvidenceSettings& settings;
+  const std::vector<std::uint32_t>& excluded_views;  ///< into Forest::views: not compared with the frame
+};
+
+/// What weigh_evidence needs for itself, to be kept from frame to frame.
+struct EvidenceMemory {
+  struct Worker {
+    std::vector<PlacedView> compared;
+    std::vector<std::pair<std::uint32_t, float>> weighed;  ///< views, and how much they speak for their rotation
+    BoxMemory box;
+  };
+  PerWorker<Worker> workers;
+};
+
+/// A candidate for each hypothesis, in their order: its box, what the remembered views say to it where they are put at
+/// its centre, and its score. The same for any number of threads.
+std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vector<Hypothesis>& hypotheses,
+                                      int threads, EvidenceMemory& memory);
+
+/// Over how many times as many views a class is spread as if it had been taught upright only: all its views over those
+/// that look at it from the side or from above with its z axis upwards in the picture. 1 where nearly all do, as on
+/// a turntable; at most 4.
+float attitude_spread(const Forest& forest, std::uint32_t class_index);
+
+}  // namespace houghstream

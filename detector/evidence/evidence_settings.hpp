@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+namespace houghstream {
+
+/// What a detection's score is. Stored in the forest file.
+enum class Scoring : std::uint32_t {
+  kEvidence = 0,  ///< a calibrated probability from votes and from how remembered views fit, see score.hpp
+  kVotes = 1,     ///< vote mass over that of a wholly visible object, at most 1 (the paper's confidence)
+};
+
+/// What is reported.
+struct EvidenceSettings {
+  /// Smallest score that is reported: in development_world_20 to 67 95 % of the detections from 0.72 on are true.
+  float threshold = 0.75F;
+  int max_rotations = 48;  ///< rotations handed to the pose process
+};
+
+}  // namespace houghstream

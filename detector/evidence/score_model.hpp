@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+
+namespace houghstream {
+
+/// One number for each thing that a score weighs: what score_terms() makes of the evidence, or the weights that
+/// multiply it. Of all products of two measures those that are here helped most on development worlds.
+struct ScoreTerms {
+  float constant = 0.0F;
+  float mass = 0.0F;            ///< logarithm of the vote mass over the expected one
+  float shown = 0.0F;           ///< logarithm of what is not hidden: half an object has half the mass
+  float seen_through = 0.0F;    ///< share of the view's surface behind which something is measured
+  float unknown = 0.0F;         ///< share without depth
+  float continued = 0.0F;       ///< share of the rim beyond which the surface goes on
+  float likeness = 0.0F;        ///< correlation of colours
+  float hue_conflict = 0.0F;    ///< see Likeness
+  float foreign_colour = 0.0F;  ///< squared: light makes a little of it
+  float unevenness = 0.0F;      ///< error of the visible depth
+  // What is mostly unknown: mass and likeness say something else there, and near surfaces lose their depth, far ones
+  // seldom.
+  float unknown_mass = 0.0F;
+  float unknown_likeness = 0.0F;
+  float unknown_distance = 0.0F;       ///< with the distance's logarithm
+  float likeness_hue_conflict = 0.0F;  ///< print of other colours may be as like as can be
+  float other_size = 0.0F;             ///< gain of another size, see gain_of_other_size
+  float certainty = 0.0F;              ///< logarithm: as many votes of patches that are less sure come from elsewhere
+  // Products for which those above are too straight.
+  float shown_sq = 0.0F;
+  float other_size_sq = 0.0F;
+  float seen_through_certainty = 0.0F;
+  float hue_conflict_foreign_colour = 0.0F;
+  float unevenness_sq = 0.0F;
+};
+
+constexpr std::size_t kScoreTerms = 21;
+
+/// All of them, in the order in which the fit sums them and the forest file holds them.
+constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {&ScoreTerms::constant,
+                                                                         &ScoreTerms::mass,
+                                                                         &ScoreTerms::shown,
+                                                                         &ScoreTerms::seen_through,
+                                                                         &ScoreTerms::unknown,
+                                                                         &ScoreTerms::continued,
+                                                                         &ScoreTerms::likeness,
+                                                                         &ScoreTerms::hue_conflict,
+                                                                         &ScoreTerms::foreign_colour,
+                                                                         &ScoreTerms::unevenness,
+                                                                         &ScoreTerms::unknown_mass,
+                                                                         &ScoreTerms::unknown_likeness,
+                                                                         &ScoreTerms::unknown_distance,
+                                                                         &ScoreTerms::likeness_hue_conflict,
+                                                                         &ScoreTerms::other_size,
+                                                                         &ScoreTerms::certainty,
+                                                                         &ScoreTerms::shown_sq,
+                                                                         &ScoreTerms::other_size_sq,
+                                                                         &ScoreTerms::seen_through_certainty,
+                                                                         &ScoreTerms::hue_conflict_foreign_colour,
+                                                                         &ScoreTerms::unevenness_sq};
+static_assert(sizeof(ScoreTerms) == kScoreTerms * sizeof(float), "a term is missing in the list");
+
+/// The weights that are assumed before any example is seen: even odds at about a third of the expected mass.
+constexpr ScoreTerms prior_weights() {
+  ScoreTerms weights;
+  weights.constant = 3.6F;
+  weights.mass = 3.0F;
+  weights.shown = -1.0F;
+  weights.seen_through = -4.0F;
+  weights.continued = -2.0F;
+  weights.likeness = 2.0F;
+  weights.hue_conflict = -1.0F;
+  return weights;
+}
+
+/// How evidence becomes a probability: the weights of its terms, each object's own. hs-train learns them
+/// (training/score_training.hpp) on pictures that it composes of the training views.
+struct ScoreModel {
+  ScoreTerms weights = prior_weights();
+};
+
+}  // namespace houghstream

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace houghstream {
+
+/// How one object is known at every distance.
+enum class ScaleHandling : std::uint32_t {
+  kDepthNormalised = 0,  ///< tests and offsets are divided by the measured depth (paper, Section 5.1.2)
+  /// The image is searched in several sizes (Gall et al. 2011), by detector/baseline. Nothing is known of depth:
+  /// lengths on the object count as if it stood 1 m away, metres = working pixels / (image_scale * focal length), and
+  /// centres have no depth.
+  kScaleSpace = 1,
+};
+
+constexpr int kMaxScales = 5;
+
+/// How a frame becomes feature planes. Stored in the forest file: training and detection must agree.
+struct FeatureSettings {
+  std::uint32_t families = 15;  ///< see FeatureFamily; default: the paper's final features (Section 4, end)
+  ScaleHandling handling = ScaleHandling::kDepthNormalised;
+  std::array<float, kMaxScales> scales{};  ///< of a scale space: sizes of the image searched, 0 = unused
+  float image_scale = 0.5F;                ///< working size over frame size for near surfaces (paper, Section 5.1.1)
+  float far_distance = 1.2F;       ///< surfaces beyond are looked at in twice that size, metres: see feature_levels
+  float max_distance = 2.8F;       ///< surfaces beyond belong to no object that was taught, metres
+  int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
+  int min_max_px = 5;              ///< neighbourhood of minimum and maximum, working pixels (paper, Section 3)
+  float fill_distance_px = 24.0F;  ///< how far from measured depth a pixel may borrow it, working pixels
+  /// ... or metres on the surface that it borrows from, if those are more pixels, see HoleReach. 0, and in a scale
+  /// space: the nearest pixel lends, whatever its depth.
+  float fill_distance = 0.06F;
+};
+
+}  // namespace houghstream

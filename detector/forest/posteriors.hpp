@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "detector/engine.hpp"
+#include "detector/features/feature_image.hpp"
+#include "detector/forest/forest.hpp"
+#include "detector/forest/traversal.hpp"
+
+namespace houghstream {
+
+/// Patches of one run that vote for one class, in the grid's order.
+struct Supporters {
+  std::vector<std::uint32_t> patches;  ///< into the PatchGrid
+  std::vector<std::uint32_t> ends;     ///< for each, where its entries end; they begin where those before it end
+  std::vector<std::uint32_t> entries;  ///< into Forest::leaf_classes: what its leaves know of the class, tree by tree
+};
+
+/// Which patches vote for which class: those whose posterior p(class | patch), the mean over the trees of
+/// p(class | leaf), is large enough (Gall et al. 2011). Most vote for none.
+class PatchPosteriors {
+ public:
+  PatchPosteriors() = default;
+  /// A patch votes for a class from a posterior of `least_share` on. The forest must outlive this.
+  PatchPosteriors(const Forest& forest, std::size_t runs, float least_share) { reset(forest, runs, least_share, 1); }
+  /// As if made anew, for so many workers, but the memory is used again.
+  void reset(const Forest& forest, std::size_t runs, float least_share, int threads);
+
+  /// Notes who votes among the patches of a run. Different workers may note different runs at the same time.
+  void note(const RunLeaves& seen);
+
+  /// Calls visit(patch, entries, count) for every patch that votes for the class, in the grid's order.
+  template <typename Visit>
+  void for_supporters(int class_index, const Visit& visit) const {
+    if (forest_ == nullptr) return;
+    const std::size_t classes = forest_->classes.size();
+    for (std::size_t s = static_cast<std::size_t>(class_index); s < supporters_.size(); s += classes) {
+      const Supporters& supporters = supporters_[s];
+      std::uint32_t begin = 0;
+      for (std::size_t i = 0; i < supporters.patches.size(); ++i) {
+        visit(supporters.patches[i], supporters.entries.data() + begin, supporters.ends[i] - begin);
+        begin = supporters.ends[i];
+      }
+    }
+  }
+
+ private:
+  struct Worker {
+    std::vector<float> sums;
+    std::vector<std::uint32_t> some;
+  };
+
+  const Forest* forest_ = nullptr;
+  float least_share_ = 0.0F;
+  std::vector<Supporters> supporters_;  // [run * classes + class]
+  PerWorker<Worker> workers_;
+};
+
+/// Of which patches posteriors are wanted.
+struct PosteriorInput {
+  const Forest& forest;
+  const std::vector<FeatureImage>& features;  ///< one image for each level
+  const PatchGrid& patches;
+  const LeafSettings& settings;
+  int threads = 1;
+};
+
+/// Walks the patches down the forest and notes for which classes they vote. What `posteriors` held is overwritten and
+/// its memory used again.
+void find_posteriors(const PosteriorInput& input, const Engine& engine, LeafMemory& memory,
+                     PatchPosteriors& posteriors);
+
+}  // namespace houghstream

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "detector/detection_settings.hpp"
+#include "detector/engine.hpp"
+#include "detector/evidence/candidates.hpp"
+#include "detector/features/features.hpp"
+#include "detector/features/working_frame.hpp"
+#include "detector/forest/posteriors.hpp"
+#include "detector/voting/hypotheses.hpp"
+
+namespace houghstream {
+
+/// The stages of a search by a depth-normalised forest, as Detector::detect calls them one after another; the trainer
+/// and the studies call some of them too. Each reads what those before it have left in the workspace.
+
+/// What frames are searched with.
+struct Search {
+  const Forest& forest;
+  const DetectionSettings& settings;
+  const Engine& engine = fast_engine();
+  /// Into Forest::views: not compared with the frame. A picture composed for training must not be recognised by the
+  /// very views that it shows.
+  std::vector<std::uint32_t> excluded_views = {};
+};
+
+/// The memory of a search, which is used again for the next frame's: a frame asks the system for nothing that grows
+/// with the picture. For one search at a time; what is in it belongs to the last frame.
+struct DetectorWorkspace {
+  WorkingImages images;
+  PatchGrid patches;
+  std::vector<FeatureImage> features;  ///< one for each level
+  PatchPosteriors posteriors;
+  // What stages need for themselves:
+  FeatureMemory feature_memory;
+  LeafMemory leaf_memory;
+  VotingMemory voting_memory;
+  EvidenceMemory evidence_memory;
+};
+
+/// The frame at the sizes that are looked at (paper, Section 5.1.1).
+void make_working_images(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace);
+
+/// Where patches stand (Section 5.1.3), and the features around them (Section 3).
+void compute_features(const Search& search, DetectorWorkspace& workspace);
+
+/// The leaves that each patch reaches (Section 5.1.2), and for which classes it votes by them.
+void find_posteriors(const Search& search, DetectorWorkspace& workspace);
+
+/// Votes for the objects' centres and their maxima (Section 2), class by class.
+std::vector<Hypothesis> find_hypotheses(const Search& search, DetectorWorkspace& workspace);
+
+/// What speaks for each hypothesis, and its score.
+std::vector<Candidate> weigh_evidence(const Search& search, const RgbdFrame& frame,
+                                      const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
+
+/// What votes of the workspace are cast of.
+VotingInput voting_input(const Search& search, const DetectorWorkspace& workspace);
+
+}  // namespace houghstream

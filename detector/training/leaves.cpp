@@ -1,0 +1,129 @@
+#include "detector/training/leaves.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace houghstream::training {
+namespace {
+
+/// Offsets nearer than merge_radius become one vote at their mean; the heaviest are kept.
+std::vector<LeafVote> merged_votes(const TrainingSet& set, const std::vector<std::uint32_t>& samples,
+                                   const TrainingSettings& settings) {
+  std::vector<LeafVote> votes;  // weight counts samples until the end
+  const float radius_sq = settings.merge_radius * settings.merge_radius;
+  for (const std::uint32_t s : samples) {
+    const Eigen::Vector3f& offset = set.samples[s].offset;
+    LeafVote* nearest = nullptr;
+    float nearest_sq = radius_sq;
+    for (LeafVote& vote : votes) {
+      const float distance_sq = (vote.offset - offset).squaredNorm();
+      if (distance_sq < nearest_sq) {
+        nearest = &vote;
+        nearest_sq = distance_sq;
+      }
+    }
+    if (nearest == nullptr) {
+      votes.push_back({offset, 1.0F});
+    } else {
+      nearest->weight += 1.0F;
+      nearest->offset += (offset - nearest->offset) / nearest->weight;
+    }
+  }
+  std::stable_sort(votes.begin(), votes.end(),
+                   [](const LeafVote& a, const LeafVote& b) { return a.weight > b.weight; });
+  if (votes.size() > static_cast<std::size_t>(settings.max_leaf_votes))
+    votes.resize(static_cast<std::size_t>(settings.max_leaf_votes));
+  for (LeafVote& vote : votes) vote.weight /= static_cast<float>(samples.size());
+  return votes;
+}
+
+std::vector<LeafView> counted_views(const TrainingSet& set, const std::vector<std::uint32_t>& samples,
+                                    const TrainingSettings& settings) {
+  std::map<std::uint32_t, int> counts;
+  for (const std::uint32_t s : samples) ++counts[set.first_view + set.samples[s].view];
+  std::vector<LeafView> views;
+  views.reserve(counts.size());
+  for (const auto& [view, count] : counts) {
+    views.push_back({view, static_cast<float>(count) / static_cast<float>(samples.size())});
+  }
+  std::stable_sort(views.begin(), views.end(),
+                   [](const LeafView& a, const LeafView& b) { return a.weight > b.weight; });
+  if (views.size() > static_cast<std::size_t>(settings.max_leaf_views))
+    views.resize(static_cast<std::size_t>(settings.max_leaf_views));
+  return views;
+}
+
+/// Appends an entry of the old forest with its votes and views.
+void copy_entry(const Forest& old, const LeafClass& from, float weight, Forest& forest) {
+  LeafClass entry = from;
+  entry.probability = weight;
+  entry.first_vote = static_cast<std::uint32_t>(forest.votes.size());
+  entry.first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
+  const auto votes = old.votes.begin() + from.first_vote;
+  const auto views = old.leaf_views.begin() + from.first_view;
+  forest.votes.insert(forest.votes.end(), votes, votes + from.vote_count);
+  forest.leaf_views.insert(forest.leaf_views.end(), views, views + from.view_count);
+  forest.leaf_classes.push_back(entry);
+}
+
+}  // namespace
+
+std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>& samples, Forest& forest) {
+  const TrainingSet& set = source.set;
+  const std::vector<float>& label_weights = source.label_weights;
+  std::vector<std::vector<std::uint32_t>> by_label(label_weights.size());
+  for (const std::uint32_t s : samples) by_label[set.samples[s].label].push_back(s);
+  float total = 0.0F;
+  for (std::size_t l = 0; l < by_label.size(); ++l) total += label_weights[l] * static_cast<float>(by_label[l].size());
+
+  for (std::size_t l = 1; l < by_label.size(); ++l) {
+    if (by_label[l].empty()) continue;
+    const std::vector<LeafVote> votes = merged_votes(set, by_label[l], source.settings);
+    const std::vector<LeafView> views = counted_views(set, by_label[l], source.settings);
+    LeafClass entry;
+    entry.class_index = static_cast<std::uint16_t>(set.first_class + l - 1);
+    entry.vote_count = static_cast<std::uint8_t>(votes.size());
+    entry.view_count = static_cast<std::uint8_t>(views.size());
+    entry.first_vote = static_cast<std::uint32_t>(forest.votes.size());
+    entry.first_view = static_cast<std::uint32_t>(forest.leaf_views.size());
+    entry.probability = label_weights[l] * static_cast<float>(by_label[l].size()) / total;
+    forest.leaf_classes.push_back(entry);
+    forest.votes.insert(forest.votes.end(), votes.begin(), votes.end());
+    forest.leaf_views.insert(forest.leaf_views.end(), views.begin(), views.end());
+  }
+  forest.leaves.push_back(static_cast<std::uint32_t>(forest.leaf_classes.size()));
+  forest.leaf_weights.push_back(total / source.bag_weight);
+  return static_cast<std::int32_t>(forest.leaves.size()) - 2;
+}
+
+void mix_in(const KnownLeaf& known, float part, Forest& forest) {
+  const Forest& old = *known.forest;
+  const auto leaf = static_cast<std::size_t>(known.leaf);
+  const float weight = part * old.leaf_weights[leaf];
+  const std::size_t first = forest.leaves[forest.leaves.size() - 2];
+  float total = weight;  // the background's share is what remains when the objects' are taken off
+  for (std::size_t e = first; e < forest.leaf_classes.size(); ++e) {
+    LeafClass& entry = forest.leaf_classes[e];
+    entry.probability *= forest.leaf_weights.back() * (1.0F - known.old_share);
+    total += entry.probability;
+  }
+  for (std::uint32_t e = old.leaves[leaf]; e < old.leaves[leaf + 1]; ++e) {
+    const float before = weight * old.leaf_classes[e].probability;
+    copy_entry(old, old.leaf_classes[e], before * known.old_share, forest);
+    total -= before * (1.0F - known.old_share);
+  }
+  for (std::size_t e = first; e < forest.leaf_classes.size(); ++e) {
+    forest.leaf_classes[e].probability = total > 0.0F ? forest.leaf_classes[e].probability / total : 0.0F;
+  }
+  forest.leaves.back() = static_cast<std::uint32_t>(forest.leaf_classes.size());
+  forest.leaf_weights.back() = total;
+}
+
+std::int32_t copy_leaf(const KnownLeaf& known, Forest& forest) {
+  forest.leaves.push_back(static_cast<std::uint32_t>(forest.leaf_classes.size()));
+  forest.leaf_weights.push_back(0.0F);
+  mix_in(known, 1.0F, forest);
+  return static_cast<std::int32_t>(forest.leaves.size()) - 2;
+}
+
+}  // namespace houghstream::training

@@ -1,0 +1,120 @@
+#include "detector/training/pictures/sensor_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "detector/training/pictures/composites.hpp"
+
+namespace houghstream::training {
+namespace {
+
+/// Each pixel takes the nearest depth around it; holes lend none and take none.
+cv::Mat grown(const cv::Mat& depth, int right_px, int down_px) {
+  constexpr double kFarthest = 1e6;
+  cv::Mat out = depth.clone();
+  cv::patchNaNs(out, kFarthest);
+  cv::erode(out, out, cv::getStructuringElement(cv::MORPH_RECT, {2 * right_px + 1, 2 * down_px + 1}));
+  out.setTo(std::numeric_limits<float>::quiet_NaN(), ~(depth == depth));  // vectorised, != may call two NaN equal
+  return out;
+}
+
+/// Moved to the right and down, at most `most_px`; the border's pixels fill what is left free.
+cv::Mat moved(const cv::Mat& depth, int right_px, int down_px, int most_px) {
+  cv::Mat padded;
+  cv::copyMakeBorder(depth, padded, most_px, most_px, most_px, most_px, cv::BORDER_REPLICATE);
+  return padded(cv::Rect({most_px - right_px, most_px - down_px}, depth.size())).clone();
+}
+
+/// Smooth errors in cells of random size, metres.
+cv::Mat ripples(cv::Size size, double sigma, Random& random) {
+  const int cell_px = random.between(6, 30);
+  cv::Mat coarse(size.height / cell_px + 2, size.width / cell_px + 2, CV_32FC1);
+  for (int y = 0; y < coarse.rows; ++y) {
+    for (int x = 0; x < coarse.cols; ++x) coarse.at<float>(y, x) = static_cast<float>(sigma * random.normal());
+  }
+  cv::Mat out;
+  cv::resize(coarse, out, size, 0, 0, cv::INTER_CUBIC);
+  return out;
+}
+
+/// Where its values are high, depth stays.
+cv::Mat smooth_noise(cv::Size size, Random& random) {
+  const int cell_px = random.between(6, 40);
+  cv::Mat coarse(size.height / cell_px + 2, size.width / cell_px + 2, CV_32FC1);
+  for (int y = 0; y < coarse.rows; ++y) {
+    for (int x = 0; x < coarse.cols; ++x) coarse.at<float>(y, x) = static_cast<float>(random.normal());
+  }
+  cv::Mat noise;
+  cv::resize(coarse, noise, size, 0, 0, cv::INTER_CUBIC);
+  return noise;
+}
+
+}  // namespace
+
+void misregister(double strength, cv::Mat& depth, Random& random) {
+  constexpr double kMost = 2.0;  // pixels
+  const int most_px = static_cast<int>(std::lround(strength * kMost));
+  if (most_px <= 0) return;
+  const int wider = random.between(0, most_px);
+  const int higher = random.between(0, most_px);
+  const int right = random.between(-most_px, most_px);
+  const int down = random.between(-most_px, most_px);
+  depth = moved(grown(depth, wider, higher), right, down, most_px);
+}
+
+TrainingView bent(const TrainingView& view, double strength, Random& random) {
+  constexpr double kMostSlope = 0.07;    // metres of depth a metre to the side
+  constexpr double kMostRipple = 0.002;  // metres, standard deviation
+  if (strength <= 0.0) return view;
+  const Eigen::Vector3d centre = view.T_camera_object.translation();
+  const double metres = strength * kMostSlope * view.frame.camera.metres_per_px(centre.z());
+  const double right = metres * random.uniform(-1.0, 1.0);
+  const double down = metres * random.uniform(-1.0, 1.0);
+  const Eigen::Vector2d middle = view.frame.camera.project(centre);
+  const cv::Mat error = ripples(view.frame.depth.size(), strength * kMostRipple * random.uniform(), random);
+  cv::Mat depth = view.frame.depth + error;  // a picture of its own: the view's stays as it is
+  for (int y = 0; y < error.rows; ++y) {
+    for (int x = 0; x < error.cols; ++x) {
+      depth.at<float>(y, x) += static_cast<float>(right * (x - middle.x()) + down * (y - middle.y()));
+    }
+  }
+  TrainingView out = view;
+  out.frame.depth = depth;
+  return out;
+}
+
+void lose_near_depth(double limit, double kept, cv::Mat& depth, Random& random) {
+  const cv::Mat noise = smooth_noise(depth.size(), random);
+  const cv::Mat near = depth < limit;  // false for NaN
+  std::vector<float> values;
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      if (near.at<std::uint8_t>(y, x) != 0) values.push_back(noise.at<float>(y, x));
+    }
+  }
+  const auto lost = static_cast<std::size_t>((1.0 - kept) * static_cast<double>(values.size()));
+  if (lost == 0) return;
+  const auto last_lost = values.begin() + static_cast<std::ptrdiff_t>(lost - 1);
+  std::nth_element(values.begin(), last_lost, values.end());
+  depth.setTo(std::numeric_limits<float>::quiet_NaN(), near & (noise <= *last_lost));
+}
+
+void add_far_noise(double distance, double ratio, cv::Mat& depth, Random& random) {
+  const double far = axial_noise(ratio * distance);
+  const double near = axial_noise(distance);
+  if (!(far > near)) return;
+  const cv::Size size(static_cast<int>(std::ceil(depth.cols / ratio)), static_cast<int>(std::ceil(depth.rows / ratio)));
+  cv::Mat noise(size, CV_32FC1);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) noise.at<float>(y, x) = static_cast<float>(random.normal());
+  }
+  constexpr int kWindow = 3;  // pixels: the sensor matches windows, so that neighbours share their error
+  cv::boxFilter(noise, noise, CV_32F, {kWindow, kWindow});
+  cv::resize(noise, noise, depth.size(), 0, 0, cv::INTER_LINEAR);
+  depth += noise * (kWindow * std::sqrt(far * far - near * near));  // the mean of n has 1 / sqrt(n) of the deviation
+}
+
+}  // namespace houghstream::training

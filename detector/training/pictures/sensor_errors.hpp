@@ -1,0 +1,34 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "pipeline/base/random.hpp"
+#include "pipeline/types/training_view.hpp"
+
+namespace houghstream::training {
+
+/// What a depth camera does wrong. Pictures put together from training views agree with these better than any camera's:
+/// the same depth beside the same colour, cut out along the same outline. Who learns from them what a disagreement
+/// means must have seen such as do no harm.
+
+/// Depth that is registered to colour only within two pixels either way, its nearer surfaces grown by up to as many, as
+/// the windows make them that a structured-light camera matches. CV_32FC1, metres, NaN = none: holes stay holes.
+/// Smaller or larger with `strength`, 0 = none.
+void misregister(double strength, cv::Mat& depth, Random& random);
+
+/// The view as of a thing that leans by up to 4 degrees to any side, and whose depth is wrong by up to a few
+/// millimetres here and there; its colours and its outline stay. Less or more with `strength`, 0 = none.
+TrainingView bent(const TrainingView& view, double strength, Random& random);
+
+/// What a structured-light camera makes of what stands too near: its own pattern dazzles it. Surfaces nearer than
+/// `limit` metres keep their depth in patches only, of random size and together a share of `kept`, 0 to 1. `depth` is
+/// CV_32FC1, metres, NaN = none.
+void lose_near_depth(double limit, double kept, cv::Mat& depth, Random& random);
+
+/// A scale space shows an object `ratio` times as far away as taught in an enlarged image: its size is the same then,
+/// but not the sensor's noise, which is that of the larger distance and as much coarser. Adds what is missing of it to
+/// a picture taken at `distance` metres; `depth` is CV_32FC1, metres. What smooth surfaces' normals have
+/// told nearby would not be true of rough ones farther away.
+void add_far_noise(double distance, double ratio, cv::Mat& depth, Random& random);
+
+}  // namespace houghstream::training

@@ -1,0 +1,91 @@
+#include "detector/voting/hough_space.hpp"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "detector/voting/vote_casting.hpp"
+
+namespace houghstream {
+namespace {
+
+/// The last element is of the votes outside the image.
+void sum_by_cell(const CastVotes& cast, const CellGrid& grid, std::vector<CellSum>& sums) {
+  sums.assign(grid.outside() + 1, CellSum{});
+  CellSum* const by_cell = sums.data();
+  const std::uint32_t* cell = cast.cells.data();
+  const Vote* const end = cast.votes.data() + cast.count;
+  for (const Vote* vote = cast.votes.data(); vote != end; ++vote, ++cell) {
+    ++by_cell[*cell].votes;
+    by_cell[*cell].weight += vote->weight;
+  }
+}
+
+/// Lays the votes out cell by cell, those outside the image last, and copies the weights to the image; of each cell
+/// `next` gets the place of its first vote.
+void lay_out(const std::vector<CellSum>& sums, std::vector<std::uint32_t>& next, HoughSpace& space) {
+  next.resize(sums.size());
+  space.image.resize(sums.size() - 1);
+  std::uint32_t count = 0;
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    next[c] = count;
+    count += sums[c].votes;
+    if (c < space.image.size()) space.image[c] = sums[c].weight;
+  }
+  space.first_vote = next;
+  space.votes.resize(count + kSpareVotes);
+  space.voter.resize(count);
+}
+
+/// Counting sort: stable, so the order does not depend on anything but the votes.
+void sort_by_cell(const CastVotes& cast, std::vector<std::uint32_t>& next, HoughSpace& space) {
+  std::uint32_t* const free = next.data();
+  Vote* const votes = space.votes.data();
+  std::uint32_t* const voters = space.voter.data();
+  const std::uint32_t* cell = cast.cells.data();
+  const std::uint32_t* voter = cast.voters.data();
+  const Vote* const end = cast.votes.data() + cast.count;
+  constexpr std::size_t kAhead = 24;  // votes, so that the cache misses of many places overlap
+  const Vote* const last_ahead = end - std::min(kAhead, cast.count);
+  for (const Vote* vote = cast.votes.data(); vote != end; ++vote) {
+    if (vote < last_ahead) {
+      const std::uint32_t soon = free[cell[kAhead]];
+      hwy::Prefetch(votes + soon);
+      hwy::Prefetch(voters + soon);
+    }
+    const std::uint32_t place = free[*cell++]++;
+    // four numbers at once, not one by one
+    Eigen::Map<Eigen::Array4f>(votes[place].centre_camera.data()) =
+        Eigen::Map<const Eigen::Array4f>(vote->centre_camera.data());
+    voters[place] = *voter++;
+  }
+  space.votes.resize(space.first_vote.back() + kSpareVotes);  // without those outside
+  space.voter.resize(space.first_vote.back());
+}
+
+void smooth(double sigma_px, HoughSpace& space) {
+  cv::Mat image(space.height, space.width, CV_32FC1, space.image.data());
+  const double sigma = sigma_px / space.cell_px;
+  cv::GaussianBlur(image, image, cv::Size(0, 0), sigma, sigma, cv::BORDER_CONSTANT);
+}
+
+}  // namespace
+
+void cast_votes(const VotingInput& input, int class_index, CastMemory& memory, HoughSpace& space) {
+  space.cell_px = 2;
+  const CellGrid grid(input.camera, space.cell_px);
+  space.width = grid.width;
+  space.height = grid.height;
+  space.voters.clear();
+  input.posteriors.for_supporters(class_index, [&](std::uint32_t p, const std::uint32_t* entries, std::uint32_t count) {
+    for (std::uint32_t e = 0; e < count; ++e) space.voters.push_back({p, entries[e]});
+  });
+  cast_all(input.forest, input.patches, space.voters, grid, memory.cast);
+  sum_by_cell(memory.cast, grid, memory.sums);
+  lay_out(memory.sums, memory.next, space);
+  sort_by_cell(memory.cast, memory.next, space);
+  smooth(input.settings.hough_sigma_px, space);
+}
+
+}  // namespace houghstream

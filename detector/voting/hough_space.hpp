@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "detector/forest/forest.hpp"
+#include "detector/forest/posteriors.hpp"
+#include "detector/voting/voting_settings.hpp"
+#include "pipeline/types/camera.hpp"
+
+namespace houghstream {
+
+constexpr float kVoteReach = 2.5F;  ///< of vote_kernel, in sigmas
+
+/// How much a vote this far from a maximum supports it: (1 - d^2 / reach^2)^2 with a reach of 2.5 sigma, close to a
+/// Gaussian, but it needs no exponential and ends at the reach.
+inline float vote_kernel(float distance_sq, float vote_sigma) {
+  const float reach = kVoteReach * vote_sigma;
+  const float q = 1.0F - distance_sq / (reach * reach);
+  return q > 0.0F ? q * q : 0.0F;
+}
+
+/// One vote for an object's centre in the camera frame.
+struct Vote {
+  Eigen::Vector3f centre_camera;  ///< metres
+  float weight = 0.0F;            ///< share of the patch's posterior, 0 to 1
+};
+
+/// A patch and one of its leaves that knows the class.
+struct Voter {
+  std::uint32_t patch = 0;       ///< into the PatchGrid
+  std::uint32_t leaf_class = 0;  ///< into Forest::leaf_classes
+};
+
+constexpr std::size_t kSpareVotes = 7;  ///< behind the last, so that eight can be read anywhere
+
+/// The Hough space of one class: its votes in 3-D, sorted by the image cell in which their centre is seen.
+struct HoughSpace {
+  int width = 0;  ///< cells
+  int height = 0;
+  int cell_px = 0;                        ///< working pixels per cell
+  std::vector<Vote> votes;                ///< by cell, row by row; within a cell in order of patch and tree; then
+                                          ///< kSpareVotes that do not count
+  std::vector<std::uint32_t> voter;       ///< per vote, into `voters`: who cast it
+  std::vector<Voter> voters;              ///< by patch, tree by tree; some may have cast no vote into the image
+  std::vector<std::uint32_t> first_vote;  ///< per cell, and one more
+  std::vector<float> image;               ///< sum of weights per cell, smoothed; independent of distance, since both
+                                          ///< a patch's footprint and the spread of its votes shrink with it
+};
+
+/// What votes are cast of.
+struct VotingInput {
+  const Forest& forest;
+  const PatchGrid& patches;
+  const PatchPosteriors& posteriors;
+  const Camera& camera;  ///< in whose pixels Hough spaces are laid out: that of the level for near surfaces
+  const VotingSettings& settings;
+};
+
+/// Votes in the order of those who cast them.
+struct CastVotes {
+  static constexpr std::size_t kSlack = 4;  ///< elements behind the last that are written but not meant
+
+  std::size_t count = 0;  ///< of the vectors' elements, which may be more
+  std::vector<Vote> votes;
+  std::vector<std::uint32_t> cells;   ///< CellGrid::outside() of votes not seen in the image or nearer than 10 cm
+  std::vector<std::uint32_t> voters;  ///< index of who cast it
+};
+
+/// What meets in a cell.
+struct CellSum {
+  std::uint32_t votes = 0;
+  float weight = 0.0F;
+};
+
+/// What cast_votes needs for itself, to be kept from class to class.
+struct CastMemory {
+  CastVotes cast;
+  std::vector<CellSum> sums;
+  std::vector<std::uint32_t> next;
+};
+
+/// Votes for one class of all patches that support it (paper, Section 2; Gall et al. 2011, Section 3.3, here in 3-D).
+/// What `space` held is overwritten and its memory used again.
+void cast_votes(const VotingInput& input, int class_index, CastMemory& memory, HoughSpace& space);
+
+}  // namespace houghstream

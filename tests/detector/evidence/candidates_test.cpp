@@ -1,0 +1,102 @@
+#include "detector/evidence/candidates.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "detector/stages.hpp"
+#include "detector/training/forest_trainer.hpp"
+#include "tests/detector/toy_data.hpp"
+
+namespace houghstream {
+namespace {
+
+const Forest& toy_forest() {
+  static const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  return forest;
+}
+
+std::vector<Candidate> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
+                                  const std::vector<std::uint32_t>& excluded_views = {}) {
+  const Search search{toy_forest(), settings, fast_engine(), excluded_views};
+  DetectorWorkspace workspace;
+  make_working_images(search, frame, workspace);
+  compute_features(search, workspace);
+  find_posteriors(search, workspace);
+  const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
+  return weigh_evidence(search, frame, hypotheses, workspace);
+}
+
+TEST(Candidates, TheStrongestOfAClassComesWithEvidenceForIt) {
+  RgbdFrame frame = toy::room(77);
+  const cv::Mat mask = toy::put_tile(0, 159.5, 119.5, 0.7, frame);
+  const std::vector<Candidate> found = candidates(frame);
+  ASSERT_FALSE(found.empty());
+  const Candidate& best = found.front();
+  EXPECT_EQ(best.detection.class_id, 1);
+  EXPECT_GT(best.evidence.mass_share, 0.3F);
+  EXPECT_GT(best.evidence.fit.visible, 0.8F);
+  EXPECT_GT(best.evidence.fit.likeness, 0.5F);
+  EXPECT_GT(box_iou(best.detection.box_px, cv::Rect2f(cv::boundingRect(mask))), 0.7F);
+  EXPECT_EQ(best.detection.score, score(toy_forest().classes[0].score_model, best.evidence));
+}
+
+TEST(Candidates, ExcludedViewsAreNotCompared) {
+  RgbdFrame frame = toy::room(77);
+  toy::put_tile(0, 159.5, 119.5, 0.7, frame);
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t v = 0; v < toy_forest().views.size(); ++v) all.push_back(v);
+  const std::vector<Candidate> found = candidates(frame, {}, all);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().evidence.fit.visible, 0.0F);
+}
+
+TEST(Candidates, NoClassOffersMoreThanItMay) {
+  RgbdFrame frame = toy::room(77);
+  toy::put_tile(0, 80, 119.5, 0.7, frame);
+  toy::put_tile(0, 240, 119.5, 0.7, frame);
+  const auto stripes = [&](int max_per_class) {
+    DetectionSettings settings;
+    settings.voting.max_per_class = max_per_class;
+    const std::vector<Candidate> found = candidates(frame, settings);
+    return std::count_if(found.begin(), found.end(), [](const Candidate& c) { return c.detection.class_id == 1; });
+  };
+  EXPECT_GE(stripes(250), 2);
+  EXPECT_EQ(stripes(1), 1);
+}
+
+constexpr float kPi = 3.14159265F;
+
+// Seen from `pitch` above the object's own horizon, then rolled in the picture.
+TrainedView view_of(std::uint32_t class_index, float pitch_rad, float roll_rad, float azimuth_rad) {
+  TrainedView view;
+  view.class_index = class_index;
+  view.R_ray_object = Eigen::AngleAxisf(roll_rad, Eigen::Vector3f::UnitZ()) *
+                      Eigen::AngleAxisf(0.5F * kPi + pitch_rad, Eigen::Vector3f::UnitX()) *
+                      Eigen::AngleAxisf(azimuth_rad, Eigen::Vector3f::UnitZ());
+  return view;
+}
+
+TEST(AttitudeSpread, IsOneForATurntableAtAnyPitch) {
+  Forest forest;
+  for (int i = 0; i < 36; ++i) {
+    for (const float pitch : {0.1F, 0.7F, 1.5F}) {
+      forest.views.push_back(view_of(0, pitch, 0.0F, 2.0F * kPi * static_cast<float>(i) / 36.0F));
+      forest.views.push_back(view_of(1, pitch, 0.5F * kPi, 0.0F));  // another class does not matter
+    }
+  }
+  EXPECT_EQ(attitude_spread(forest, 0), 1.0F);
+}
+
+TEST(AttitudeSpread, CountsViewsThatAreNotUpright) {
+  Forest forest;
+  for (const float roll : {0.0F, 0.5F * kPi, kPi}) forest.views.push_back(view_of(0, 0.7F, roll, 0.3F));
+  EXPECT_FLOAT_EQ(attitude_spread(forest, 0), 3.0F);
+  forest.views.erase(forest.views.begin());
+  EXPECT_FLOAT_EQ(attitude_spread(forest, 0), 4.0F);  // no upright one at all
+}
+
+}  // namespace
+}  // namespace houghstream

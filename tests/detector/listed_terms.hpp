@@ -1,0 +1,14 @@
+#pragma once
+
+#include "detector/evidence/score_model.hpp"
+
+namespace houghstream {
+
+/// In the order of kScoreTermList.
+inline std::array<float, kScoreTerms> listed(const ScoreTerms& terms) {
+  std::array<float, kScoreTerms> values{};
+  for (std::size_t i = 0; i < kScoreTerms; ++i) values[i] = terms.*kScoreTermList[i];
+  return values;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "detector/forest/posteriors.hpp"
+
+namespace houghstream {
+
+/// A patch that votes for a class.
+struct ListedVoter {
+  std::uint32_t patch;
+  std::vector<std::uint32_t> entries;  ///< what the leaves know that its trees lead to
+  bool operator==(const ListedVoter& other) const { return patch == other.patch && entries == other.entries; }
+};
+
+inline std::vector<ListedVoter> voters_for(int class_index, const PatchPosteriors& posteriors) {
+  std::vector<ListedVoter> found;
+  posteriors.for_supporters(class_index, [&](std::uint32_t patch, const std::uint32_t* entries, std::uint32_t count) {
+    found.push_back({patch, {entries, entries + count}});
+  });
+  return found;
+}
+
+}  // namespace houghstream

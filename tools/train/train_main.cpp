@@ -1,0 +1,150 @@
+#include "tools/train/train_main.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <optional>
+
+#include "detector/extensions.hpp"
+#include "detector/features/feature_families.hpp"
+#include "detector/forest/forest_file.hpp"
+#include "detector/training/forest_trainer.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/train/training_sources.hpp"
+
+namespace houghstream {
+namespace {
+
+/// What the command line changes of a profile.
+struct Overrides {
+  std::string profile = "realtime";
+  std::string features;
+  std::string scale_handling;
+  std::optional<float> image_scale;
+  std::optional<int> depth_kernel;
+  std::optional<int> trees;
+  std::optional<int> max_depth;
+  std::optional<int> tests;
+  std::optional<double> offset_share;
+  std::optional<double> alone_share;
+  std::optional<double> shape_alone_share;
+  std::optional<int> patches;
+  std::optional<int> composites;
+  std::optional<float> min_distance;
+  std::optional<float> max_distance;
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+void add_overrides(CommandLine& app, Overrides& overrides) {
+  app.add_option("--profile", overrides.profile, fmt::format("{}", fmt::join(profile_names(), ", ")))
+      .capture_default_str();
+  app.add_option("--features", overrides.features, "instead of the profile's: " + family_names(255));
+  app.add_option("--depth-kernel", overrides.depth_kernel, "of the depth derivatives, working pixels")
+      .one_of({3, 5, 7, 9});
+  app.add_option("--image-scale", overrides.image_scale, "working size over frame size, instead of the profile's")
+      .range(0.1, 2.0);
+  app.add_option("--scale-handling", overrides.scale_handling, "instead of the profile's: five, single or normalised");
+  app.add_option("--seed", overrides.seed, "same seed, same data: same forest").capture_default_str();
+  app.add_option("--threads", overrides.threads, "any number gives the same forest").capture_default_str();
+  app.add_option("--trees", overrides.trees).range(1, 1000);
+  app.add_option("--max-depth", overrides.max_depth, "levels").range(1, 60);
+  app.add_option("--tests", overrides.tests, "random tests tried per node, fewer where it has few samples")
+      .range(1, 100000);
+  app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets rather than by labels")
+      .range(0.0, 1.0);
+  app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel rather than compare two")
+      .range(0.0, 1.0);
+  app.add_option("--shape-alone-share", overrides.shape_alone_share, "at least so many of those on depth features")
+      .range(0.0, 1.0);
+  app.add_option("--patches", overrides.patches, "patches per training view").range(4, 100000);
+  app.add_option("--composites", overrides.composites, "pictures made of one view").range(1, 100);
+  app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres");
+  app.add_option("--max-distance", overrides.max_distance, "farthest distance taught, metres");
+}
+
+template <typename T>
+void take(const std::optional<T>& from, T& to) {
+  if (from) to = *from;
+}
+
+Profile overridden(const Overrides& overrides) {
+  Profile profile = make_profile(overrides.profile);
+  if (!overrides.features.empty()) profile.features.families = parse_families(overrides.features);
+  if (overrides.image_scale) set_image_scale(profile, *overrides.image_scale);
+  if (!overrides.scale_handling.empty()) set_scale_handling(profile, overrides.scale_handling);
+  take(overrides.depth_kernel, profile.features.depth_sobel_px);
+  training::TrainingSettings& training = profile.training;
+  take(overrides.trees, training.trees);
+  take(overrides.max_depth, training.max_depth);
+  take(overrides.tests, training.tests_per_node);
+  take(overrides.offset_share, training.offset_share);
+  take(overrides.alone_share, training.alone_share);
+  take(overrides.shape_alone_share, training.shape_alone_share);
+  take(overrides.patches, training.patches_per_view);
+  take(overrides.composites, training.composites_per_view);
+  take(overrides.min_distance, training.min_distance);
+  take(overrides.max_distance, training.max_distance);
+  training.seed = overrides.seed;
+  training.threads = overrides.threads;
+  return profile;
+}
+
+/// The profile by which a forest was trained; only seed and threads can be chosen.
+Profile profile_of(const Forest& forest, const Overrides& overrides) {
+  Profile profile = make_profile(forest.profile);
+  profile.features = forest.features;
+  profile.patch = forest.patch;
+  profile.detection = detection_settings(forest);
+  profile.training.scoring = forest.scoring;
+  profile.training.trees = static_cast<int>(forest.roots.size());
+  profile.training.seed = overrides.seed;
+  profile.training.threads = overrides.threads;
+  return profile;
+}
+
+void train(const TrainingSources& sources, const Profile& profile, const std::optional<Forest>& old,
+           const std::string& out, const std::string& program) {
+  require_extensions(profile.features, fmt::format("profile '{}'", profile.name));  // before views are read
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const auto progress = [&](const std::string& line) {
+    fmt::print(stderr, "{}: {:6.1f} s  {}\n", program, seconds(), line);
+  };
+  const std::vector<TrainingView> views = read_training_sources(sources, profile.training.threads);
+  progress(fmt::format("{} views and backgrounds read", views.size()));
+  const Forest forest =
+      old ? training::add_objects(*old, views, profile, progress) : training::train_forest(views, profile, progress);
+  save_forest(forest, out);
+  fmt::print("train_seconds {:.1f}\n", seconds());
+}
+
+}  // namespace
+
+int train_main(int argc, char** argv, const std::string& name) {
+  CommandLine app(
+      "Teaches objects to a depth-normalised Hough Forest: training views and background in, one forest file out",
+      name);
+  TrainingSources sources;
+  Overrides overrides;
+  std::string out;
+  std::string add_to;
+  app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR").required();
+  app.add_option("--background", sources.backgrounds,
+                 "rooms without the objects: bop:DIR or images:DIR, with the folders below it")
+      .required();
+  app.add_option("--instances", sources.instances, "instances of a uw: folder to teach").delimiter(',');
+  app.add_option("--rename", sources.renames, "can_1=can: what an instance is called").delimiter(',');
+  app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
+  app.add_option("--out", out, "forest file to write").required();
+  app.add_option("--add-to", add_to, "forest that learns the objects beside those it knows; it decides the profile");
+  add_overrides(app, overrides);
+  return run_tool(app, argc, argv, [&] {
+    std::optional<Forest> old;
+    if (!add_to.empty()) old = load_forest(add_to);
+    train(sources, old ? profile_of(*old, overrides) : overridden(overrides), old, out, name);
+  });
+}
+
+}  // namespace houghstream
