@@ -63,7 +63,9 @@ def prepare(options, targets):
     """Installs what is missing and builds the targets. Returns the folder of the programs."""
     if options.bin:
         return os.path.realpath(options.bin)
-    if "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ:  # else this has been done before the command started itself again
+    if (
+        "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ
+    ):  # else this has been done before the command started itself again
         if subprocess.run(["tools/setup"], cwd=REPOSITORY, check=False).returncode != 0:
             die("tools/setup failed")
         step("build")
