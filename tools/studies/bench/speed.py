@@ -225,7 +225,8 @@ def page(summary, history):
 
 def glance(summary):
     """What one wants to know first."""
-    lines = [f"{words:<52}{ms:>10} ms   AUC {auc}" for words, ms, auc, _ in detection_rows(summary)]
+    rows = detection_rows(summary) if summary["parts"]["speed"] else []
+    lines = [f"{words:<52}{ms:>10} ms   AUC {auc}" for words, ms, auc, _ in rows]
     for row in stream_rows(summary):
         lines.append(
             f"stream, {row[0]}: p50 {row[1]}, p99 {row[3]} ms; lost {row[5]}, skipped {row[6]} of {row[4]}; {row[8]} cores"
