@@ -7,7 +7,7 @@ import subprocess
 import sys
 import time
 
-from studies.measured import REPOSITORY
+from studies.measured import REPOSITORY, commit_name
 
 START = float(os.environ.setdefault("HOUGHSTREAM_START", str(time.time())))  # stays when a command starts itself again
 TEST_SCENES = ("table_small_1", "table_small_2", "desk_1", "desk_2", "kitchen_small_1", "meeting_small_1")
@@ -61,9 +61,12 @@ def recorded_folder(given, part):
 
 def prepare(options, targets):
     """Installs what is missing and builds the targets. Returns the folder of the programs."""
+    commit_name()  # figures are of what is built, whatever is checked out meanwhile
     if options.bin:
         return os.path.realpath(options.bin)
-    if "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ:  # else this has been done before the command started itself again
+    if (
+        "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ
+    ):  # else this has been done before the command started itself again
         if subprocess.run(["tools/setup"], cwd=REPOSITORY, check=False).returncode != 0:
             die("tools/setup failed")
         step("build")

@@ -2,6 +2,7 @@
 
 import csv
 import datetime
+import functools
 import json
 import os
 import pathlib
@@ -46,8 +47,9 @@ def cpu_name():
     return f"{names[0] if names else 'unknown processor'}, {threads()} cores used"
 
 
+@functools.cache
 def commit_name():
-    """The commit that is checked out, short; with "-dirty" where files differ from it."""
+    """The commit that was checked out when this was first asked for, short; with "-dirty" where files differ from it."""
     words = ["git", "-C", str(REPOSITORY), "describe", "--always", "--dirty", "--exclude", "*"]
     told = subprocess.run(words, capture_output=True, text=True, check=False)
     return told.stdout.strip() if told.returncode == 0 else "unknown"

@@ -32,7 +32,10 @@ def ms(value):
 
 def table(rows):
     """Markdown; rows: the header first."""
-    lines = ["| " + " | ".join(str(cell).replace("|", "\\|").replace("–", NOT_MEASURED) for cell in row) + " |" for row in rows]
+    lines = [
+        "| " + " | ".join(str(cell).replace("|", "\\|").replace("–", NOT_MEASURED) for cell in row) + " |"
+        for row in rows
+    ]
     return "\n".join([lines[0], "|" + "---|" * len(rows[0]), *lines[1:]])
 
 
@@ -60,8 +63,14 @@ def demo_table(summary):
     recall, processed = "pose_recall_add_s_10", summary["processed"]
     listed = [("AUC", summary["auc"]), ("recall from the default score on", summary["recall"])]
     if summary["bop19_ar"]:
-        listed += [("ADD-S recall", summary[recall]), ("BOP average recall", summary["bop19_ar"] | {"mean": summary["bop19_ar"]["all"]})]
-    listed += [("AUC, processed frames alone", processed["auc"]), ("recall, processed frames alone", processed["recall"])]
+        listed += [
+            ("ADD-S recall", summary[recall]),
+            ("BOP average recall", summary["bop19_ar"] | {"mean": summary["bop19_ar"]["all"]}),
+        ]
+    listed += [
+        ("AUC, processed frames alone", processed["auc"]),
+        ("recall, processed frames alone", processed["recall"]),
+    ]
     if summary["bop19_ar"]:
         listed.append(("ADD-S recall, processed frames alone", processed[recall]))
 
@@ -72,7 +81,9 @@ def demo_table(summary):
 
 
 def demo_frames(summary):
-    latency = "; ".join(f"{stage} {ms(found['p50'])}, {ms(found['p99'])}" for stage, found in summary["latency_ms"].items())
+    latency = "; ".join(
+        f"{stage} {ms(found['p50'])}, {ms(found['p99'])}" for stage, found in summary["latency_ms"].items()
+    )
     text = ("{frames_sent} frames sent, {frames_detected} detected, {frames_skipped} passed over for newer ones, {frames_lost} "
             "lost; {frames_with_poses} with poses; {rate_hz:.1f} results a second; false detections from the default score "
             "on: {false_detections}; training {train_seconds:.0f} s. ").format(**summary)  # fmt: skip
@@ -84,7 +95,10 @@ def demo_frames(summary):
 
 def live_table(summary):
     rows = [("from the shutter to, ms", "p50", "p95", "p99")]
-    return table(rows + [(name, *(ms(found[p]) for p in ("p50", "p95", "p99"))) for name, found in summary["glass_to_ms"].items()])
+    return table(
+        rows
+        + [(name, *(ms(found[p]) for p in ("p50", "p95", "p99"))) for name, found in summary["glass_to_ms"].items()]
+    )
 
 
 def live_frames(summary):
@@ -117,14 +131,27 @@ def stage_table(summary):
 
 def small_speed_table(summary):
     rows = [("`realtime`, default settings", "ms a frame")]
-    rows += [(f"{count} thread{'s' if count > 1 else ''}", show(value, "{:.2f}")) for count, value in summary["threads"]]
+    rows += [
+        (f"{count} thread{'s' if count > 1 else ''}", show(value, "{:.2f}")) for count, value in summary["threads"]
+    ]
     return table(rows + [(f"one thread, {name}", show(value, "{:.2f}")) for name, value in summary["simd"].items()])
 
 
 def stream_table(summary):
     from studies.bench import speed
 
-    header = ("frames", "p50 ms", "p95 ms", "p99 ms", "sent", "lost", "skipped", "with poses", "cores in use", "memory, MB")
+    header = (
+        "frames",
+        "p50 ms",
+        "p95 ms",
+        "p99 ms",
+        "sent",
+        "lost",
+        "skipped",
+        "with poses",
+        "cores in use",
+        "memory, MB",
+    )
     return table([header, *speed.stream_rows(summary)])
 
 
@@ -134,12 +161,16 @@ def growth_table(summary):
     for name, words in series.items():
         if summary[name]:
             rows = [(words, *(count for count, _ in summary[name])), ("ms", *(ms(value) for _, value in summary[name]))]
-            parts.append(table(rows) + f"\n\nTime goes with the power {show(summary['exponents'][name], '{:.2f}')} of {words}.")
+            parts.append(
+                table(rows) + f"\n\nTime goes with the power {show(summary['exponents'][name], '{:.2f}')} of {words}."
+            )
     return "\n\n".join(parts)
 
 
 def pose_table(summary):
-    rows = [("", "ms a pose, median", "ADD-S recall", "ADD(-S) recall", "AR", f"AR on {summary['rival_frames']} frames")]
+    rows = [
+        ("", "ms a pose, median", "ADD-S recall", "ADD(-S) recall", "AR", f"AR on {summary['rival_frames']} frames")
+    ]
     ours = f"{show(summary['ms_per_pose_median'], '{:.2f}')} (99 %: {show(summary['ms_per_pose_p99'], '{:.2f}')})"
     rows.append(("ours, all detections from score 0.1 on", ours, show(summary["add_s_recall"]), show(summary["add_recall"]),
                  show(summary["bop_ar"]), show(summary["bop_ar_on_rival_frames"])))  # fmt: skip
@@ -147,7 +178,10 @@ def pose_table(summary):
     rows.append(("ours, detections from score 0.5 on", "", *strong, "", ""))
     pcl = (show(summary["pcl_add_s_recall"]), show(summary["pcl_add_recall"]), show(summary["bop_ar_pcl"]))
     rows.append(("PCL's point-to-plane ICP from the same starts", ms(summary["pcl_ms_median"]), *pcl, ""))
-    for name, words in (("prerejective", "FPFH, prerejective sampling, ICP (PCL)"), ("ppf", "point pair features, ICP (OpenCV)")):
+    for name, words in (
+        ("prerejective", "FPFH, prerejective sampling, ICP (PCL)"),
+        ("ppf", "point pair features, ICP (OpenCV)"),
+    ):
         rows.append((words, ms(summary[f"{name}_ms_median"]), "", "", "", show(summary[f"bop_ar_{name}"])))
     return table(rows)
 
@@ -222,7 +256,9 @@ def bench_sections(out, commit):
     speed, stream, growth = (Source(file, commit, part) for part in ("speed", "stream", "growth"))
     pose = Source(out / "bench" / "pose.json", commit)
     return [
-        section("Speed: one frame", speed, "tools/bench speed", speed_table, speed_gains, stage_table, small_speed_table),
+        section(
+            "Speed: one frame", speed, "tools/bench speed", speed_table, speed_gains, stage_table, small_speed_table
+        ),
         section("Speed: a minute of replay at 30 Hz, frame to poses", stream, "tools/bench stream", stream_table),
         section("Speed: how time grows", growth, "tools/bench growth", growth_table),
         section("Poses", pose, "tools/bench pose", pose_table, pose_words, recorded_pose_words),
@@ -243,7 +279,9 @@ def page(out, commit):
     reproduced = Source(out / "reproduce" / "summary.json", commit)
     sections = demo_sections(out, commit) + bench_sections(out, commit)
     if reproduced.is_there:
-        sections += [section(title, reproduced, "", *content) for title, *content in reproduce_tables(out / "reproduce")]
+        sections += [
+            section(title, reproduced, "", *content) for title, *content in reproduce_tables(out / "reproduce")
+        ]
     else:
         sections.append(section("The paper's comparison, repeated", reproduced, "tools/reproduce"))
     return "\n".join([HEAD.format(commit=commit), *sections]), reproduced.is_there
@@ -262,7 +300,9 @@ def write(out=REPOSITORY / "out", into=HERE / "RESULTS.md", commit=None):
 
 def main():
     parser = argparse.ArgumentParser(prog="studies.results", description=__doc__)
-    parser.add_argument("--from", dest="out", type=pathlib.Path, default=REPOSITORY / "out", help="folder of demo/, bench/ ...")
+    parser.add_argument(
+        "--from", dest="out", type=pathlib.Path, default=REPOSITORY / "out", help="folder of demo/, bench/ ..."
+    )
     parser.add_argument("--into", type=pathlib.Path, default=HERE / "RESULTS.md")
     parser.add_argument("--commit", help="default: the one that is checked out")
     options = parser.parse_args()

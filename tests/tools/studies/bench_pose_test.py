@@ -21,7 +21,11 @@ RESULTS = {
     "frames": 30,
     "rival_frames": 5,
     "variants": {"ours": variant(3.0, 0.9, 0.8), "pcl": variant(40.0, 0.7, 0.6)},
-    "on_rival_frames": {"ours": variant(3.0, 0.9, 0.75), "prerejective": variant(600.0, 0.5, 0.4), "ppf": variant(70.0, 0.4, 0.3)},
+    "on_rival_frames": {
+        "ours": variant(3.0, 0.9, 0.75),
+        "prerejective": variant(600.0, 0.5, 0.4),
+        "ppf": variant(70.0, 0.4, 0.3),
+    },
     "withheld": {"rejected by <depth>": {"true": 1, "false": 7, "ignored": 0, "would_have_been_right": 1}},
 }
 
@@ -43,7 +47,9 @@ class Summary(unittest.TestCase):
     def test_each_figure_is_that_of_its_variant(self):
         summary = pose.summarise(RESULTS, REAL)
         self.assertLessEqual(PROMISED, set(summary))
-        self.assertEqual((summary["ms_per_pose_median"], summary["ms_per_pose_p99"], summary["pcl_ms_median"]), (3.0, 6.0, 40.0))
+        self.assertEqual(
+            (summary["ms_per_pose_median"], summary["ms_per_pose_p99"], summary["pcl_ms_median"]), (3.0, 6.0, 40.0)
+        )
         self.assertEqual((summary["add_s_recall"], summary["add_recall"]), (0.9, 0.45))
         self.assertEqual((summary["bop_ar"], summary["bop_ar_prerejective"], summary["bop_ar_ppf"]), (0.8, 0.4, 0.3))
         self.assertEqual(summary["bop_ar_on_rival_frames"], 0.75)
@@ -65,7 +71,13 @@ class Summary(unittest.TestCase):
 
 class Page(unittest.TestCase):
     def render(self, results, real):
-        summary = {**pose.summarise(results, real), "cpu": "a processor", "commit": "abc", "date": "2020-02-20", "command": "tools/bench"}
+        summary = {
+            **pose.summarise(results, real),
+            "cpu": "a processor",
+            "commit": "abc",
+            "date": "2020-02-20",
+            "command": "tools/bench",
+        }
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
             (out / "pose").mkdir()
@@ -75,7 +87,13 @@ class Page(unittest.TestCase):
 
     def test_it_holds_the_tables_and_the_worst_in_order(self):
         text = self.render(RESULTS, REAL)
-        for words in (pose.NAMES["ppf"], "rejected by &lt;depth&gt;", "<td>600.00</td>", "Camera-recorded frames", "<td>9</td>"):
+        for words in (
+            pose.NAMES["ppf"],
+            "rejected by &lt;depth&gt;",
+            "<td>600.00</td>",
+            "Camera-recorded frames",
+            "<td>9</td>",
+        ):
             self.assertIn(words, text)
         self.assertLess(text.index("worst_2.png"), text.index("worst_10.png"))
 

@@ -18,7 +18,11 @@ PROMISED = {
 
 
 def contender(ms):
-    return {"ms": {"p10": ms / 2, "p50": ms, "p90": ms * 2}, "frames": 3, "stage_ms": {"detect.resize": 0.5, "detect.leaves": ms / 2}}
+    return {
+        "ms": {"p10": ms / 2, "p50": ms, "p90": ms * 2},
+        "frames": 3,
+        "stage_ms": {"detect.resize": 0.5, "detect.leaves": ms / 2},
+    }
 
 
 def write(file, value):
@@ -33,24 +37,41 @@ def measured(out):
     write(out / "speed" / "realtime" / "summary.json", {"auc": {"mean": 0.9}})
     at_default = {"required": {"bowl": 10, "mug": 0}, "recall": {"bowl": 0.8, "mug": None}, "false_detections": 2}
     write(out / "speed" / "default" / "summary.json", {"auc": {"mean": 0.7}, **at_default})
-    write(out / "speed" / "about.json", {"cpu": "<other>", "commit": "0ther", "date": "2020-01-02", "command": "tools/bench speed"})
+    write(
+        out / "speed" / "about.json",
+        {"cpu": "<other>", "commit": "0ther", "date": "2020-01-02", "command": "tools/bench speed"},
+    )
     write(out / "speed" / "linemod" / "table" / "summary.json", {"auc": {"mean": 0.6}})
-    runs = [{"run_name": "jpeg", "aggregate_name": name, "cpu_time": ms} for name, ms in (("mean", 9.0), ("median", 1.25))]
+    runs = [
+        {"run_name": "jpeg", "aggregate_name": name, "cpu_time": ms} for name, ms in (("mean", 9.0), ("median", 1.25))
+    ]
     write(out / "speed" / "kernels.json", {"benchmarks": runs})
     growth = {"objects_4": 10, "objects_20": 14, "trees_5": 5, "trees_10": 10, "scale_0.5": 3, "scale_1": 12}
     write(out / "growth" / "times.json", {name: contender(ms) for name, ms in growth.items()})
     latency = {"p50": 18.0, "p95": 25.0, "p99": 30.0}
     account = {"sent": 1800, "lost": 0, "skipped": 3, "detected": 1797}
-    write(out / "stream_compressed" / "observe.json", {"latency_ms": {"total": latency}, "account": account, "frames_with_poses": 1797})
+    write(
+        out / "stream_compressed" / "observe.json",
+        {"latency_ms": {"total": latency}, "account": account, "frames_with_poses": 1797},
+    )
     memory = {"early": 100.0, "end": 101.0, "most": 102.0}
-    write(out / "stream_compressed" / "usage.json", {"cpu_cores": 1.2, "cores": {"detect": 1.0}, "rss_mb": {"detect": memory}})
+    write(
+        out / "stream_compressed" / "usage.json",
+        {"cpu_cores": 1.2, "cores": {"detect": 1.0}, "rss_mb": {"detect": memory}},
+    )
 
 
 class Summary(unittest.TestCase):
     def summarise(self, prepare):
         with tempfile.TemporaryDirectory() as folder:
             prepare(pathlib.Path(folder))
-            return {**speed.summarise(pathlib.Path(folder)), "cpu": "a processor", "commit": "abc", "date": "2020-02-20", "command": "tools/bench"}
+            return {
+                **speed.summarise(pathlib.Path(folder)),
+                "cpu": "a processor",
+                "commit": "abc",
+                "date": "2020-02-20",
+                "command": "tools/bench",
+            }
 
     def test_each_figure_is_that_of_its_contender(self):
         summary = self.summarise(measured)

@@ -44,7 +44,11 @@ class LiveReport(unittest.TestCase):
             live.latencies_ms([{"utime": "5", "t_poses": "1"}], "t_poses", self.SHUTTERS, 0)
 
     def test_an_unplugged_camera_leaves_a_gap(self):
-        rows = [{"t_frame": "1.0", "t_poses": "1.1"}, {"t_frame": "4.5", "t_poses": ""}, {"t_frame": "4.6", "t_poses": "4.7"}]
+        rows = [
+            {"t_frame": "1.0", "t_poses": "1.1"},
+            {"t_frame": "4.5", "t_poses": ""},
+            {"t_frame": "4.6", "t_poses": "4.7"},
+        ]
         gap = live.unplugging(rows, 1_000_000, 5_000_000)
         self.assertEqual(gap, {"gap_s": 3.5, "frames_back_ms": 500, "poses_back_ms": 700})
         for replugged in (1_500_000, 5_650_000):
@@ -57,9 +61,18 @@ class LiveReport(unittest.TestCase):
 
 
 def evaluation(auc, recall):
-    figures = {"auc": {"<bowl>": auc, "mean": auc, "weighted": auc}, "precision": {"<bowl>": 1.0}, "recall": {"<bowl>": recall}}
+    figures = {
+        "auc": {"<bowl>": auc, "mean": auc, "weighted": auc},
+        "precision": {"<bowl>": 1.0},
+        "recall": {"<bowl>": recall},
+    }
     figures |= {"required": {"<bowl>": 10}, "pose_recall_add_s_10": {"<bowl>": recall, "mean": recall}}
-    return figures | {"false_detections": 0, "rules": {}, "stage_ms_median": {"detect.leaves": 2.5}, "bop19": {"ar": {"all": 0.6}}}
+    return figures | {
+        "false_detections": 0,
+        "rules": {},
+        "stage_ms_median": {"detect.leaves": 2.5},
+        "bop19": {"ar": {"all": 0.6}},
+    }
 
 
 class Options:
@@ -110,7 +123,13 @@ class Report(unittest.TestCase):
 
     def test_the_page_holds_everything_and_needs_no_network(self):
         page = report.page(self.out, self.summary)
-        for words in ("&lt;bowl&gt;", "<td>0.720</td>", "<td>0.900</td>", "<td>detect.leaves</td><td>2.50</td>", "rendered scene desk_1"):
+        for words in (
+            "&lt;bowl&gt;",
+            "<td>0.720</td>",
+            "<td>0.900</td>",
+            "<td>detect.leaves</td><td>2.50</td>",
+            "rendered scene desk_1",
+        ):
             self.assertIn(words, page)
         self.assertNotIn("http", page)
 

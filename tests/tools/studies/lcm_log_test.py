@@ -33,7 +33,11 @@ class ReadLog(unittest.TestCase):
 
 class Messages(unittest.TestCase):
     def test_poses_are_read_from_front_to_back(self):
-        pose = struct.pack(">i5s", 5, b"bowl\0") + struct.pack(">fib", 0.5, 3, 1) + struct.pack(">3d4d", 1, 2, 3, 1, 0, 0, 0)
+        pose = (
+            struct.pack(">i5s", 5, b"bowl\0")
+            + struct.pack(">fib", 0.5, 3, 1)
+            + struct.pack(">3d4d", 1, 2, 3, 1, 0, 0, 0)
+        )
         pose += struct.pack(">bii5f", 1, 2, 3, 0, 0, 0, 0, 0)
         data = bytes(8) + struct.pack(">qi3si", 77, 3, b"CH\0", 2) + 2 * (struct.pack(">i", 4) + pose)
         self.assertEqual(lcm_log.utime_of(data), 77)

@@ -42,7 +42,9 @@ class Charts(unittest.TestCase):
         self.assertEqual((words.count(".50"), words.count("–"), words.count("a <b>")), (1, 1, 1))
 
     def test_rows_without_value_say_so(self):
-        words = words_of(charts.row_bars([("a", None, None, 0.5), ("b", 0.25, (0.2, 0.3), None)], "AUC", "ours", "theirs"))
+        words = words_of(
+            charts.row_bars([("a", None, None, 0.5), ("b", 0.25, (0.2, 0.3), None)], "AUC", "ours", "theirs")
+        )
         self.assertIn("not measured (paper 0.500)", words)
         self.assertIn("0.250", words)
 

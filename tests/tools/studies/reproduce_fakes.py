@@ -14,7 +14,16 @@ import sys
 import time
 
 NAMES = (
-    *("hs-render", "hs-import", "hs-log", "hs-train", "hs-study-train", "hs-evaluate", "hs-study-evaluate", "hs-linemod"),
+    *(
+        "hs-render",
+        "hs-import",
+        "hs-log",
+        "hs-train",
+        "hs-study-train",
+        "hs-evaluate",
+        "hs-study-evaluate",
+        "hs-linemod",
+    ),
     *("hs-hough", "hs-failures", "hs-bench-speed"),
 )
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can")

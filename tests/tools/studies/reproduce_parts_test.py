@@ -135,7 +135,12 @@ class Plan(unittest.TestCase):
     def test_time_and_auc_are_of_the_same_settings(self):
         _, full = self.quick_and_full()
         names = ("--threshold", "--min-mass", "--stride")
-        for time, auc in (("original", "gall"), ("fast_engine_one_thread", "gall"), ("final", "paper"), ("realtime", "realtime")):
+        for time, auc in (
+            ("original", "gall"),
+            ("fast_engine_one_thread", "gall"),
+            ("final", "paper"),
+            ("realtime", "realtime"),
+        ):
             timed, judged = full[f"time_every_20/{time}"], full[f"evaluate/{auc}/table_small_1/seed1"]
             self.assertEqual(self.options(timed, *names), self.options(judged, *names), time)
         detectors = [word for word in full["side_by_side/objects_20_a.json"].command if "=" in word]

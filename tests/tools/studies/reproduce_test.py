@@ -42,7 +42,9 @@ class Case(unittest.TestCase):
 
     def words(self, *options):
         program = ("-m", "studies.reproduce", "--bin", self.folder / "bin", "--out", self.out, "--threads", "2")
-        real = () if "--real" in options or any(str(option).startswith("real:") for option in options) else ("--real", "")
+        real = (
+            () if "--real" in options or any(str(option).startswith("real:") for option in options) else ("--real", "")
+        )
         return [sys.executable, *program, *real, *options]
 
     def environment(self, **more):
@@ -96,7 +98,9 @@ class WholeQuickPlan(Case):
         original, realtime = summary["time"]["original"]["ms"], summary["time"]["realtime"]["ms"]
         self.assertAlmostEqual(summary["gain_over_original"]["whole_system"], original / realtime, places=2)
         engines = [summary["time"][f"{name}_one_thread"]["ms"] for name in ("fast_engine", "realtime")]
-        self.assertAlmostEqual(summary["gain_over_original"]["same_engine_one_thread"], engines[0] / engines[1], places=2)
+        self.assertAlmostEqual(
+            summary["gain_over_original"]["same_engine_one_thread"], engines[0] / engines[1], places=2
+        )
 
     def check_report(self, report):
         for name in (
@@ -204,7 +208,9 @@ class Choosing(Case):
     def test_what_lies_is_measured_with_its_poses(self):
         self.assertEqual(self.run_it("--only", "evaluate_every_5").returncode, 0)
         found = self.summary()["attitudes"]["table_lying"]
-        self.assertEqual({name: figures["bop_ar"] for name, figures in found.items()}, {"upright": 0.45, "attitudes": 0.45})
+        self.assertEqual(
+            {name: figures["bop_ar"] for name, figures in found.items()}, {"upright": 0.45, "attitudes": 0.45}
+        )
 
     def test_list_runs_nothing(self):
         listed = self.run_it("--list")

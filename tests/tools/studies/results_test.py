@@ -22,8 +22,14 @@ class Nothing:
 
 
 def demo(commit="abc1234"):
-    figures = {"auc": {"bowl": 0.72, "mean": 0.72}, "recall": {"bowl": 0.5}, "pose_recall_add_s_10": {"bowl": 0.25, "mean": 0.25}}
-    counts = dict.fromkeys(("frames_sent", "frames_detected", "frames_skipped", "frames_lost", "frames_with_poses"), 300)
+    figures = {
+        "auc": {"bowl": 0.72, "mean": 0.72},
+        "recall": {"bowl": 0.5},
+        "pose_recall_add_s_10": {"bowl": 0.25, "mean": 0.25},
+    }
+    counts = dict.fromkeys(
+        ("frames_sent", "frames_detected", "frames_skipped", "frames_lost", "frames_with_poses"), 300
+    )
     return {**figures, "processed": figures, "bop19_ar": {"bowl": 0.6, "all": 0.6}, "latency_ms": {"total": LATENCY}, **counts,
             "false_detections": 1, "rate_hz": 29.9, "train_seconds": 50.0, **OF_COMMIT, "commit": commit, "settings": {}}  # fmt: skip
 
@@ -61,12 +67,17 @@ class ResultsOfACommit(unittest.TestCase):
         write_json(self.out / "demo" / "summary.json", demo())
         write_json(self.out / "real" / "summary.json", demo("0ther"))
         text = self.written()
-        self.assertIn("Not measured of this commit: `tools/demo --real DIR`", self.section(text, "Demo: camera-recorded"))
+        self.assertIn(
+            "Not measured of this commit: `tools/demo --real DIR`", self.section(text, "Demo: camera-recorded")
+        )
         self.assertIn("Not measured of this commit: `tools/reproduce`", text)
 
     def test_parts_of_a_benchmark_are_told_apart(self):
         bench = self.out / "bench"
-        times = {"threads_1": {"ms": {"p50": 19.0}, "stage_ms": {}}, "realtime": {"ms": {"p50": 12.0}, "stage_ms": {"detect.leaves": 3.0}}}
+        times = {
+            "threads_1": {"ms": {"p50": 19.0}, "stage_ms": {}},
+            "realtime": {"ms": {"p50": 12.0}, "stage_ms": {"detect.leaves": 3.0}},
+        }
         write_json(bench / "speed" / "times.json", times)
         write_json(bench / "speed" / "about.json", {**OF_COMMIT, "command": "tools/bench speed"})
         write_json(bench / "growth" / "times.json", {"objects_4": {"ms": {"p50": 12.0}}})

@@ -86,7 +86,7 @@ class WholeStream(Case):
 
     def test_a_process_that_fails_at_its_end_fails_the_run(self):
         stream = self.stream()
-        (self.folder / "hs-pose").write_text(STAND_IN.replace("STAND_IN_STATUS\", 0", "STAND_IN_STATUS\", 5"))
+        (self.folder / "hs-pose").write_text(STAND_IN.replace('STAND_IN_STATUS", 0', 'STAND_IN_STATUS", 5'))
         with self.assertRaisesRegex(ProcessFailed, "pose ended with status 5"):
             stream.play("true")
 

@@ -30,7 +30,13 @@ def parse(words):
              "minute of replay at 30 Hz: latency from frame to pose, losses, CPU time, memory. growth: time with 1 to 40 "
              "objects, 5 to 30 trees, 320x240 to 1280x960 pixels. pose: accuracy and time, beside PCL's ICP and two other "
              "methods. Default: all four")  # fmt: skip
-    add("--every", type=positive, default=2, metavar="N", help="look at every Nth of the 60 frames of each scene (default 2)")
+    add(
+        "--every",
+        type=positive,
+        default=2,
+        metavar="N",
+        help="look at every Nth of the 60 frames of each scene (default 2)",
+    )
     add("--rivals-every", type=positive, default=6, metavar="M",
         help="of those, the other methods of poses look at every Mth: they are slow (default 6)")  # fmt: skip
     add("--real", metavar="DIR", help='camera-recorded data (DIR/objects, background, scenes, model) to compare poses on as '

@@ -30,7 +30,9 @@ class Bench:
 
     def scene(self, name):
         """Units are named at once and made by make()."""
-        return self.units.add(f"scene/{name}", "", "hs-render", "scene", name, "--frames", 300, "--every", 5, "--out", "{out}")
+        return self.units.add(
+            f"scene/{name}", "", "hs-render", "scene", name, "--frames", 300, "--every", 5, "--out", "{out}"
+        )
 
     def views(self):
         return self.units.add("training", "", "hs-render", "training", "--out", "{out}")
@@ -70,7 +72,9 @@ def side_by_side(bench, scene, out, detectors, *more):
 
 
 def instruction_sets(bench):
-    listed = subprocess.run([bench.programs / "hs-bench-speed", "--instruction-sets"], capture_output=True, text=True, check=True)
+    listed = subprocess.run(
+        [bench.programs / "hs-bench-speed", "--instruction-sets"], capture_output=True, text=True, check=True
+    )
     return [name for name in listed.stdout.split() if name in SETS]
 
 
@@ -149,7 +153,9 @@ def bench_stream(bench):
 def objects_forest(bench, names, count):
     """Of the first so many of forty objects."""
     few = ",".join(names[:count])
-    views = bench.units.add(f"growth/views_{count}", "", "hs-render", "training", "--objects", few, *GROWTH_VIEWS, "--out", "{out}")
+    views = bench.units.add(
+        f"growth/views_{count}", "", "hs-render", "training", "--objects", few, *GROWTH_VIEWS, "--out", "{out}"
+    )
     return bench.train(f"growth/objects_{count}", "--composites", 2, views=views)
 
 
@@ -158,7 +164,17 @@ def bench_growth(bench):
     bench.scene(SPEED_SCENE)
     bench.train("forest")
     bench.train("growth/trees_30", "--trees", 30)
-    bench.units.add("growth/all_views", "", "hs-render", "training", "--objects", f"all_{OBJECTS[-1]}", *GROWTH_VIEWS, "--out", "{out}")
+    bench.units.add(
+        "growth/all_views",
+        "",
+        "hs-render",
+        "training",
+        "--objects",
+        f"all_{OBJECTS[-1]}",
+        *GROWTH_VIEWS,
+        "--out",
+        "{out}",
+    )
     known = json.loads((bench.make()["growth/all_views"] / "models" / "names.json").read_text())
     names = [known[key] for key in sorted(known, key=int)]
     for count in OBJECTS:

@@ -162,7 +162,8 @@ def stage_rows(summary):
     stages = list(dict.fromkeys(stage for measured in summary["stage_ms"].values() for stage in measured))
     header = ("ms, median", *(stage.removeprefix("detect.") for stage in stages))
     return [header] + [
-        (name, *(milliseconds(measured.get(stage)) for stage in stages)) for name, measured in summary["stage_ms"].items()
+        (name, *(milliseconds(measured.get(stage)) for stage in stages))
+        for name, measured in summary["stage_ms"].items()
     ]
 
 
@@ -203,7 +204,9 @@ def history_rows(summary, history):
         "latency_p50_ms": (summary["latency_ms"] or {}).get("p50"),
     }  # fmt: skip
     keys = ("realtime_ms", "paper_ms", "linemod_ms", "latency_p50_ms")
-    return [(run["date"], run["commit"], *(milliseconds(run[key]) for key in keys), run["cpu"]) for run in [*history, now]]
+    return [
+        (run["date"], run["commit"], *(milliseconds(run[key]) for key in keys), run["cpu"]) for run in [*history, now]
+    ]
 
 
 def page(summary, history):
@@ -222,9 +225,12 @@ def page(summary, history):
 
 def glance(summary):
     """What one wants to know first."""
-    lines = [f"{words:<52}{ms:>10} ms   AUC {auc}" for words, ms, auc, _ in detection_rows(summary)]
+    rows = detection_rows(summary) if summary["parts"]["speed"] else []
+    lines = [f"{words:<52}{ms:>10} ms   AUC {auc}" for words, ms, auc, _ in rows]
     for row in stream_rows(summary):
-        lines.append(f"stream, {row[0]}: p50 {row[1]}, p99 {row[3]} ms; lost {row[5]}, skipped {row[6]} of {row[4]}; {row[8]} cores")
+        lines.append(
+            f"stream, {row[0]}: p50 {row[1]}, p99 {row[3]} ms; lost {row[5]}, skipped {row[6]} of {row[4]}; {row[8]} cores"
+        )
     for name in ("objects", "threads"):
         if summary[name]:
             lines.append(f"{name}: " + ", ".join(f"{n}: {ms:.1f} ms" for n, ms in summary[name]))

@@ -27,7 +27,12 @@ def parse(words):
                                                   "default: a private network")  # fmt: skip
     add("--scene", default="table_small_1", metavar="NAME", help="rendered test scene (default table_small_1)")
     add("--frames", type=positive, default=300, metavar="N", help="its length (default 300)")
-    add("--out", type=pathlib.Path, metavar="DIR", help="default out/demo, out/real with --real, or out/live with --live")
+    add(
+        "--out",
+        type=pathlib.Path,
+        metavar="DIR",
+        help="default out/demo, out/real with --real, or out/live with --live",
+    )
     add("--fresh", action="store_true", help="render and train again even where nothing has changed")
     options = parser.parse_args(words)
     if options.real and not os.path.isdir(f"{options.real}/objects"):
@@ -38,7 +43,9 @@ def parse(words):
         die("--unplug goes with --live")
     paths = {options.real, options.bin, str(options.out)}
     options.command = " ".join(["tools/demo", *("DIR" if word in paths else word for word in words)])
-    options.out = (options.out or pathlib.Path("out", "live" if options.live else "real" if options.real else "demo")).resolve()
+    options.out = (
+        options.out or pathlib.Path("out", "live" if options.live else "real" if options.real else "demo")
+    ).resolve()
     return options
 
 

@@ -40,7 +40,9 @@ def latencies_ms(rows, key, shutters, start_us):
 
 def unplugging(rows, start_us, replugged_us):
     """How long no frame came, and how soon after the camera frames and poses were back."""
-    frames, poses = (sorted(start_us + 1e6 * float(row[key]) for row in rows if row[key]) for key in ("t_frame", "t_poses"))
+    frames, poses = (
+        sorted(start_us + 1e6 * float(row[key]) for row in rows if row[key]) for key in ("t_frame", "t_poses")
+    )
     frame, pose = bisect.bisect_left(frames, replugged_us), bisect.bisect_left(poses, replugged_us)
     if frame in (0, len(frames)) or pose == len(poses):
         die("the camera was unplugged, expected frames before and frames with poses afterwards")
@@ -90,9 +92,15 @@ def print_summary(summary):
         print(f"{name:<26}" + "".join("       -" if value is None else f"{value:8.1f}" for value in latency.values()))
     print(
         "\n{frames_sent} frames sent at {frame_rate_hz:.2f} Hz, {frames_lost_from_camera} lost between camera and hs-capture,"
-        " {frames_lost_on_bus} on the bus; {frames_detected} detected, {frames_skipped} passed over for newer ones".format(**summary)
+        " {frames_lost_on_bus} on the bus; {frames_detected} detected, {frames_skipped} passed over for newer ones".format(
+            **summary
+        )
     )
-    print("frames are stamped {median} ms after the shutter (median), at worst {worst} ms".format(**summary["utime_error_ms"]))
+    print(
+        "frames are stamped {median} ms after the shutter (median), at worst {worst} ms".format(
+            **summary["utime_error_ms"]
+        )
+    )
     if "unplugged" in summary:
         print(
             "unplugged on the way: no frame for {gap_s} s; plugged in again, frames were back after {frames_back_ms} ms, poses"

@@ -104,6 +104,7 @@ def latency_chart(times):
 
 def object_rows(summary):
     """The first three figures over all frames that were sent, then again over those that were looked at."""
+
     def figures(found, name):
         return [show(found[key].get(name)) for key in ("auc", "recall", POSE_RECALL)]
 
@@ -117,16 +118,25 @@ def object_rows(summary):
 def frame_rows(summary):
     keys = ("frames_sent", "frames_received", "frames_detected", "frames_skipped", "frames_lost", "frames_with_poses")
     rows = [(key.replace("_", " "), summary[key]) for key in keys]
-    rows += [("results a second", show(summary["rate_hz"], "{:.1f}")), ("training, s", show(summary["train_seconds"], "{:.0f}"))]
+    rows += [
+        ("results a second", show(summary["rate_hz"], "{:.1f}")),
+        ("training, s", show(summary["train_seconds"], "{:.0f}")),
+    ]
     if "clutter" in summary:
         found = summary["clutter"]
-        rows += [("clutter: frames", found["frames_processed"]), ("clutter: detections, all false", found["false_detections"])]
+        rows += [
+            ("clutter: frames", found["frames_processed"]),
+            ("clutter: detections, all false", found["false_detections"]),
+        ]
         rows += [("clutter: false detections a frame", show(found["false_per_frame"]))]
     return rows
 
 
 def latency_rows(summary):
-    return [(stage, *(show(found[p], "{:.1f}") for p in ("p50", "p95", "p99"))) for stage, found in summary["latency_ms"].items()]
+    return [
+        (stage, *(show(found[p], "{:.1f}") for p in ("p50", "p95", "p99")))
+        for stage, found in summary["latency_ms"].items()
+    ]
 
 
 def contact_sheet(folder):
@@ -164,7 +174,9 @@ def print_table(summary):
         print(f"{stage:<16}" + "".join(f"{latency:>8}" for latency in latencies))
     print(
         "\nframes: {frames_sent} sent = {frames_detected} detected + {frames_skipped} skipped + {frames_lost} lost;"
-        " {frames_with_poses} with poses; {rate_hz:.1f} results a second; trained in {train_seconds:.0f} s".format(**summary)
+        " {frames_with_poses} with poses; {rate_hz:.1f} results a second; trained in {train_seconds:.0f} s".format(
+            **summary
+        )
     )
     if "clutter" in summary:
         print("clutter: {false_detections} detections, all false, on {frames_processed} frames: "

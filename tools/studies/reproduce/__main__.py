@@ -25,7 +25,9 @@ def parse(words):
              "to camera-recorded data (as for tools/demo --real)")  # fmt: skip
     add("--real", metavar="DIR", help='camera-recorded data to measure on as well; default ../shared/realdata where it is '
                                       'there, "" for none')  # fmt: skip
-    add("--out", type=pathlib.Path, metavar="DIR", help="default out/reproduce, or out/reproduce_uw, out/reproduce_real")
+    add(
+        "--out", type=pathlib.Path, metavar="DIR", help="default out/reproduce, or out/reproduce_uw, out/reproduce_real"
+    )
     add("--only", default="", metavar="PREFIX", help="only the units of work whose name begins so, and what they need")
     add("--list", action="store_true", help="show the units of work and end")
     add("--report", action="store_true", help="run nothing, write the report of what is there")

@@ -3,12 +3,25 @@
 from studies.measured import mean_of
 from studies.report.charts import COLOURS, NARROW, Chart, grouped_bars, row_bars
 from studies.reproduce import paper
-from studies.reproduce.variants import (DETECTOR_NAMES, FEATURE_NAMES, FEATURE_SCENE, FEATURES, SCALE_SCENES, SCENES,
-                                        forest_of)
+from studies.reproduce.variants import (
+    DETECTOR_NAMES,
+    FEATURE_NAMES,
+    FEATURE_SCENE,
+    FEATURES,
+    SCALE_SCENES,
+    SCENES,
+    forest_of,
+)
 
 # Figure 1 of the paper shows these; the other kernels of the derivatives are in Figure 2.
 CURVES = ("intensity", "depth_value", "depth_derivatives_7", "depth_hog", "honv", "curvature", "pfh", "fpfh", "final")
-COLOUR_OF = {"linemod": "#777777", "linemod_no_check": "#bbbbbb", "gall": COLOURS[0], "paper": COLOURS[1], "realtime": COLOURS[4]}
+COLOUR_OF = {
+    "linemod": "#777777",
+    "linemod_no_check": "#bbbbbb",
+    "gall": COLOURS[0],
+    "paper": COLOURS[1],
+    "realtime": COLOURS[4],
+}
 SMALL = (4.2, 3.6)  # inches
 
 

@@ -3,8 +3,21 @@
 import dataclasses
 
 from studies.reproduce import sources, variants
-from studies.reproduce.variants import (FEATURE_SCENE, FEATURES, NOT_IN_QUICK, OTHER_KERNELS, OTHER_SENSOR, PROFILES,
-                                        SCALE_HANDLING, SCALE_SCENES, SCENES, SCENES_20, STRIDES, forest_of, is_gall)
+from studies.reproduce.variants import (
+    FEATURE_SCENE,
+    FEATURES,
+    NOT_IN_QUICK,
+    OTHER_KERNELS,
+    OTHER_SENSOR,
+    PROFILES,
+    SCALE_HANDLING,
+    SCALE_SCENES,
+    SCENES,
+    SCENES_20,
+    STRIDES,
+    forest_of,
+    is_gall,
+)
 from studies.work import Units
 
 CHECK_DEPTH = ("--check-depth",)
@@ -87,14 +100,21 @@ class Planner:
         every = self.protocol.timing_every
         for name, timing in variants.TIMINGS.items():
             forest = self.train(timing.forest, source, 1, "time")
-            command = (variants.evaluator(timing.forest, timing.reference), *self._files(forest, source, FEATURE_SCENE, every))
+            command = (
+                variants.evaluator(timing.forest, timing.reference),
+                *self._files(forest, source, FEATURE_SCENE, every),
+            )
             facts = {"what": name, "scene": FEATURE_SCENE, "seed": 1}
-            self.units.add(f"{every_nth('time', every)}/{name}", "time", *command, *timing.options(self.protocol.threads), **facts)
+            self.units.add(
+                f"{every_nth('time', every)}/{name}", "time", *command, *timing.options(self.protocol.threads), **facts
+            )
 
     def side_by_side(self, forests, source, scene, figure):
         """Times forests, units by name, on every frame in turn: a machine is not always as fast."""
         wishes = f"threads={self.protocol.threads},{variants.RANKED_WISHES}"
-        detectors = [word for name, forest in forests.items() for word in ("--detector", f"{name}={{{forest}}},{wishes}")]
+        detectors = [
+            word for name, forest in forests.items() for word in ("--detector", f"{name}={{{forest}}},{wishes}")
+        ]
         command = ("hs-bench-speed", "--scene", source.scenes[scene], *detectors, "--out", "{out}")
         self.units.add(f"side_by_side/{scene}.json", figure, *command, scene=scene, seed=1)
 
@@ -102,7 +122,9 @@ class Planner:
         for name, what in (("before", "gall"), ("after", "final")):
             forest = self.train(what, source, 1, "3")
             command = ("hs-hough", "--forest", f"{{{forest}}}", "--scene", source.scenes[FEATURE_SCENE])
-            self.units.add(f"hough/{name}.png", "3", *command, "--frame", HOUGH_FRAME, "--out", "{out}", what=what, seed=1)
+            self.units.add(
+                f"hough/{name}.png", "3", *command, "--frame", HOUGH_FRAME, "--out", "{out}", what=what, seed=1
+            )
 
     def failure_pictures(self, source, scenes):
         forest = self.train("realtime", source, 1, "failures")

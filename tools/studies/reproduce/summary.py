@@ -3,8 +3,20 @@
 from studies.measured import mean_of, ratio, relative
 from studies.reproduce import paper
 from studies.reproduce.results import calibration_error, reliability
-from studies.reproduce.variants import (ATTITUDE_SCENES, FEATURE_SCENE, FEATURES, OTHER_SENSOR, OTHER_SENSOR_SCENES,
-                                        PROFILES, SCALE_SCENES, SCENES, SCENES_20, STRIDES, TIMINGS, forest_of)
+from studies.reproduce.variants import (
+    ATTITUDE_SCENES,
+    FEATURE_SCENE,
+    FEATURES,
+    OTHER_SENSOR,
+    OTHER_SENSOR_SCENES,
+    PROFILES,
+    SCALE_SCENES,
+    SCENES,
+    SCENES_20,
+    STRIDES,
+    TIMINGS,
+    forest_of,
+)
 
 
 def all_auc(results):
@@ -82,11 +94,13 @@ def other_sensor(results):
 
 def attitudes(results):
     """AUC, and average recall of poses, of a forest taught upright and one taught in all attitudes."""
+
     def figures(what, scene):
         return {"auc": results.auc(what, scene), "bop_ar": results.mean("bop_ar", what=what, scene=scene)}
 
     return {
-        scene: {name: figures(f"{name}_realtime", scene) for name in ("upright", "attitudes")} for scene in ATTITUDE_SCENES
+        scene: {name: figures(f"{name}_realtime", scene) for name in ("upright", "attitudes")}
+        for scene in ATTITUDE_SCENES
     }
 
 

@@ -3,8 +3,15 @@
 from studies.measured import mean_of, relative
 from studies.report.page import milliseconds, percent, show
 from studies.reproduce import paper
-from studies.reproduce.variants import (DETECTOR_NAMES, FEATURE_NAMES, FEATURE_SCENE, OTHER_SENSOR, SCENES, TIMINGS,
-                                        forest_of)
+from studies.reproduce.variants import (
+    DETECTOR_NAMES,
+    FEATURE_NAMES,
+    FEATURE_SCENE,
+    OTHER_SENSOR,
+    SCENES,
+    TIMINGS,
+    forest_of,
+)
 
 WORST = 8  # failures
 
@@ -22,7 +29,11 @@ def quality_rows(summary):
         by_pixel = summary["auc"]["final_depth_by_pixel"][FEATURE_SCENE]
         rows.append(("AUC where tests on depth look at one pixel", "", show(by_pixel)))
         rows.append(("gain where tests on depth look at one pixel", "", percent(relative(by_pixel, baseline))))
-    normalised = ("gain of depth normalisation, desk_2", percent(paper.NORMALISATION_GAIN_DESK_2), percent(desk["gain"]))
+    normalised = (
+        "gain of depth normalisation, desk_2",
+        percent(paper.NORMALISATION_GAIN_DESK_2),
+        percent(desk["gain"]),
+    )
     return [*rows, normalised]
 
 
@@ -46,7 +57,9 @@ def time_rows(summary):
 def gain_rows(summary):
     gain = summary["gain_over_original"]
     same = "realtime against the original, same fast engine, one thread each"
-    whole = "realtime as it runs (fast engine, all threads) against the original as it was (reference engine, one thread)"
+    whole = (
+        "realtime as it runs (fast engine, all threads) against the original as it was (reference engine, one thread)"
+    )
     rows = ((same, gain["same_engine_one_thread"]), (whole, gain["whole_system"]))
     return [(words, "", "–" if value is None else f"{value:.0f} times as fast") for words, value in rows]
 
@@ -61,7 +74,13 @@ def final_rows(summary):
 
 def glance(summary):
     """What the paper says and what was measured here."""
-    return [("", "paper", "here"), *quality_rows(summary), *stride_rows(summary), *time_rows(summary), *final_rows(summary)]
+    return [
+        ("", "paper", "here"),
+        *quality_rows(summary),
+        *stride_rows(summary),
+        *time_rows(summary),
+        *final_rows(summary),
+    ]
 
 
 def feature_rows(summary, left_out):
@@ -151,7 +170,10 @@ def real(summary):
         ("gall", show(found["auc_gall_mean"])),
         ("LINEMOD with depth check", show(found["auc_linemod_mean"])),
         ("LINEMOD without it", show(found["auc_linemod_no_check_mean"])),
-        ("false detections of realtime a frame of clutter, default threshold", show(found["false_per_clutter_frame"], "{:.2f}")),
+        (
+            "false detections of realtime a frame of clutter, default threshold",
+            show(found["false_per_clutter_frame"], "{:.2f}"),
+        ),
     ]
 
 
@@ -170,7 +192,9 @@ def failures(results):
     for scene in SCENES:
         for name in results.objects("realtime", scene):
             facts = {"what": "realtime", "scene": scene, "object": name}
-            found.append((results.mean("auc", **facts), scene, name, *(results.mean(metric, **facts) for metric in metrics)))
+            found.append(
+                (results.mean("auc", **facts), scene, name, *(results.mean(metric, **facts) for metric in metrics))
+            )
     rows = [
         (scene, name, show(auc), show(recall), show(precision), show(count, "{:.0f}"))
         for auc, scene, name, recall, precision, count in sorted(found, key=lambda row: row[0])[:WORST]
