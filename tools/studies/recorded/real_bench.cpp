@@ -73,7 +73,7 @@ OrderedJson to_json(const ComparedFrame& frame) {
 }  // namespace
 
 RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const Detector& detector,
-                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
+                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const view::ClassModels& models,
                          const ComparedObject& object) {
   RealBench bench;
   std::int64_t utime = 0;

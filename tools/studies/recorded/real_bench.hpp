@@ -35,8 +35,8 @@ struct RealBench {
 /// are drawn too where the detection lies in a drawn box of its class. Throws InputError, also for references to frames
 /// that are not there.
 RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& drawn, const Detector& detector,
-                         const PoseEstimator& estimator, const PoseEstimator& unchecked, const ClassModels& models,
-                         const ComparedObject& object);
+                         const PoseEstimator& estimator, const PoseEstimator& unchecked,
+                         const view::ClassModels& models, const ComparedObject& object);
 
 /// {"object", "poses", "frames", "with_pose", "within_5mm_5deg", "median_mm", "median_deg", "symmetries", "alignment",
 /// "per_frame": [{"frame", "reliable", "outcome", "mm", "deg"}]}; null where there is no pose. "poses" is of all
