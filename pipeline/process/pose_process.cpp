@@ -167,11 +167,12 @@ class PoseProcess {
 
   void tell_missing_frames() const {
     // On a network another process may work on other cameras' detections; of a log it is said.
-    const std::int64_t all = bus_.is_log() ? detections_ : detections_ - others_;
-    const std::int64_t missing = bus_.is_log() ? without_frame_ + others_ : without_frame_;
+    const std::int64_t others = others_;
+    const std::int64_t all = detections_ - (bus_.is_log() ? 0 : others);
+    const std::int64_t missing = without_frame_ + (bus_.is_log() ? others : 0);
     if (missing == 0) return;
-    const std::string words = fmt::format("of {} detections_t {} had no frame on {}; they are of frames on {}", all,
-                                          missing, options_.frame_channels, fmt::join(sources_, ", "));
+    const std::string words = fmt::format("{} of {} detections_t had no frame on {}; they name {}", missing, all,
+                                          options_.frame_channels, fmt::join(sources_, ", "));
     require(!bus_.is_log() || missing < all, "{}: {}; hs-detect --keep-frames keeps them", bus_.url(), words);
     log_warning("{}", words);
   }

@@ -9,7 +9,7 @@
 #include "tools/log/foreign_frames.hpp"
 #include "tools/log/image_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 using Wire = drake_image_t;
@@ -83,7 +83,7 @@ cv::Mat decode_png(const DrakeImage& image, int type) {
   return decoded;
 }
 
-std::vector<std::uint8_t> bytes_of(const cv::Mat& continuous) {
+std::vector<std::uint8_t> pixels_of(const cv::Mat& continuous) {
   return {continuous.data, continuous.data + continuous.total() * continuous.elemSize()};
 }
 
@@ -95,7 +95,7 @@ image_t colour_image(const DrakeImage& image) {
   }
   if (image.compression == Wire::COMPRESSION_METHOD_PNG) {
     return make_image(image.width, image.height, image_t::PIXEL_FORMAT_BGR, 3 * image.width,
-                      bytes_of(decode_png(image, CV_8UC3)));
+                      pixels_of(decode_png(image, CV_8UC3)));
   }
   const auto raw = [&](std::int32_t format, int channels) {
     return make_image(image.width, image.height, format, channels * image.width, unpacked(image, channels));
@@ -114,7 +114,7 @@ std::vector<std::uint8_t> millimetres(const DrakeImage& image) {
   const std::vector<std::uint8_t> bytes = unpacked(image, 4);
   cv::Mat metres(image.height, image.width, CV_32FC1);
   std::memcpy(metres.data, bytes.data(), bytes.size());
-  return bytes_of(depth_to_millimetres(metres));
+  return pixels_of(depth_to_millimetres(metres));
 }
 
 image_t depth_image(const DrakeImage& image) {
@@ -125,7 +125,7 @@ image_t depth_image(const DrakeImage& image) {
   if (image.channel_type == Wire::CHANNEL_TYPE_FLOAT32) return raw(millimetres(image));
   require(image.channel_type == Wire::CHANNEL_TYPE_UINT16,
           "depth of channel type {}, expected 16 bits (3) or 32-bit floats (6)", image.channel_type);
-  if (image.compression == Wire::COMPRESSION_METHOD_PNG) return raw(bytes_of(decode_png(image, CV_16UC1)));
+  if (image.compression == Wire::COMPRESSION_METHOD_PNG) return raw(pixels_of(decode_png(image, CV_16UC1)));
   return raw(unpacked(image, 2));
 }
 
@@ -160,4 +160,4 @@ images_t images_from_drake(ByteView message) {
   return make_images(utime, colour_image(colours[0]), images_t::DEPTH_MM, depth_image(depths[0]));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

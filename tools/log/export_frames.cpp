@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,4 +65,4 @@ std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& fold
   return frames;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

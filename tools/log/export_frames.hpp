@@ -4,7 +4,7 @@
 
 #include "tools/log/recording.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// Writes a recording's frames as a scene folder in BOP format without objects: depth in millimetres as it is, colour
 /// as PNG. Every frame needs a camera: its own or the settings'; one without is left out and counted. Returns the
@@ -15,4 +15,4 @@ std::int64_t export_bop(const RecordingSettings& settings, const std::filesystem
 /// which the source uw:FOLDER reads again. Cameras are not needed. Returns and throws as export_bop().
 std::int64_t export_pngs(const RecordingSettings& settings, const std::filesystem::path& folder, LossAccount& losses);
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -13,7 +13,7 @@
 #include "pipeline/messages/wire_check.hpp"
 #include "pipeline/types/frame_results.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 /// All frames of the log, of all cameras, in the order of time; for each what its detectors found, joined.
@@ -155,4 +155,4 @@ std::int64_t export_results_json(const std::filesystem::path& log_file, const st
   return static_cast<std::int64_t>(results.size());
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -4,7 +4,7 @@
 
 #include "tools/log/good_events.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// Writes the detections and poses of a log, joined by frame (of all cameras, in the order of time) and detection (of
 /// all detectors that worked on the frame, strongest first), one row a detection: CSV with a header line, or JSON with
@@ -17,4 +17,4 @@ std::int64_t export_results_csv(const std::filesystem::path& log_file, const std
 std::int64_t export_results_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                                  LossAccount& losses);
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

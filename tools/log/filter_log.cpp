@@ -3,7 +3,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& filter,
                         const std::filesystem::path& out_file, LossAccount& losses) {
   const ChannelPattern channels(filter.channels);
@@ -29,4 +29,4 @@ std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& 
   return kept;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

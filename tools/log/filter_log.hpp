@@ -6,7 +6,7 @@
 
 #include "tools/log/good_events.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 struct LogFilter {
   double start_s = 0.0;  ///< seconds since the log's first event
@@ -20,4 +20,4 @@ struct LogFilter {
 std::int64_t filter_log(const std::filesystem::path& log_file, const LogFilter& filter,
                         const std::filesystem::path& out_file, LossAccount& losses);
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -7,7 +7,7 @@
 // Other people's RGB-D messages as images_t. What travels compressed stays as it is, bit for bit. Throws InputError
 // where a message is damaged, or its images are of a kind that images_t cannot carry.
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// A kinect.frame_msg_t (openhumanoids/kinect): colour RGB or JPEG, depth in millimetres, raw or zlib. Depth that is
 /// not registered to colour (DEPTH_MM of libfreenect) is taken as it is.
@@ -18,4 +18,4 @@ images_t images_from_kinect(ByteView message);
 /// rounded to millimetres; raw, zlib or PNG. Other images in it are passed over.
 images_t images_from_drake(ByteView message);
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

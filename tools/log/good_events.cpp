@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 void LossAccount::note_damage(std::uint64_t bytes, const std::string& reason) {
   if (damaged_places_ == 0) first_damage_ = reason;
@@ -54,4 +54,4 @@ std::optional<LogEvent> GoodEvents::next() {
   return event;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -7,7 +7,7 @@
 
 #include "pipeline/bus/event_log.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// What of a recording could not be kept.
 class LossAccount {
@@ -48,4 +48,4 @@ class GoodEvents {
   std::int64_t count_ = 0;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

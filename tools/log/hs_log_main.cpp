@@ -9,7 +9,7 @@
 #include "tools/log/import_log.hpp"
 #include "tools/log/log_info.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 struct Options {
@@ -68,10 +68,11 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools
 
 int main(int argc, char** argv) {
   using namespace houghstream;
+  using namespace houghstream::log_tools;
   CommandLine app(
       "Looks into LCM logs, cuts them, makes them of other recordings and writes what is in them to files. "
       "What is damaged is passed over and reported.",

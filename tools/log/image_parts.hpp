@@ -8,7 +8,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/wire_reader.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 inline std::vector<std::uint8_t> bytes_of(ByteView view) {
   return {view.data, view.data + view.size};
@@ -39,4 +39,4 @@ inline images_t make_images(std::int64_t utime, image_t colour, std::int16_t dep
   return message;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -3,7 +3,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
                         const std::filesystem::path& log_file, LossAccount& losses) {
@@ -24,4 +24,4 @@ std::int64_t import_log(const RecordingSettings& settings, const std::string& ch
   return frames;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

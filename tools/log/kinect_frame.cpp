@@ -4,7 +4,7 @@
 #include "tools/log/foreign_frames.hpp"
 #include "tools/log/image_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 image_t read_colour(WireReader& reader) {
@@ -55,4 +55,4 @@ images_t images_from_kinect(ByteView message) {
   return make_images(utime, std::move(colour), depth_type, std::move(depth));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -6,7 +6,7 @@
 #include "pipeline/messages/codecs.hpp"
 #include "tools/log/image_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 template <typename Number>
@@ -64,4 +64,4 @@ std::optional<images_t> KlgFile::next() {
   return make_images(utime, std::move(colour_image), depth_type, std::move(depth_image));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// Reads a .klg recording (Logger2, Kintinuous, ElasticFusion): little-endian int32 frames, then for each int64 time in
 /// microseconds, int32 bytes of depth, int32 bytes of colour, depth (uint16 millimetres, zlib unless of full size),
@@ -38,4 +38,4 @@ class KlgFile {
   std::int32_t index_ = 0;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -13,7 +13,7 @@
 #include "pipeline/messages/wire_check.hpp"
 #include "tools/log/message_types.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 std::string describe_frame(ByteView bytes) {
@@ -129,4 +129,4 @@ std::string to_text(const LogInfo& info) {
   return text;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

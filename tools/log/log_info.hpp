@@ -8,7 +8,7 @@
 
 #include "tools/log/good_events.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// The messages of one channel.
 struct ChannelInfo {
@@ -41,4 +41,4 @@ LogInfo read_log_info(const std::filesystem::path& log_file, LossAccount& losses
 /// A table for people, its times counted from the log's first event.
 std::string to_text(const LogInfo& info);
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

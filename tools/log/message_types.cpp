@@ -12,7 +12,7 @@
 #include <houghstream/status_t.hpp>
 #include <map>
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 std::int64_t fingerprint_of(ByteView message) {
   if (message.size < 8) return 0;
@@ -41,4 +41,4 @@ bool is_frame_type(std::int64_t fingerprint) {
          fingerprint == drake_image_array_t::getHash();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

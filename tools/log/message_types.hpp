@@ -5,7 +5,7 @@
 
 #include "pipeline/messages/wire_reader.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// The fingerprint that an encoded message begins with; 0 where it is too short to have one.
 std::int64_t fingerprint_of(ByteView message);
@@ -17,4 +17,4 @@ std::string type_name(std::int64_t fingerprint);
 /// Whether it is a type of RGB-D frames: ours, or one that to_images() makes ours of.
 bool is_frame_type(std::int64_t fingerprint);
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

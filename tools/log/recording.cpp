@@ -17,7 +17,7 @@
 #include "tools/log/klg_file.hpp"
 #include "tools/log/message_types.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 bool starts_with(const std::string& text, const std::string& start) {
@@ -177,4 +177,4 @@ NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses)
   return reading(std::make_shared<LogRecording>(settings, losses));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -9,7 +9,7 @@
 #include "pipeline/types/camera.hpp"
 #include "tools/log/good_events.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 struct RecordedFrame {
   std::int64_t timestamp = 0;  ///< when it was received or taken, microseconds since the epoch
@@ -34,4 +34,4 @@ struct RecordingSettings {
 /// cannot be read.
 NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses);
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

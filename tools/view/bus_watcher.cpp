@@ -11,7 +11,7 @@
 #include "pipeline/messages/messages.hpp"
 #include "tools/view/preview.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 std::int64_t microseconds(std::chrono::steady_clock::time_point time) {
@@ -141,4 +141,4 @@ void BusWatcher::listen() {
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

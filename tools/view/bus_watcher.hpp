@@ -10,11 +10,11 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/process/process_loop.hpp"
-#include "tools/view/camera_choice.hpp"
 #include "tools/view/match_queue.hpp"
+#include "tools/view/shown_camera.hpp"
 #include "tools/view/stream_watch.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// Listens to frames, detections and poses in a thread of its own, so that slow drawing never delays receiving.
 class BusWatcher {
@@ -36,7 +36,7 @@ class BusWatcher {
   void note_skipped() { status_.count_skipped(1); }
 
   /// Which camera is shown; frames of the others are skipped.
-  CameraChoice& cameras() { return cameras_; }
+  ShownCamera& cameras() { return cameras_; }
 
   /// Rates of the camera that is shown, and what the processes say.
   StreamState stream_state();
@@ -62,7 +62,7 @@ class BusWatcher {
 
   LcmBus& bus_;
   StatusReporter status_{"hs-view"};
-  CameraChoice cameras_;
+  ShownCamera cameras_;
   FrameMatcher matcher_;
   StreamWatch stream_;
   MatchQueue queue_;
@@ -70,4 +70,4 @@ class BusWatcher {
   std::thread thread_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 FrameMatcher::FrameMatcher(MatchSettings settings) : settings_(settings) {
   require(settings.rate_hz > 0.0 && settings.rate_hz <= 1000.0, "drawing rate of {} Hz, expected above 0 to 1000",
@@ -72,4 +72,4 @@ std::optional<MatchedFrame> FrameMatcher::next(std::int64_t now_us) {
   return result;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

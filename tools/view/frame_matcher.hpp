@@ -8,7 +8,7 @@
 #include "pipeline/process/detector_count.hpp"
 #include "pipeline/types/frame_results.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// How frames wait for their results.
 struct MatchSettings {
@@ -61,4 +61,4 @@ class FrameMatcher {
   std::int64_t last_poses_us_ = 0;       ///< when poses last came, or the first frame
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -7,7 +7,7 @@
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& camera) {
@@ -87,4 +87,4 @@ void FrameShow::remember(const ViewedFrame& viewed) {
   if (stream_.history.size() > kFrames) stream_.history.pop_front();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -9,7 +9,7 @@
 #include "tools/view/view_outputs.hpp"
 #include "tools/view/view_window.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// What is drawn of each frame, and where to.
 struct ShowSettings {
@@ -58,4 +58,4 @@ class FrameShow {
   StreamView stream_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -9,7 +9,7 @@
 
 #include "tools/view/frame_matcher.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// Hands matched frames from the thread that receives to the one that draws. When it is full the oldest is dropped.
 class MatchQueue {
@@ -42,4 +42,4 @@ class MatchQueue {
   std::deque<MatchedFrame> frames_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view

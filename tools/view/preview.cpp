@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/codecs.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes) {
   constexpr double kSmaller = 0.75;
@@ -23,4 +23,4 @@ PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes) {
   fail("preview of {}x{} pixels does not fit {} bytes", picture.cols, picture.rows, max_bytes);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

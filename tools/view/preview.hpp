@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// A message of this size passes through the receive buffer that an untuned Linux gives to programs that ask for none,
 /// Java's among them, with room for what else is on the bus.
@@ -21,4 +21,4 @@ struct PreviewPicture {
 /// Throws InputError where even a few pixels do not fit.
 PreviewPicture encode_preview(const cv::Mat& picture, std::size_t max_bytes = kMaxPreviewBytes);
 
-}  // namespace houghstream
+}  // namespace houghstream::view

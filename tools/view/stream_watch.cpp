@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 constexpr std::int64_t kWindowUs = 2'000'000;   // over which rates are counted
@@ -35,4 +35,4 @@ StreamState StreamWatch::state(std::int64_t now_us) {
   return state;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// What a process said about itself last.
 struct ProcessState {
@@ -42,4 +42,4 @@ class StreamWatch {
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view

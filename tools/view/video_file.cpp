@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::move(file)), rate_hz_(rate_hz) {}
 
@@ -30,4 +30,4 @@ void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
   last_ = picture.clone();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// Writes an MP4 with H.264, which every browser plays, at a constant rate. A picture belongs to a slot of
 /// 1/rate seconds; a slot without a picture repeats the one before, so that the video lasts as long as the stream did.
@@ -30,4 +30,4 @@ class VideoFile {
   std::int64_t frames_written_ = 0;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view

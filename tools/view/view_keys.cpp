@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace houghstream {
+namespace houghstream::view {
 
 KeyAction apply_key(int key, FrameViewSettings& settings) {
   constexpr int kEscape = 27;
@@ -24,4 +24,4 @@ KeyAction apply_key(int key, FrameViewSettings& settings) {
   return KeyAction::kRedraw;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

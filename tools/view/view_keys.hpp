@@ -2,7 +2,7 @@
 
 #include "tools/view/drawing/frame_view.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// What a key asks for.
 enum class KeyAction {
@@ -16,4 +16,4 @@ enum class KeyAction {
 /// shows 3-D in its place, + and - move the smallest score that is drawn, c goes on to the next camera.
 KeyAction apply_key(int key, FrameViewSettings& settings);
 
-}  // namespace houghstream
+}  // namespace houghstream::view

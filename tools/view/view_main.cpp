@@ -3,9 +3,9 @@
 
 namespace {
 
-void add_options(houghstream::CommandLine& app, houghstream::ViewerSettings& settings, std::string& camera) {
-  houghstream::ShowSettings& show = settings.show;
-  houghstream::OutputSettings& outputs = show.outputs;
+void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSettings& settings, std::string& camera) {
+  houghstream::view::ShowSettings& show = settings.show;
+  houghstream::view::OutputSettings& outputs = show.outputs;
   houghstream::add_frame_channels_option(app, settings.frame_channels);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   houghstream::add_model_options(app, show.models, show.model_unit_m);
@@ -40,11 +40,11 @@ int main(int argc, char** argv) {
       "latency. Of several cameras one is shown at a time: the first that is heard, the next one after key c. With "
       "--snapshot, --video, --pictures or --preview it needs no display.",
       "hs-view");
-  houghstream::ViewerSettings settings;
+  houghstream::view::ViewerSettings settings;
   std::string camera;
   add_options(app, settings, camera);
   return houghstream::run_tool(app, argc, argv, [&] {
     if (!camera.empty()) settings.show.camera = houghstream::parse_camera(camera);
-    houghstream::run_viewer(settings);
+    houghstream::view::run_viewer(settings);
   });
 }

@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,4 +61,4 @@ bool ViewOutputs::complete() const {
   return snapshot_written_ && settings_.video.empty() && settings_.pictures.empty();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -7,7 +7,7 @@
 
 #include "tools/view/video_file.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// Where pictures go without a display; an empty path is not written.
 struct OutputSettings {
@@ -43,4 +43,4 @@ class ViewOutputs {
 /// Writes an image; throws InputError where that fails.
 void write_picture(const std::filesystem::path& file, const cv::Mat& picture);
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -16,7 +16,7 @@
 #include "pipeline/bus/channels.hpp"
 #include "tools/view/view_outputs.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 const std::string kTitle = "Houghstream";
@@ -77,4 +77,4 @@ void ViewWindow::save() const {
   log_info("saved {}", file);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -5,7 +5,7 @@
 #include "pipeline/types/frame_id.hpp"
 #include "tools/view/view_keys.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// The window; its keys are those of apply_key, and s, which saves the picture.
 class ViewWindow {
@@ -25,4 +25,4 @@ class ViewWindow {
   FrameId id_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view

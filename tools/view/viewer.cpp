@@ -8,7 +8,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "tools/view/bus_watcher.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -50,4 +50,4 @@ void run_viewer(const ViewerSettings& settings) {
   frame_show.finish();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

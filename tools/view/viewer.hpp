@@ -5,7 +5,7 @@
 #include "pipeline/bus/channels.hpp"
 #include "tools/view/frame_show.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// What hs-view does.
 struct ViewerSettings {
@@ -19,4 +19,4 @@ struct ViewerSettings {
 /// there and nothing else was asked for. Throws InputError.
 void run_viewer(const ViewerSettings& settings);
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -34,7 +34,7 @@ void expect_refused(const images_t& message, const std::string& because) {
     FAIL() << "accepted, expected a refusal because of " << because;
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find(because), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("frame 99"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("frame LEFT 99"), std::string::npos) << error.what();
   }
 }
 

@@ -52,7 +52,7 @@ ObjectPoses make_poses() {
   refused.detection_index = 1;
   refused.status = PoseStatus::kTooFewPoints;
   refused.residual = kNan;
-  return {77, "OPENNI_FRAME", {valid, refused}, {{"pose.icp", 3000}}};
+  return {{"OPENNI_FRAME", 77}, {valid, refused}, {{"pose.icp", 3000}}};
 }
 
 template <typename Message>

@@ -75,7 +75,7 @@ TEST(DetectProcess, FramesOfALogAreKeptWhereAskedEachBeforeItsResult) {
   const auto output = folder / ("detect_process_keep_out." + std::to_string(getpid()));
   std::map<std::string, std::vector<std::uint8_t>> sent;
   LogWriter writer(input);
-  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+  for (const std::string camera : {"LEFT", "RIGHT"}) {
     sent[camera] = encode_message(frame_message(5, camera == "LEFT" ? 0 : 1));
     writer.write(77, camera, {sent[camera].data(), sent[camera].size()});
     writer.write(78, "OTHER", {sent[camera].data(), sent[camera].size()});
@@ -89,7 +89,7 @@ TEST(DetectProcess, FramesOfALogAreKeptWhereAskedEachBeforeItsResult) {
     run_detect_process(bus, options, find_nothing);
   }
   LogReader results(output);
-  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+  for (const std::string camera : {"LEFT", "RIGHT"}) {
     const std::optional<LogEvent> frame = results.next();
     ASSERT_TRUE(frame.has_value());
     EXPECT_EQ(frame->channel, camera);

@@ -130,7 +130,7 @@ TEST(ResultLog, ResultsAreReadAndOthersPassedOver) {
 TEST(ResultLog, OneOfSeveralCamerasIsChosenOrTheLogIsRefused) {
   const fs::path file = fresh_folder("result_log_cameras") / "results.lcmlog";
   LogWriter log(file);
-  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+  for (const std::string camera : {"LEFT", "RIGHT"}) {
     Detections detections = *two_frames()[0].detections;
     detections.frame.channel = camera;
     append(log, channel::kDetections, to_message(detections));

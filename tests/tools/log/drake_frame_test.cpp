@@ -2,7 +2,7 @@
 
 #include "tests/tools/log/foreign_frames.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 TEST(DrakeFrame, MetresBecomeMillimetres) {
@@ -63,4 +63,4 @@ TEST(DrakeFrame, WhatIsNotOneFrameIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

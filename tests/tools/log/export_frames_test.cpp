@@ -7,7 +7,7 @@
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,4 +53,4 @@ TEST(ExportFrames, AFolderThatCannotBeWrittenIsAnError) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -10,7 +10,7 @@
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,7 +98,7 @@ TEST(ExportResults, CamerasOfEqualTimesAndSeveralDetectorsAreAllThere) {
   const fs::path folder = fresh_folder("results_two_cameras");
   TestLog log(folder / "log");
   constexpr int kFrames = 20;
-  for (const std::string& camera : {"LEFT", "RIGHT"}) {
+  for (const std::string camera : {"LEFT", "RIGHT"}) {
     for (int i = 0; i < kFrames; ++i) {
       log.add(channel::kDetections, to_message(make_detections(i, 1, camera)));
       Detections cup = make_detections(i, 1, camera);
@@ -152,4 +152,4 @@ TEST(ExportResults, ALogWithoutResultsIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

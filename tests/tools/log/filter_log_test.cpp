@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST_F(FilterLog, WhatMakesNoSenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -6,7 +6,7 @@
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/foreign_frames.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 template <typename Message>
 images_t convert(images_t (*conversion)(ByteView), const Message& message) {
@@ -32,4 +32,4 @@ void expect_cuts_refused(images_t (*conversion)(ByteView), const Message& messag
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

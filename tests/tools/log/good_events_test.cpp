@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ TEST(LossAccount, SaysInOneLineWhatWasLost) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -1,6 +1,6 @@
 #include "tests/tools/log/foreign_frames.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 TEST(KinectFrame, RawImagesAreUnderstood) {
@@ -31,4 +31,4 @@ TEST(KinectFrame, WhatCannotBeMillimetresIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -8,7 +8,7 @@
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/message_types.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ TEST(LogInfo, AFrameThatIsDamagedIsCounted) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

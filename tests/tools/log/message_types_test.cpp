@@ -6,7 +6,7 @@
 
 #include "tests/tools/log/recordings.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 TEST(MessageTypes, AreKnownByFingerprint) {
@@ -40,4 +40,4 @@ TEST(MessageTypes, BotCoreHasOurFingerprints) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

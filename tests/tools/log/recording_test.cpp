@@ -6,7 +6,7 @@
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,4 +111,4 @@ TEST(Recording, WhatCannotBeOpenedOrMakesNoSenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

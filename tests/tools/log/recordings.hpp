@@ -17,7 +17,7 @@
 
 // Recordings as other programs make them, of make_test_frame().
 
-namespace houghstream {
+namespace houghstream::log_tools {
 
 /// A frame that differs from its neighbours, 64x48.
 inline RgbdFrame numbered_frame(int index) {
@@ -159,4 +159,4 @@ std::string log_of(const std::filesystem::path& folder, int frames, const std::s
   return file.string();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -12,7 +12,7 @@
 
 // Whatever is imported and exported again is what it was: depth always, colour where nothing compressed it with loss.
 
-namespace houghstream {
+namespace houghstream::log_tools {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ TEST(RoundTrip, UwFolderIsWhatPngExportWrites) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::log_tools

@@ -13,12 +13,15 @@ import lcm.spy.SpyPlugin;
 
 /** Types and plug-ins as spy asks for them, and which messages a viewer shows together. */
 final class PluginsTest {
+  private static final String CHANNEL = "OPENNI_FRAME";
+
   private PluginsTest() {}
 
   static void run() {
     Check.test("plug-ins tell name and types without a place", PluginsTest::plugins);
     Check.test("spy knows every type that is sent", PluginsTest::types);
-    Check.test("frames, detections and poses meet by utime", PluginsTest::matching);
+    Check.test("frames, detections and poses meet by the frame's name", PluginsTest::matching);
+    Check.test("cameras of equal times and several detectors are kept apart", PluginsTest::cameras);
   }
 
   private static void plugins() {
@@ -46,7 +49,7 @@ final class PluginsTest {
   private static void matching() throws Exception {
     ResultMatcher matcher = new ResultMatcher();
     Check.equal(matcher.newest(0), null);
-    matcher.addFrame(ViewersTest.frame(10));
+    matcher.addFrame(CHANNEL, ViewersTest.frame(10));
     matcher.addDetections(Samples.detections(10));
     Check.equal(matcher.newest(0).utime, 10L); // poses never came: detections alone
     matcher.addPoses(Samples.poses(10, object_pose_t.VALID), 0);
@@ -56,9 +59,51 @@ final class PluginsTest {
     matcher.addDetections(Samples.detections(3_000_000));
     Check.equal(matcher.newest(9_000_000).utime, 3_000_000L); // a second later the frame of 10 is too old
     Check.equal(matcher.arrivedPercent(), 33);
-    for (int i = 0; i < 200; ++i) matcher.addFrame(ViewersTest.frame(i)); // a log that is played again, from an earlier time
+    for (int i = 0; i < 200; ++i) matcher.addFrame(CHANNEL, ViewersTest.frame(i)); // a log that is played again, from an earlier time
     matcher.addDetections(Samples.detections(150));
     Check.equal(matcher.newest(9_000_000).utime, 150L);
-    Check.refused("message of 8 bytes", () -> matcher.addFrame(new byte[8]));
+    Check.refused("message of 8 bytes", () -> matcher.addFrame(CHANNEL, new byte[8]));
+  }
+
+  private static detections_t found(String camera, String object, float score) {
+    detections_t detections = Samples.detections(5);
+    detections.source_channel = camera;
+    detections.detections[0].class_name = object;
+    detections.detections[0].score = score;
+    return detections;
+  }
+
+  private static object_poses_t posed(String camera, String object, float score) {
+    object_poses_t poses = Samples.poses(5, object_pose_t.VALID);
+    poses.source_channel = camera;
+    poses.poses[0].class_name = object;
+    poses.poses[0].detection_score = score;
+    return poses;
+  }
+
+  private static void cameras() throws Exception {
+    ResultMatcher matcher = new ResultMatcher();
+    for (String camera : new String[] {"LEFT", "RIGHT"}) {
+      matcher.addFrame(camera, ViewersTest.frame(5));
+      matcher.addDetections(found(camera, "bowl", 0.5F));
+    }
+    matcher.addPoses(posed("LEFT", "can", 0.75F), 0); // before its detections
+    matcher.addDetections(found("LEFT", "can", 0.75F));
+    Check.equal(matcher.cameras().toString(), "[LEFT, RIGHT]");
+    ResultMatcher.Entry left = matcher.newest(9_000_000);
+    Check.equal(left.id.channel(), "LEFT");
+    detections_t both = left.results.detections();
+    Check.equal(both.n_detections, 2);
+    Check.equal(both.detections[0].class_name, "can"); // strongest first
+    Check.equal(left.results.poses().n_poses, 1);
+    Check.equal(left.results.poses().poses[0].detection_index, 0);
+    matcher.addPoses(posed("LEFT", "bowl", 0.5F), 0);
+    Check.equal(left.results.poses().poses[0].detection_index, 1);
+    Check.that(left.results.allPosed(), "each detector's result has its poses");
+    matcher.choose("RIGHT");
+    ResultMatcher.Entry right = matcher.newest(9_000_000);
+    Check.equal(right.id.channel(), "RIGHT");
+    Check.equal(right.results.detections().n_detections, 1);
+    Check.equal(right.results.poses(), null);
   }
 }

@@ -93,7 +93,7 @@ public final class ViewersTest {
   }
 
   private static void panel() throws Exception {
-    DetectionPanel panel = new DetectionPanel();
+    DetectionPanel panel = new DetectionPanel(camera -> { });
     for (int[] size : SIZES) painted(panel.component(), size[0], size[1]);
     RgbdFrame frame = RgbdFrame.decode(frame(5));
     detections_t detections = Samples.detections(5);
@@ -110,7 +110,7 @@ public final class ViewersTest {
     byte[] detections = Samples.bytes(Samples.detections(5));
     byte[] poses = Samples.bytes(Samples.poses(5, object_pose_t.VALID));
     RgbdFrame frame = RgbdFrame.decode(frame(5));
-    DetectionPanel panel = new DetectionPanel();
+    DetectionPanel panel = new DetectionPanel(camera -> { });
     Random random = new Random(1);
     int shown = 0;
     for (int i = 0; i < 80; ++i) {

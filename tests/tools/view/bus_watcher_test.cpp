@@ -9,7 +9,7 @@
 #include "pipeline/bus/event_log.hpp"
 #include "tests/tools/view/watched_bus.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 TEST(BusWatcher, AFrameComesWithItsResults) {
@@ -50,7 +50,7 @@ TEST(BusWatcher, WhatIsNoMessageOfTheChannelDoesNotEndIt) {
 TEST(BusWatcher, OfTwoCamerasOfEqualTimesOneIsShownAndNothingMixed) {
   WatchedBus watched("LEFT|RIGHT");
   for (std::int64_t i = 1; i <= 2; ++i) {
-    for (const std::string& camera : {"LEFT", "RIGHT"}) {
+    for (const std::string camera : {"LEFT", "RIGHT"}) {
       watched.publish_frame(i, camera);
       watched.publish_results({camera, i}, camera == "LEFT" ? "bowl" : "can");
     }
@@ -127,4 +127,4 @@ TEST(BusWatcher, ALogIsNotWatched) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 constexpr std::int64_t kMs = 1000;
@@ -155,4 +155,4 @@ TEST(FrameMatcher, AbsurdRateIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

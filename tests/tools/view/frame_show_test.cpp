@@ -8,7 +8,7 @@
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/view/watched_bus.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 ShowSettings to_pictures(const std::string& name) {
@@ -85,4 +85,4 @@ TEST(FrameShow, NoModelsOrNoPictureAtAllIsAnError) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/codecs.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 cv::Mat noise(int width, int height) {
@@ -36,4 +36,4 @@ TEST(Preview, WhatCannotFitIsAnError) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

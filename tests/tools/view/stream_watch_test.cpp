@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 ProcessState heard(const std::string& name, std::int64_t time_us) {
@@ -44,4 +44,4 @@ TEST(StreamWatch, TwoProcessesOfOneNameAreTwo) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

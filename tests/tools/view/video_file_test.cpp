@@ -6,7 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 const cv::Size kSize(64, 48);
@@ -43,4 +43,4 @@ TEST(VideoFile, UnwritableFileAndChangedSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

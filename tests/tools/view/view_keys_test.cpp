@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 TEST(ViewKeys, EachKeyDoesWhatTheWindowSays) {
@@ -34,4 +34,4 @@ TEST(ViewKeys, TheThresholdStaysBetweenZeroAndOne) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

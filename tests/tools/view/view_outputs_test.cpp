@@ -7,7 +7,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,4 +79,4 @@ TEST(ViewOutputs, NoFrameAtAllOrABadPathIsAnError) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

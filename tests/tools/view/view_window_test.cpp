@@ -6,7 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 std::string refusal(const char* display) {
@@ -32,4 +32,4 @@ TEST(ViewWindow, WithoutADisplayTheWaysToGoOnAreNamed) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -8,7 +8,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 ViewerSettings silent_stream(const std::string& name) {
@@ -54,4 +54,4 @@ TEST(Viewer, ABusThatIsNoneIsAnError) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -9,7 +9,7 @@
 #include "tests/pipeline/test_frame.hpp"
 #include "tools/view/bus_watcher.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// An in-process bus with a watcher that draws every frame, as the processes of a stream would see it.
 struct WatchedBus {
@@ -90,4 +90,4 @@ inline MatchedFrame matched_frame_without_camera(std::int64_t utime) {
   return matched;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -10,6 +10,8 @@ import java.awt.event.ComponentAdapter;
 import java.awt.event.ComponentEvent;
 import java.awt.image.BufferedImage;
 import java.util.List;
+import java.util.function.Consumer;
+import javax.swing.JComboBox;
 import javax.swing.JComponent;
 import javax.swing.JLabel;
 import javax.swing.JPanel;
@@ -31,11 +33,16 @@ final class DetectionPanel {
   private final ObjectsTable objects = new ObjectsTable();
   private final StageBars stages = new StageBars();
   private final StatusLine status = new StatusLine("waiting for detections");
-  private final JSpinner leastScore = new JSpinner(new SpinnerNumberModel(0.5, 0.0, 1.0, 0.05));
+  private final JSpinner leastScore = new JSpinner(new SpinnerNumberModel(0.0, 0.0, 1.0, 0.05));
+  private final JComboBox<String> camera = new JComboBox<>();
+  private final Consumer<String> chooseCamera;
+  private boolean offering; // what the box says meanwhile is not the user's choice
   private Shown shown;
   private final JPanel panel = new JPanel(new BorderLayout());
 
-  DetectionPanel() {
+  /** `chooseCamera` is told when the user asks for another camera. */
+  DetectionPanel(Consumer<String> chooseCamera) {
+    this.chooseCamera = chooseCamera;
     JTable table = new JTable(objects);
     for (int i = 0; i < COLUMN_WIDTHS.length; ++i) {
       table.getColumnModel().getColumn(i).setPreferredWidth(COLUMN_WIDTHS[i]);
@@ -88,7 +95,23 @@ final class DetectionPanel {
     JPanel line = new JPanel(new FlowLayout(FlowLayout.LEFT));
     line.add(new JLabel("from score"));
     line.add(leastScore);
+    camera.addActionListener(event -> {
+      if (!offering && camera.getSelectedItem() != null) chooseCamera.accept((String) camera.getSelectedItem());
+    });
+    camera.setVisible(false);
+    line.add(camera);
     return line;
+  }
+
+  /** Lets the user choose among several cameras, of which one is shown. */
+  void offer(List<String> cameras, String shownCamera) {
+    if (camera.getItemCount() == cameras.size()) return;
+    offering = true;
+    camera.removeAllItems();
+    cameras.forEach(camera::addItem);
+    camera.setSelectedItem(shownCamera);
+    camera.setVisible(cameras.size() > 1);
+    offering = false;
   }
 
   void say(String text, String complaint) {

@@ -5,7 +5,9 @@ import houghstream.object_poses_t;
 import java.awt.Dimension;
 import java.awt.image.BufferedImage;
 import java.util.ArrayList;
+import java.util.HashSet;
 import java.util.List;
+import java.util.Set;
 import javax.swing.JComponent;
 import javax.swing.SwingUtilities;
 
@@ -15,13 +17,14 @@ final class DetectionViewer implements Viewer {
   private static final String POSES = "HOUGHSTREAM_POSES";
   private static final Dimension PICTURE_SIZE = new Dimension(640, 480); // until a frame tells
 
-  private final DetectionPanel panel = new DetectionPanel();
+  private final DetectionPanel panel = new DetectionPanel(this::choose);
   private final ResultMatcher matcher = new ResultMatcher();
   private final RateMeter arrivals = new RateMeter();
   private final List<AutoCloseable> running = new ArrayList<>();
   private final Worker worker = Worker.start("viewer of detections", this::work);
-  private String frameChannel = "";
+  private final Set<String> followed = new HashSet<>();
   private ResultMatcher.Entry drawn;
+  private int drawnChanges;
   private BufferedImage blank = new BufferedImage(PICTURE_SIZE.width, PICTURE_SIZE.height, BufferedImage.TYPE_INT_RGB);
   private volatile String problem = "";
 
@@ -56,6 +59,11 @@ final class DetectionViewer implements Viewer {
     });
   }
 
+  private void choose(String camera) {
+    matcher.choose(camera);
+    worker.wake();
+  }
+
   private interface Step {
     void run() throws BadMessage;
   }
@@ -70,14 +78,14 @@ final class DetectionViewer implements Viewer {
     worker.wake();
   }
 
-  // The results say which channel their frames came on. Subscribing from within a handler is left to the worker's
+  // The results say which channels their frames came on. Subscribing from within a handler is left to the worker's
   // thread: LCM holds its list of listeners meanwhile.
   private synchronized void followFrames(String channel) {
-    if (channel.isEmpty() || channel.equals(frameChannel)) return;
-    frameChannel = channel;
+    if (channel.isEmpty() || !followed.add(channel)) return;
     SwingUtilities.invokeLater(() -> {
       synchronized (running) {
-        if (!running.isEmpty()) running.add(new ChannelTap(channel, bytes -> take(() -> matcher.addFrame(bytes))));
+        if (running.isEmpty()) return;
+        running.add(new ChannelTap(channel, bytes -> take(() -> matcher.addFrame(channel, bytes))));
       }
     });
   }
@@ -85,22 +93,25 @@ final class DetectionViewer implements Viewer {
   private void work() {
     ResultMatcher.Entry entry = matcher.newest(RateMeter.nowUs());
     String said = problem;
-    if (entry == null || entry == drawn && said.isEmpty()) {
+    if (entry == null || entry == drawn && entry.changes == drawnChanges && said.isEmpty()) {
       if (!said.isEmpty()) SwingUtilities.invokeLater(() -> panel.complain(said));
       return;
     }
     drawn = entry;
+    drawnChanges = entry.changes;
+    List<String> cameras = matcher.cameras();
     RgbdFrame frame = frameOf(entry);
     BufferedImage picture = frame == null || frame.colour == null ? blank : frame.colour;
     if (picture != blank && picture.getWidth() != blank.getWidth()) {
       blank = new BufferedImage(picture.getWidth(), picture.getHeight(), BufferedImage.TYPE_INT_RGB);
     }
-    DetectionPanel.Shown shown = new DetectionPanel.Shown(picture, entry.detections, entry.poses,
+    DetectionPanel.Shown shown = new DetectionPanel.Shown(picture, entry.results.detections(), entry.results.poses(),
         frame == null ? null : frame.camera);
-    String text = String.format("frame %.3f s, %.1f results a second, %d %% of their frames arrived",
-        entry.utime * 1e-6, arrivals.hertz(RateMeter.nowUs()), matcher.arrivedPercent());
+    String text = String.format("%s, frame %.3f s, %.1f results a second, %d %% of their frames arrived",
+        entry.id.channel(), entry.utime * 1e-6, arrivals.hertz(RateMeter.nowUs()), matcher.arrivedPercent());
     String complaint = said.isEmpty() ? complaint(entry, frame) : said;
     SwingUtilities.invokeLater(() -> {
+      panel.offer(cameras, entry.id.channel());
       panel.show(shown);
       panel.say(text, complaint);
     });

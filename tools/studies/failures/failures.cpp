@@ -106,17 +106,17 @@ cv::Mat draw_failure(const Failure& failure, const cv::Mat& colour) {
   const std::string words = missed
                                 ? fmt::format("missed: {}, {:.0f} % visible", failure.class_name, 100 * failure.weight)
                                 : fmt::format("false: {} {:.2f}", failure.class_name, failure.weight);
-  draw_text(tile, words, {4, kCaptionHeight - 6}, 0.4);
+  view::draw_text(tile, words, {4, kCaptionHeight - 6}, 0.4);
   return tile;
 }
 
 cv::Mat join_tiles(const std::vector<cv::Mat>& tiles, int columns) {
   if (tiles.empty()) {
     cv::Mat none(kCaptionHeight + kTileHeight, kTileWidth, CV_8UC3, cv::Scalar(0, 0, 0));
-    draw_text(none, "no failures", {4, kCaptionHeight - 6}, 0.4);
+    view::draw_text(none, "no failures", {4, kCaptionHeight - 6}, 0.4);
     return none;
   }
-  return tiled(tiles, columns);
+  return view::tiled(tiles, columns);
 }
 
 }  // namespace houghstream

@@ -55,7 +55,7 @@ void draw_box(cv::Mat& image, const NamedBox& box) {
   cv::rectangle(image, edges, box.colour, 1);
   constexpr int kTextHeight = 14;
   const int y = edges.y < kTextHeight ? std::min(edges.br().y + kTextHeight, image.rows - 4) : edges.y - 4;
-  draw_text(image, box.words, {std::max(edges.x, 2), y}, 0.45, box.colour);
+  view::draw_text(image, box.words, {std::max(edges.x, 2), y}, 0.45, box.colour);
 }
 
 /// The picture below its title; with a bar that says which colour is which value, unless `top` is nothing.
@@ -63,7 +63,7 @@ cv::Mat captioned(const cv::Mat& image, const std::string& title, double top) {
   cv::Mat tile(image.rows + kCaptionHeight, image.cols, CV_8UC3, cv::Scalar(0, 0, 0));
   image.copyTo(tile.rowRange(kCaptionHeight, tile.rows));
   const int baseline = kCaptionHeight - 9;
-  draw_text(tile, title, {6, baseline}, 0.5);
+  view::draw_text(tile, title, {6, baseline}, 0.5);
   if (!(top > 0.0)) return tile;
   const std::string end = fmt::format("{:.2f}", top);
   const int right = tile.cols - 6 - cv::getTextSize(end, cv::FONT_HERSHEY_SIMPLEX, 0.45, 1, nullptr).width;
@@ -73,8 +73,8 @@ cv::Mat captioned(const cv::Mat& image, const std::string& title, double top) {
   for (int x = 0; x < kBarWidth; ++x) ramp.at<float>(0, x) = static_cast<float>(x) / (kBarWidth - 1);
   cv::repeat(colours_of(ramp, 1.0), place.height, 1, tile(place));
   cv::rectangle(tile, place, cv::Scalar(120, 120, 120));
-  draw_text(tile, "0", {place.x - 14, baseline});
-  draw_text(tile, end, {right, baseline});
+  view::draw_text(tile, "0", {place.x - 14, baseline});
+  view::draw_text(tile, end, {right, baseline});
   return tile;
 }
 
@@ -102,7 +102,7 @@ cv::Mat draw_hough_panels(const cv::Mat& colour, const std::vector<NamedBox>& tr
   std::vector<cv::Mat> tiles = {captioned(with_truth, "true boxes", 0.0)};
   const cv::Mat ground = darkened_grey(colour);
   for (const HoughPanel& panel : panels) tiles.push_back(class_tile(ground, panel, top));
-  return tiled(tiles, static_cast<int>(std::ceil(std::sqrt(tiles.size()))));
+  return view::tiled(tiles, static_cast<int>(std::ceil(std::sqrt(tiles.size()))));
 }
 
 }  // namespace houghstream

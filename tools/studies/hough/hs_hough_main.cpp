@@ -27,7 +27,7 @@ struct HoughOptions {
 /// A class is drawn in one colour, whatever number the scene knows it by; one that was not taught is grey.
 cv::Scalar colour_of(const Forest& forest, const std::string& class_name) {
   for (const ObjectClass& known : forest.classes) {
-    if (known.name == class_name) return class_colour(known.class_id);
+    if (known.name == class_name) return view::class_colour(known.class_id);
   }
   return {170, 170, 170};
 }
@@ -52,7 +52,8 @@ std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, con
     HoughPanel panel{object.name, baseline::hough_image(by, static_cast<int>(c), frame), {}};
     for (const Detection& detection : found.detections) {
       if (detection.class_id != object.class_id) continue;
-      panel.found.push_back({detection.box_px, fmt::format("{:.2f}", detection.score), class_colour(object.class_id)});
+      panel.found.push_back(
+          {detection.box_px, fmt::format("{:.2f}", detection.score), view::class_colour(object.class_id)});
     }
     panels.push_back(std::move(panel));
   }

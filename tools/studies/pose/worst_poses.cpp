@@ -48,8 +48,8 @@ cv::Mat draw_trial(const PoseTrial& trial, const RgbdFrame& frame, const Mesh& m
   cv::resize(image(surroundings(trial.box_px, image.size())), picture, picture.size(), 0, 0, cv::INTER_LINEAR);
   const std::string what =
       fmt::format("{} {:.2f}, {}, frame {}", trial.class_name, trial.score, trial.scene, trial.image);
-  draw_text(tile, what, {4, kHeight + kLine - 2}, 0.4);
-  draw_text(tile, error_words(trial), {4, kHeight + 2 * kLine - 2}, 0.4);
+  view::draw_text(tile, what, {4, kHeight + kLine - 2}, 0.4);
+  view::draw_text(tile, error_words(trial), {4, kHeight + 2 * kLine - 2}, 0.4);
   return tile;
 }
 

@@ -28,7 +28,7 @@ struct BenchOptions {
   SearchOptions search;
 };
 
-ComparedObject read_object(const BenchOptions& options, const ClassModels& models) {
+ComparedObject read_object(const BenchOptions& options, const view::ClassModels& models) {
   const auto fused = models.find(options.object);
   require(fused != models.end(), "{}: no model of {}", options.models, options.object);
   ComparedObject object;
@@ -40,7 +40,7 @@ ComparedObject read_object(const BenchOptions& options, const ClassModels& model
 }
 
 void run(const BenchOptions& options) {
-  ClassModels models = load_class_models(options.models, options.model_unit_m);
+  view::ClassModels models = load_class_models(options.models, options.model_unit_m);
   const ComparedObject object = read_object(options, models);
   models[options.object] = object.scan.mesh;
   Forest forest = load_forest(options.forest);

@@ -31,7 +31,7 @@ void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_c
   cv::drawContours(image, contours, -1, colour, 1);
 }
 
-cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models) {
+cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const view::ClassModels& models) {
   cv::Mat image = 0.4 * frame.colour;
   for (const ObjectPose& pose : poses.poses) {
     const auto model = models.find(pose.class_name);
@@ -49,11 +49,11 @@ cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const Cla
 }
 
 cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ObjectPoses& withheld,
-                   const ClassModels& models, const std::string& title) {
+                   const view::ClassModels& models, const std::string& title) {
   constexpr int kLine_px = 18;
   cv::Mat image = frame.colour.clone();
   cv::Point at(6, kLine_px);
-  draw_text(image, title, at);
+  view::draw_text(image, title, at);
   const auto outline = [&](const ObjectPose& pose, const cv::Scalar& colour) {
     const auto model = models.find(pose.class_name);
     if (pose.T_camera_object && model != models.end())
@@ -61,10 +61,10 @@ cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const Objec
   };
   for (const ObjectPose& pose : withheld.poses) outline(pose, cv::Scalar::all(255));
   for (const ObjectPose& pose : poses.poses) {
-    outline(pose, class_colour(pose.class_id));
+    outline(pose, view::class_colour(pose.class_id));
     at.y += kLine_px;
-    draw_text(image, fmt::format("{} {:.2f} {}", pose.class_name, pose.detection_score, to_string(pose.status)), at,
-              0.45, class_colour(pose.class_id));
+    view::draw_text(image, fmt::format("{} {:.2f} {}", pose.class_name, pose.detection_score, to_string(pose.status)),
+                    at, 0.45, view::class_colour(pose.class_id));
   }
   return image;
 }
@@ -75,7 +75,7 @@ std::vector<cv::Mat> make_sheets(const std::vector<cv::Mat>& tiles) {
   std::vector<cv::Mat> sheets;
   for (auto first = tiles.begin(); first != tiles.end();) {
     const auto last = first + std::min<std::ptrdiff_t>(kOnSheet, tiles.end() - first);
-    sheets.push_back(tiled({first, last}, kColumns));
+    sheets.push_back(view::tiled({first, last}, kColumns));
     first = last;
   }
   return sheets;

@@ -19,11 +19,11 @@ void draw_outline(cv::Mat& image, const Mesh& mesh, const Eigen::Isometry3d& T_c
 /// that what lies under it can be judged; below the title a line for each pose: class, score, outcome. `withheld` are
 /// poses that were found and not believed: their outlines are white.
 cv::Mat draw_poses(const RgbdFrame& frame, const ObjectPoses& poses, const ObjectPoses& withheld,
-                   const ClassModels& models, const std::string& title);
+                   const view::ClassModels& models, const std::string& title);
 
 /// The picture, darkened, with each valid pose's model in its own colours (white where it has none): a wrong turn shows
 /// beside draw_poses' picture.
-cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const ClassModels& models);
+cv::Mat paint_models(const RgbdFrame& frame, const ObjectPoses& poses, const view::ClassModels& models);
 
 /// Tiles of one size on sheets of 2 by 2; at least one sheet where there are tiles.
 std::vector<cv::Mat> make_sheets(const std::vector<cv::Mat>& tiles);

@@ -35,7 +35,7 @@ struct BenchedMethod {
   const Detector& detector;
   const PoseEstimator& estimator;
   const PoseEstimator& unchecked;  ///< publishes every pose it finds
-  const ClassModels& models;
+  const view::ClassModels& models;
 };
 
 /// Detects in every image pair of the folder and estimates poses; of several detections of the compared object the

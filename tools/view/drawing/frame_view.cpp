@@ -7,7 +7,7 @@
 #include "tools/view/drawing/turned_view.hpp"
 #include "tools/view/drawing/view_panel.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 cv::Mat colour_depth(const cv::Mat& depth, float near, float far) {
   const double per_metre = -255.0 / (far - near);
   cv::Mat warmth;
@@ -55,4 +55,4 @@ cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const
   return picture;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -7,7 +7,7 @@
 #include "tools/view/drawing/overlay.hpp"
 #include "tools/view/stream_watch.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// One frame with everything that the bus said about it.
 struct ViewedFrame {
@@ -49,4 +49,4 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
                         const StreamView& stream = {});
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -8,7 +8,7 @@
 
 #include "tools/view/drawing/overlay.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 constexpr int kColumn = 3;  // pixels of one frame
@@ -95,4 +95,4 @@ void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHisto
   draw_text(image, fmt::format("{:.0f} ms", top_ms), {inside.x + 3, inside.y + 12}, kTextScale);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -7,7 +7,7 @@
 
 #include "pipeline/types/stage_time.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// What one frame took.
 struct FrameLatency {
@@ -28,4 +28,4 @@ void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<Sta
 /// latency. The scale, a round number of milliseconds, stands at the upper left.
 void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHistory& history);
 
-}  // namespace houghstream
+}  // namespace houghstream::view

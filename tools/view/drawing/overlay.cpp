@@ -10,7 +10,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/renderer.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 constexpr double kNearPlane = 0.05;    // metres; nothing nearer is drawn
@@ -153,4 +153,4 @@ void draw_text(cv::Mat& image, const std::string& text, cv::Point origin_px, dou
   cv::putText(image, text, origin_px, cv::FONT_HERSHEY_SIMPLEX, scale, colour, 1, cv::LINE_AA);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -10,7 +10,7 @@
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// Models by class name, metres, in the object frame of the poses. A class without one gets no outline.
 using ClassModels = std::map<std::string, Mesh>;
@@ -32,4 +32,4 @@ void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models
 void draw_text(cv::Mat& image, const std::string& text, cv::Point origin_px, double scale = 0.45,
                const cv::Scalar& colour = {255, 255, 255});
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 cv::Mat tiled(const std::vector<cv::Mat>& tiles, int columns) {
   require(!tiles.empty() && columns > 0, "tiles: {} in rows of {}, expected at least one of each", tiles.size(),
@@ -22,4 +22,4 @@ cv::Mat tiled(const std::vector<cv::Mat>& tiles, int columns) {
   return picture;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

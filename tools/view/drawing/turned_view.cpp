@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 constexpr double kFromTheRight = 35.0 * M_PI / 180.0;
@@ -89,4 +89,4 @@ cv::Mat draw_turned_view(const RgbdFrame& frame, const std::optional<ObjectPoses
   return image;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

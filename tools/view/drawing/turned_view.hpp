@@ -7,7 +7,7 @@
 #include "pipeline/types/frame.hpp"
 #include "tools/view/drawing/overlay.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// From the frame's camera to the place from which draw_turned_view() looks: moved to the right and up about the middle
 /// of what was measured (`depth`: CV_32FC1, metres).
@@ -17,4 +17,4 @@ Eigen::Isometry3d turned_camera(const cv::Mat& depth);
 /// frame's size (CV_8UC3, BGR). Dark where no point is.
 cv::Mat draw_turned_view(const RgbdFrame& frame, const std::optional<ObjectPoses>& poses, const ClassModels& models);
 
-}  // namespace houghstream
+}  // namespace houghstream::view

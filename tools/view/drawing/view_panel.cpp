@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 constexpr int kBlockWidth = 320;
@@ -142,4 +142,4 @@ cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const Fr
   return panel.colRange(0, width).clone();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -6,7 +6,7 @@
 
 #include "tools/view/drawing/frame_view.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// Which frame is shown, and of which camera: "LEFT_CAMERA (1 of 2), frame 1499876543.210 s".
 std::string camera_heading(const FrameId& frame, const std::vector<std::string>& cameras);
@@ -20,4 +20,4 @@ std::string objects_heading(const ViewedFrame& viewed, float min_score);
 /// the others below. With `settings.show_keys` a line that names the keys follows.
 cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const FrameViewSettings& settings, int width);
 
-}  // namespace houghstream
+}  // namespace houghstream::view

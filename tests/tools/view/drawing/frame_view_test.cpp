@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -71,4 +71,4 @@ TEST(FrameView, WeakDetectionsAreLeftOutWithTheirPoses) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

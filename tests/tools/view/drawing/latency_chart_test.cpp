@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 const cv::Rect kArea(10, 20, 90, 50);
@@ -51,4 +51,4 @@ TEST(LatencyChart, StagesAreListedAsFarAsThereIsRoom) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -7,7 +7,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 const Camera kCamera{320, 240, 262.5, 262.5, 159.5, 119.5};
@@ -126,4 +126,4 @@ TEST(Overlay, NeighbouringClassesDifferAndNegativeIdsHaveAColour) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

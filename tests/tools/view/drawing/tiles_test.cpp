@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 TEST(Tiles, FewerThanARowMakeANarrowPicture) {
@@ -19,4 +19,4 @@ TEST(Tiles, NoneAreRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 const cv::Vec3b kRed(0, 0, 250);
@@ -90,4 +90,4 @@ TEST(TurnedView, PosesAreTurnedWithTheirPoints) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
 ViewedFrame with_objects(int count) {
@@ -82,4 +82,4 @@ TEST(ViewPanel, KeysAndPauseAreSaidWhereThereIsAWindow) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

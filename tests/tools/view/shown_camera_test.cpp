@@ -1,13 +1,13 @@
-#include "tools/view/camera_choice.hpp"
+#include "tools/view/shown_camera.hpp"
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::view {
 namespace {
 
-TEST(CameraChoice, TheFirstIsShownUntilAnotherIsAskedFor) {
-  CameraChoice cameras;
-  EXPECT_FALSE(cameras.is_shown(""));
+TEST(ShownCamera, TheFirstIsShownUntilAnotherIsAskedFor) {
+  ShownCamera cameras;
+  EXPECT_TRUE(cameras.is_shown("ANY"));
   cameras.next();
   cameras.note("LEFT");
   cameras.note("RIGHT");
@@ -22,4 +22,4 @@ TEST(CameraChoice, TheFirstIsShownUntilAnotherIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::view

@@ -1,28 +1,28 @@
-#include "tools/view/camera_choice.hpp"
+#include "tools/view/shown_camera.hpp"
 
-namespace houghstream {
+namespace houghstream::view {
 
-void CameraChoice::note(const std::string& channel) {
+void ShownCamera::note(const std::string& channel) {
   const std::lock_guard lock(mutex_);
   if (heard_.empty()) shown_ = channel;
   heard_.insert(channel);
 }
 
-void CameraChoice::next() {
+void ShownCamera::next() {
   const std::lock_guard lock(mutex_);
   if (heard_.empty()) return;
   const auto after = heard_.upper_bound(shown_);
   shown_ = after == heard_.end() ? *heard_.begin() : *after;
 }
 
-bool CameraChoice::is_shown(const std::string& channel) const {
+bool ShownCamera::is_shown(const std::string& channel) const {
   const std::lock_guard lock(mutex_);
-  return !heard_.empty() && channel == shown_;
+  return heard_.empty() || channel == shown_;
 }
 
-std::vector<std::string> CameraChoice::heard() const {
+std::vector<std::string> ShownCamera::heard() const {
   const std::lock_guard lock(mutex_);
   return {heard_.begin(), heard_.end()};
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::view

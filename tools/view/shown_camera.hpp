@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::view {
 
 /// Which camera's frames are shown, of those that are on the bus: the first that is heard until another one is asked
 /// for. May be used from any thread.
-class CameraChoice {
+class ShownCamera {
  public:
   /// A frame of this camera has come.
   void note(const std::string& channel);
@@ -17,6 +17,7 @@ class CameraChoice {
   /// The next camera in the order of their names.
   void next();
 
+  /// While none was heard, each one is.
   bool is_shown(const std::string& channel) const;
 
   /// The channels of all cameras that were heard, in order.
@@ -28,4 +29,4 @@ class CameraChoice {
   std::string shown_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::view
