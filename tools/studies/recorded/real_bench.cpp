@@ -77,7 +77,7 @@ RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& 
                          const ComparedObject& object) {
   RealBench bench;
   std::int64_t utime = 0;
-  for (const FramePair& pair : list_frame_pairs(scenes)) {
+  for (const FrameFiles& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, drawn.camera, ++utime);
     const Detections detections = detector.detect(frame);
     const ObjectPoses poses = estimator.estimate(frame, detections);
