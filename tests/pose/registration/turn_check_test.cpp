@@ -10,6 +10,9 @@
 namespace houghstream {
 namespace {
 
+using world::box;
+using world::BoxFaces;
+
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 const Eigen::Vector3d kOrigin = Eigen::Vector3d::Zero();
 
