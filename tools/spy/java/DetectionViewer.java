@@ -137,7 +137,7 @@ final class DetectionViewer implements Viewer {
   @Override
   public void close() {
     synchronized (running) {
-      Viewers.closeAll(running);
+      Viewer.closeAll(running);
     }
   }
 }
