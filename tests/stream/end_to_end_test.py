@@ -177,7 +177,8 @@ def check_strange_names(tools, folder):
     scene, forest, models = folder / "scene", folder / "small.forest", folder / "views" / "models"
     strange = folder / "strange_models"
     strange.mkdir(exist_ok=True)
-    (strange / "teapot.ply").write_bytes((models / "obj_000001.ply").read_bytes())
+    for name, copy in (("obj_000001.ply", "teapot.ply"), ("obj_000001.png", "obj_000001.png")):  # the mesh names its texture
+        (strange / copy).write_bytes((models / name).read_bytes())
     log = ("--log", folder / "results.log")
     for words, (a, b) in (
         ((*log, "--forest", forest, "--models", strange), ("the forest", "has teapot")),
