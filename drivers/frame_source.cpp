@@ -1,8 +1,6 @@
 #include "drivers/frame_source.hpp"
 
-#include "drivers/datasets/bop_source.hpp"
-#include "drivers/datasets/tum_source.hpp"
-#include "drivers/datasets/uw_source.hpp"
+#include "drivers/datasets/dataset_sources.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {

@@ -1,5 +1,6 @@
 #include "drivers/datasets/bop_dataset.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "drivers/files/image_file.hpp"
@@ -18,22 +19,36 @@ fs::path colour_file(const fs::path& folder, int image_id) {
   return fs::exists(jpg) && !fs::exists(png) ? jpg : png;
 }
 
+/// The nearest rotation to one that is off by less than a per cent in any direction, as published data are that were
+/// rounded or refined (polar decomposition; Higham, "Computing the Polar Decomposition", SIAM J. Sci. Stat. Comput.,
+/// 1986). What is a rotation but for the last digits goes through its quaternion.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& R, const std::string& where) {
+  constexpr double kLastDigits = 1e-3;
+  constexpr double kTolerance = 0.01 - 1e-9;
+  const double skew = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (skew < kLastDigits && R.determinant() > 0.0) return Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> stretch_sq(R.transpose() * R);
+  const double off = (stretch_sq.eigenvalues().cwiseMax(0.0).cwiseSqrt().array() - 1.0).abs().maxCoeff();
+  require(
+      R.determinant() > 0.0 && off < kTolerance,
+      "{}: 'cam_R_m2c' is off a rotation by {:.2g} %, its determinant is {:.4g}; expected less than 1 % and a positive "
+      "one",
+      where, 100.0 * off, R.determinant());
+  return R * stretch_sq.operatorInverseSqrt();
+}
+
 /// Metres from BOP's row-wise rotation and millimetres.
 Eigen::Isometry3d parse_pose(const json& entry, const std::string& where) {
   const std::vector<double> r = json_numbers(entry, "cam_R_m2c", 9, where);
   const std::vector<double> t_mm = json_numbers(entry, "cam_t_m2c", 3, where);
   Eigen::Matrix3d R;
   R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
-  constexpr double kTolerance = 1e-3;
-  const double skew = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  require(skew < kTolerance && R.determinant() > 0.0,
-          "{}: 'cam_R_m2c' is no rotation (R R^T is {} from identity, determinant {})", where, skew, R.determinant());
   const Eigen::Vector3d t(t_mm[0], t_mm[1], t_mm[2]);
   constexpr double kFarthest_mm = 1e5;
   require(t.norm() < kFarthest_mm, "{}: 'cam_t_m2c' is {} mm long, expected less than {}", where, t.norm(),
           kFarthest_mm);
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
-  T_camera_object.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  T_camera_object.linear() = nearest_rotation(R, where);
   T_camera_object.translation() = t * 1e-3;
   return T_camera_object;
 }
@@ -48,17 +63,22 @@ cv::Rect parse_box(const json& info, const Camera& camera, const std::string& wh
           static_cast<int>(std::lround(b[3]))};
 }
 
-TrueObject parse_object(const json& entry, const json& info, const Camera& camera, const std::string& where) {
+/// What scene_gt.json says of an object.
+TrueObject parse_truth(const json& entry, const std::string& where) {
   TrueObject object;
   object.object_id = json_integer(entry, "obj_id", where);
   require(object.object_id >= 1, "{}: 'obj_id' is {}, expected at least 1", where, object.object_id);
   object.has_pose = entry.contains("cam_R_m2c") || entry.contains("cam_t_m2c");
   if (object.has_pose) object.T_camera_object = parse_pose(entry, where);
+  return object;
+}
+
+/// What scene_gt_info.json says of it.
+void add_info(const json& info, const Camera& camera, const std::string& where, TrueObject& object) {
   object.box_visible_px = parse_box(info, camera, where);
   object.visible_fraction = json_number(info, "visib_fract", where);
   require(object.visible_fraction >= 0.0 && object.visible_fraction <= 1.0, "{}: 'visib_fract' is {}, expected 0 to 1",
           where, object.visible_fraction);
-  return object;
 }
 
 BopImage parse_image(const json& entry, int image_id, const cv::Size& size_px, const std::string& where) {
@@ -103,8 +123,9 @@ void read_objects(const fs::path& folder, std::vector<BopImage>& images) {
     require(entries.size() == infos.size(), "{}: image {} has {} entries, expected {} as in scene_gt.json",
             info_file.string(), image.image_id, infos.size(), entries.size());
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      const std::string where = fmt::format("{} image {} object {}", folder.string(), image.image_id, i);
-      image.objects.push_back(parse_object(entries[i], infos[i], image.camera, where));
+      const std::string place = fmt::format(" image {} object {}", image.image_id, i);
+      image.objects.push_back(parse_truth(entries[i], gt_file.string() + place));
+      add_info(infos[i], image.camera, info_file.string() + place, image.objects.back());
     }
   }
 }

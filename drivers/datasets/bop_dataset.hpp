@@ -35,6 +35,7 @@ struct BopImage {
 /// A scene folder in BOP format (scene_camera.json, scene_gt.json, scene_gt_info.json, rgb/, depth/, mask_visib/),
 /// see bop_toolkit docs/bop_datasets_format.md. Reading the index does not read images, except one where
 /// scene_camera.json lacks our additional keys "width" and "height". Without scene_gt.json it has no objects.
+/// A rotation that is off by less than a per cent becomes the nearest one; what is further off is refused.
 /// An object known by its box only has neither cam_R_m2c nor cam_t_m2c in scene_gt.json; its name may then come
 /// from SCENE/names.json, since there is no models/.
 class BopScene {

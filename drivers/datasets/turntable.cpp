@@ -82,8 +82,9 @@ double trimmed_distance_sq(const Features& from, const Features& to) {
   return sum / static_cast<double>(kept);
 }
 
-/// How badly the views fit on each other when they are turned back: each against the next and the one after it.
-double looseness(const std::vector<Sample>& samples, const Turntable& table) {
+/// How far the views lie apart when they are turned back: mean squared residual of each against the next and the one
+/// after it.
+double mean_residual_sq(const std::vector<Sample>& samples, const Turntable& table) {
   std::vector<Features> features;
   features.reserve(samples.size());
   for (const Sample& sample : samples) features.push_back(object_features(sample, table));
@@ -120,9 +121,9 @@ Turntable table_from(const double* x, const Eigen::Vector3d& centre, double dire
   return table;
 }
 
-class Looseness : public cv::MinProblemSolver::Function {
+class TurntableResidual : public cv::MinProblemSolver::Function {
  public:
-  Looseness(const std::vector<Sample>& samples, const Eigen::Vector3d& centre, double direction)
+  TurntableResidual(const std::vector<Sample>& samples, const Eigen::Vector3d& centre, double direction)
       : samples_(samples), centre_(centre), direction_(direction) {}
   int getDims() const override { return 3; }
   double calc(const double* x) const override {
@@ -131,7 +132,7 @@ class Looseness : public cv::MinProblemSolver::Function {
     constexpr double kHighest = 1.6;
     constexpr double kNever = 1e6;
     if (x[2] < kLowest || x[2] > kHighest) return kNever;
-    return looseness(samples_, table_from(x, centre_, direction_));
+    return mean_residual_sq(samples_, table_from(x, centre_, direction_));
   }
 
  private:
@@ -147,10 +148,10 @@ std::pair<double, Turntable> fit_table(const std::vector<Sample>& samples, doubl
   cv::Mat x = (cv::Mat_<double>(1, 3) << 0.0, 0.0, kFirstElevation);
   const cv::Mat step = (cv::Mat_<double>(1, 3) << 0.02, 0.02, 0.3);
   const auto solver =
-      cv::DownhillSolver::create(cv::makePtr<Looseness>(samples, centre, direction), step,
+      cv::DownhillSolver::create(cv::makePtr<TurntableResidual>(samples, centre, direction), step,
                                  cv::TermCriteria(cv::TermCriteria::MAX_ITER + cv::TermCriteria::EPS, 200, 1e-10));
-  const double loose = solver->minimize(x);
-  return {loose, table_from(x.ptr<double>(), centre, direction)};
+  const double residual_sq = solver->minimize(x);
+  return {residual_sq, table_from(x.ptr<double>(), centre, direction)};
 }
 
 /// Moves the origin along the axis to half the object's height; single stray points do not count.

@@ -189,7 +189,7 @@ std::vector<TrainingView> read_uw_training_views(const fs::path& folder, const U
 std::vector<TrainingView> read_background_views(const fs::path& folder, const Camera& camera) {
   std::vector<TrainingView> views;
   for (const fs::path& video : list_frame_folders(folder)) {
-    for (const FramePair& pair : list_frame_pairs(video)) {
+    for (const FrameFiles& pair : list_frame_pairs(video)) {
       TrainingView view;
       view.frame = read_frame_pair(pair, camera, dataset_utime(views.size()));
       view.source = pair.colour.string();

@@ -54,9 +54,9 @@ std::vector<UwBox> read_boxes(const MatArray& structs, const cv::Size& size, con
   return boxes;
 }
 
-FramePair numbered_pair(const fs::path& folder, std::size_t number) {
+FrameFiles numbered_pair(const fs::path& folder, std::size_t number) {
   const std::string name = fmt::format("{}_{}", folder.filename().string(), number);
-  const FramePair pair{name, folder / (name + ".png"), folder / (name + "_depth.png")};
+  const FrameFiles pair{name, folder / (name + ".png"), folder / (name + "_depth.png")};
   for (const fs::path& file : {pair.colour, pair.depth})
     require(fs::exists(file), "{}: missing, expected as frame {} of the annotated video", file.string(), number);
   return pair;

@@ -16,7 +16,7 @@ struct UwBox {
 };
 
 struct UwSceneFrame {
-  FramePair images;
+  FrameFiles images;
   std::vector<UwBox> boxes;
 };
 

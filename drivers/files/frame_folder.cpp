@@ -41,9 +41,9 @@ fs::path colour_partner(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-std::vector<FramePair> list_frame_pairs(const fs::path& folder) {
+std::vector<FrameFiles> list_frame_pairs(const fs::path& folder) {
   require(fs::is_directory(folder), "{}: no such folder, expected images", folder.string());
-  std::vector<FramePair> pairs;
+  std::vector<FrameFiles> pairs;
   std::size_t pictures = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string file = entry.path().filename().string();
@@ -56,7 +56,7 @@ std::vector<FramePair> list_frame_pairs(const fs::path& folder) {
   require(pictures <= pairs.size(), "{}: {} colour images and {} depth images, expected pairs", folder.string(),
           pictures, pairs.size());
   std::sort(pairs.begin(), pairs.end(),
-            [](const FramePair& a, const FramePair& b) { return natural_less(a.name, b.name); });
+            [](const FrameFiles& a, const FrameFiles& b) { return natural_less(a.name, b.name); });
   return pairs;
 }
 
@@ -74,7 +74,7 @@ std::vector<fs::path> list_frame_folders(const fs::path& folder) {
   return folders;
 }
 
-RgbdFrame read_frame_pair(const FramePair& pair, const Camera& camera, std::int64_t utime) {
+RgbdFrame read_frame_pair(const FrameFiles& pair, const Camera& camera, std::int64_t utime) {
   RgbdFrame frame;
   frame.id.utime = utime;
   frame.camera = camera;

@@ -9,7 +9,7 @@
 namespace houghstream {
 
 /// An image pair of a flat folder, such as the scenes of the UW RGB-D datasets.
-struct FramePair {
+struct FrameFiles {
   std::string name;
   std::filesystem::path colour;  ///< NAME_color.png, NAME-color.png or NAME.png
   std::filesystem::path depth;   ///< NAME_depth.png or NAME-depth.png, uint16 millimetres
@@ -17,13 +17,13 @@ struct FramePair {
 
 /// All pairs of a folder in natural order. Throws InputError when the folder is missing or without pairs, or a
 /// picture lacks its partner.
-std::vector<FramePair> list_frame_pairs(const std::filesystem::path& folder);
+std::vector<FrameFiles> list_frame_pairs(const std::filesystem::path& folder);
 
 /// `folder` itself and those anywhere below it that hold image pairs, in natural order, for instance the background
 /// videos of the UW datasets (background/background_K/). Throws InputError when there is none.
 std::vector<std::filesystem::path> list_frame_folders(const std::filesystem::path& folder);
 
 /// Throws InputError when the images are unreadable or their sizes disagree with each other or with the camera.
-RgbdFrame read_frame_pair(const FramePair& pair, const Camera& camera, std::int64_t utime);
+RgbdFrame read_frame_pair(const FrameFiles& pair, const Camera& camera, std::int64_t utime);
 
 }  // namespace houghstream

@@ -5,7 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 /// The number in "#2".
@@ -46,4 +46,4 @@ std::string cameras_text(const std::vector<CameraDescription>& cameras) {
   return text;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

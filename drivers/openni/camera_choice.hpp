@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/openni/camera_mode.hpp"
+#include "drivers/openni/camera_options.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// What is known of a camera that is plugged in.
 struct CameraDescription {
@@ -23,4 +23,4 @@ const CameraDescription& choose_camera(const std::vector<CameraDescription>& cam
 /// One line for each camera, as --list-devices prints them.
 std::string cameras_text(const std::vector<CameraDescription>& cameras);
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

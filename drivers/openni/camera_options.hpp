@@ -1,14 +1,45 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "drivers/openni/camera_mode.hpp"
 #include "pipeline/types/camera.hpp"
 
-namespace houghstream {
+// What a user says of a camera, and what a camera says back.
+
+namespace houghstream::openni {
+
+/// Size and rate of a camera's images, the same for depth and colour.
+struct CameraMode {
+  int width = 640;
+  int height = 480;
+  int rate_hz = 30;
+};
+
+inline bool operator==(const CameraMode& a, const CameraMode& b) {
+  return a.width == b.width && a.height == b.height && a.rate_hz == b.rate_hz;
+}
+
+/// "640x480@30".
+std::string mode_text(const CameraMode& mode);
+
+/// "640x480@30, 320x240@30"; "none" for no mode.
+std::string modes_text(const std::vector<CameraMode>& modes);
+
+/// Parses WIDTHxHEIGHT or WIDTHxHEIGHT@RATE, the form of the option --mode; 30 Hz without a rate. Throws InputError.
+CameraMode parse_camera_mode(const std::string& text);
+
+/// Reads a calibration file as ROS' camera_calibration writes it (YAML: image_width, image_height, camera_matrix with
+/// nine numbers, row by row). Distortion is not corrected: where the file states some, a warning says so.
+/// Throws InputError.
+Camera read_camera_info(const std::filesystem::path& file);
+
+/// The value of an option --camera: a calibration file, or "WIDTHxHEIGHT,fx,fy,cx,cy". Throws InputError.
+Camera camera_of_option(const std::string& text);
 
 /// How a camera is to be run.
 struct CameraOptions {
@@ -23,11 +54,14 @@ struct CameraOptions {
   bool record_jpeg = false;      ///< colour as JPEG in it: a fifth of the size, but no longer bit by bit what was seen
 };
 
+/// Whether the process that runs a camera is to end. May be empty: never.
+using StopRequested = std::function<bool()>;
+
 /// What a camera says to the process that runs it, and asks it. Each may be left empty.
 struct CameraListener {
-  std::function<bool()> stop_requested;                    ///< asked ten times a second or more
+  StopRequested stop_requested;                            ///< asked ten times a second or more
   std::function<void(const std::string& reason)> trouble;  ///< the camera is gone, is back, cannot be opened
   std::function<void(std::int64_t number)> depth_number;   ///< the device's count of each depth image that is used
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

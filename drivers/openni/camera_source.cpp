@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "drivers/openni/device_clock.hpp"
-#include "drivers/openni/frame_of_pair.hpp"
+#include "drivers/openni/openni_device.hpp"
+#include "drivers/openni/timestamp_pairing.hpp"
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -76,9 +78,9 @@ class CameraSource : public FrameSource {
       const std::string name = fmt::format("{}_{}{}", file.stem().string(), recordings_ + 1, file.extension().string());
       options.record = (file.parent_path() / name).string();
     }
-    device_ = OpenniDevice::open_camera(uri_, options);
+    device_ = OpenniDevice::open_camera(uri_, options, listener_.stop_requested);
     ++recordings_;
-    camera_ = camera_of_device(*device_, options_);
+    camera_ = device_->camera(options_);
     pairing_.clear();
     clock_.restart();
     last_frame_ = Clock::now();
@@ -143,4 +145,4 @@ std::unique_ptr<FrameSource> open_camera_source(const std::string& selector, con
   return std::make_unique<CameraSource>(selector, options, listener);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -6,7 +6,7 @@
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_options.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// Frames of an OpenNI2 camera as they come. `selector` is a URI, "#1", a serial number, or "" for the first one.
 /// A frame is a depth image with the colour image that was taken nearest to it; its utime is the depth image's capture
@@ -16,7 +16,9 @@ std::unique_ptr<FrameSource> open_camera_source(const std::string& selector, con
                                                 const CameraListener& listener);
 
 /// Frames of a .oni file, every one, stamped from dataset_utime(0) on at the intervals of the recording; of the options
-/// only `camera` counts. Throws InputError where the file cannot be read to its end.
-std::unique_ptr<FrameSource> open_oni_source(const std::string& file, const CameraOptions& options);
+/// only `camera` counts. Ends early where a stop is requested. Throws InputError where the file cannot be read to its
+/// end.
+std::unique_ptr<FrameSource> open_oni_source(const std::string& file, const CameraOptions& options,
+                                             const StopRequested& stop_requested = {});
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 constexpr std::int64_t kWrapUs = std::int64_t{1} << 32;
@@ -53,4 +53,4 @@ std::int64_t DeviceClock::filtered_offset(const Sample& sample) {
   return window_.front().offset_us;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// Maps a device's clock to the host's. A device counts microseconds from a zero of its own, and its clock runs a
 /// little fast or slow; the host knows only when an image arrived, which is late by a varying time. The smallest
@@ -42,4 +42,4 @@ class DeviceClock {
   std::optional<std::int64_t> last_utime_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::openni {
 
 class LastingThread::Worker {
  public:
@@ -75,4 +75,4 @@ LastingThread::~LastingThread() {
   idle().workers.push_back(std::move(worker_));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

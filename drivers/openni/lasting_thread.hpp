@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// Work on a thread that is not ended with it: the next work gets it. OpenNI2 keeps the handle of every thread that has
 /// waited for an image and asks after it when another comes to wait; a thread that has ended makes that crash.
@@ -23,4 +23,4 @@ class LastingThread {
   std::unique_ptr<Worker> worker_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -1,17 +1,17 @@
 #include "drivers/openni/openni_device.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
-#include "drivers/openni/departure.hpp"
 #include "drivers/openni/openni_parts.hpp"
 #include "drivers/openni/recording/openni_recording.hpp"
 #include "drivers/openni/stream_reader.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 using std::chrono::milliseconds;
@@ -19,19 +19,31 @@ using Sensor = SensorImage::Sensor;
 
 // The images that a driver may hold when its modes are set, computed as they were before; drivers have three buffers.
 constexpr int kDepthBeforeModes = 3;
-constexpr int kFirstImageMs = 1000;  // cameras take that long to start
+constexpr milliseconds kFirstImage(1000);  // cameras take that long to start
+constexpr milliseconds kGlance(50);        // how long a stop request may go unnoticed
+
+/// Calls `wait` with parts of `patience` until it returns something, the patience has run out or a stop is asked for.
+template <typename Wait>
+auto wait_in_parts(milliseconds patience, const StopRequested& stop_requested, const Wait& wait) {
+  auto result = wait(std::min(patience, kGlance));
+  const auto end = std::chrono::steady_clock::now() + patience - std::min(patience, kGlance);
+  while (!result && std::chrono::steady_clock::now() < end && !(stop_requested && stop_requested())) {
+    result = wait(kGlance);
+  }
+  return result;
+}
 
 }  // namespace
 
 std::vector<CameraDescription> list_cameras(bool closely) {
   const OpenniLibrary library;
-  openni::Array<openni::DeviceInfo> found;
-  openni::OpenNI::enumerateDevices(&found);
+  ::openni::Array<::openni::DeviceInfo> found;
+  ::openni::OpenNI::enumerateDevices(&found);
   std::vector<CameraDescription> cameras;
   for (int i = 0; i < found.getSize(); ++i) {
     cameras.push_back({found[i].getUri(), found[i].getVendor(), found[i].getName(), "", {}});
-    openni::Device device;
-    if (!closely || device.open(found[i].getUri()) != openni::STATUS_OK) continue;
+    ::openni::Device device;
+    if (!closely || device.open(found[i].getUri()) != ::openni::STATUS_OK) continue;
     cameras.back().serial = serial_of(device);
     cameras.back().modes = common_modes(device);
   }
@@ -45,14 +57,15 @@ std::shared_ptr<const void> keep_openni_running() {
 // What OpenNI2 has made ends in turn: who reads the streams, the streams' images, the recorder (it and a driver that
 // hands over an image would wait for each other), the streams, the device.
 struct OpenniDevice::State {
-  explicit State(const std::string& name) : uri(name), departure(name) {}
+  State(const std::string& name, StopRequested stop) : uri(name), stop_requested(std::move(stop)), departure(name) {}
 
   std::string uri;
+  StopRequested stop_requested;
   OpenniLibrary library;
   Departure departure;
-  openni::Device device;
-  openni::VideoStream depth;
-  openni::VideoStream colour;
+  ::openni::Device device;
+  ::openni::VideoStream depth;
+  ::openni::VideoStream colour;
   CameraMode mode;
   bool is_file = false;
   int images_left = 0;    // of a file
@@ -82,7 +95,7 @@ struct OpenniDevice::State {
     for (const Sensor sensor : {Sensor::kDepth, Sensor::kColour}) {
       const char* name = sensor == Sensor::kDepth ? "depth" : "colour";
       require(device.getSensorInfo(openni_type(sensor)) != nullptr, "{}: has no {} sensor", uri, name);
-      openni::VideoStream& stream = sensor == Sensor::kDepth ? depth : colour;
+      ::openni::VideoStream& stream = sensor == Sensor::kDepth ? depth : colour;
       check_openni(stream.create(device, openni_type(sensor)), fmt::format("{}: {} stream", uri, name));
     }
   }
@@ -98,23 +111,23 @@ struct OpenniDevice::State {
   }
 
   void set_features(const CameraOptions& options) {
-    for (openni::VideoStream* stream : {&depth, &colour}) {
+    for (::openni::VideoStream* stream : {&depth, &colour}) {
       if (stream->getMirroringEnabled()) check_openni(stream->setMirroringEnabled(false), uri + ": mirroring off");
     }
-    openni::CameraSettings* settings = colour.getCameraSettings();
+    ::openni::CameraSettings* settings = colour.getCameraSettings();
     const bool set = settings != nullptr &&
-                     settings->setAutoExposureEnabled(options.auto_exposure) == openni::STATUS_OK &&
-                     settings->setAutoWhiteBalanceEnabled(options.auto_white_balance) == openni::STATUS_OK;
+                     settings->setAutoExposureEnabled(options.auto_exposure) == ::openni::STATUS_OK &&
+                     settings->setAutoWhiteBalanceEnabled(options.auto_white_balance) == ::openni::STATUS_OK;
     const bool asked = !options.auto_exposure || !options.auto_white_balance;
     if (asked && !set) log_warning("{}: exposure and white balance cannot be set", uri);
   }
 
   /// Some drivers take it before the streams run, some only afterwards.
   bool registered() {
-    constexpr auto kWanted = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
+    constexpr auto kWanted = ::openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
     if (!device.isImageRegistrationModeSupported(kWanted)) return false;
     if (device.getImageRegistrationMode() == kWanted) return true;
-    return device.setImageRegistrationMode(kWanted) == openni::STATUS_OK &&
+    return device.setImageRegistrationMode(kWanted) == ::openni::STATUS_OK &&
            device.getImageRegistrationMode() == kWanted;
   }
 
@@ -127,9 +140,12 @@ struct OpenniDevice::State {
   /// thread hands images to, and makes it anew, so this is done just behind a colour image, when no other is on its
   /// way.
   void synchronise() {
-    openni::VideoStream* streams[] = {&colour};
-    int ready = 0;
-    openni::OpenNI::waitForAnyStream(streams, 1, &ready, kFirstImageMs);
+    wait_in_parts(kFirstImage, stop_requested, [&](milliseconds part) {
+      ::openni::VideoStream* streams[] = {&colour};
+      int ready = 0;
+      const auto part_ms = static_cast<int>(part.count());
+      return ::openni::OpenNI::waitForAnyStream(streams, 1, &ready, part_ms) == ::openni::STATUS_OK;
+    });
     device.setDepthColorSyncEnabled(true);
   }
 
@@ -151,7 +167,9 @@ struct OpenniDevice::State {
   /// A file waits until it is asked, so nothing is lost; what cannot be read is not waited for a second time.
   std::optional<SensorImage> read_file(milliseconds patience) {
     if (images_left == 0) return std::nullopt;
-    const std::optional<Sensor> sensor = wait_for_image(depth, colour, patience);
+    const std::optional<Sensor> sensor =
+        wait_in_parts(patience, stop_requested, [&](milliseconds part) { return wait_for_image(depth, colour, part); });
+    if (!sensor && stop_requested && stop_requested()) return std::nullopt;
     require(sensor.has_value(), "{}: no further image, but {} are still to come: {}", uri, images_left,
             "the file is cut or damaged");
     --images_left;
@@ -159,8 +177,9 @@ struct OpenniDevice::State {
   }
 };
 
-std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, const CameraOptions& options) {
-  auto state = std::make_unique<State>(uri);
+std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, const CameraOptions& options,
+                                                        const StopRequested& stop_requested) {
+  auto state = std::make_unique<State>(uri, stop_requested);
   state->open();
   state->create_streams();
   state->set_mode(options.mode);
@@ -178,14 +197,14 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, 
   return std::unique_ptr<OpenniDevice>(new OpenniDevice(std::move(state)));
 }
 
-std::unique_ptr<OpenniDevice> OpenniDevice::open_file(const std::string& file) {
-  auto state = std::make_unique<State>(file);
+std::unique_ptr<OpenniDevice> OpenniDevice::open_file(const std::string& file, const StopRequested& stop_requested) {
+  auto state = std::make_unique<State>(file, stop_requested);
   state->is_file = true;
   state->open();
   require(state->device.isFile(), "{}: no recording, expected a .oni file", file);
   state->create_streams();
   state->mode = camera_mode_of(state->depth.getVideoMode());
-  openni::PlaybackControl* control = state->device.getPlaybackControl();
+  ::openni::PlaybackControl* control = state->device.getPlaybackControl();
   check_openni(control->setRepeatEnabled(false), file + ": playing once");
   check_openni(control->setSpeed(-1.0F), file + ": playing at our pace");
   state->images_left = control->getNumberOfFrames(state->depth) + control->getNumberOfFrames(state->colour);
@@ -216,6 +235,14 @@ const CameraMode& OpenniDevice::mode() const {
   return state_->mode;
 }
 
+Camera OpenniDevice::camera(const CameraOptions& options) const {
+  if (!options.camera) return nominal_camera();
+  const Camera& camera = *options.camera;
+  require(camera.width == mode().width && camera.height == mode().height,
+          "--camera is for images of {}x{}, the images are {}", camera.width, camera.height, mode_text(mode()));
+  return camera;
+}
+
 Camera OpenniDevice::nominal_camera() const {
   const CameraMode& mode = state_->mode;
   const double horizontal = state_->colour.getHorizontalFieldOfView();
@@ -229,4 +256,4 @@ Camera OpenniDevice::nominal_camera() const {
   return camera;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

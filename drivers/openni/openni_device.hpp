@@ -8,9 +8,9 @@
 
 #include "drivers/openni/camera_choice.hpp"
 #include "drivers/openni/camera_options.hpp"
-#include "drivers/openni/sensor_image.hpp"
+#include "drivers/openni/timestamp_pairing.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// The cameras that OpenNI2's drivers have found. `closely` also opens each for its serial number and modes, which
 /// stay empty where it cannot be opened, for instance because another process uses it. Throws InputError where
@@ -26,11 +26,13 @@ std::shared_ptr<const void> keep_openni_running();
 class OpenniDevice {
  public:
   /// Opens a camera: registered, synchronised where it can, not mirrored. Throws InputError where it lacks the mode
-  /// (listing those it has) or the registration.
-  static std::unique_ptr<OpenniDevice> open_camera(const std::string& uri, const CameraOptions& options);
+  /// (listing those it has) or the registration. What it waits for here and in wait() it gives up as soon as
+  /// `stop_requested` says so.
+  static std::unique_ptr<OpenniDevice> open_camera(const std::string& uri, const CameraOptions& options,
+                                                   const StopRequested& stop_requested = {});
 
   /// Opens a .oni file, which gives each image as soon as it is asked for. Throws InputError.
-  static std::unique_ptr<OpenniDevice> open_file(const std::string& file);
+  static std::unique_ptr<OpenniDevice> open_file(const std::string& file, const StopRequested& stop_requested = {});
 
   ~OpenniDevice();
 
@@ -44,6 +46,9 @@ class OpenniDevice {
 
   const CameraMode& mode() const;
 
+  /// The camera that the options name, else the nominal one. Throws InputError where its size is not the mode's.
+  Camera camera(const CameraOptions& options) const;
+
   /// Intrinsics from the colour sensor's field of view: the principal point in the middle. Throws InputError where
   /// the device does not tell.
   Camera nominal_camera() const;
@@ -54,4 +59,4 @@ class OpenniDevice {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -2,17 +2,19 @@
 
 #include <OpenNI.h>
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/openni/camera_choice.hpp"
-#include "drivers/openni/sensor_image.hpp"
+#include "drivers/openni/timestamp_pairing.hpp"
 
 // OpenNI2 in this project's words. Included by the .cpp files of this folder only.
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// OpenNI2 runs while somebody holds one: it watches for cameras that come and go. Throws InputError where it finds no
 /// driver.
@@ -24,29 +26,53 @@ class OpenniLibrary {
   OpenniLibrary& operator=(const OpenniLibrary&) = delete;
 };
 
-/// Throws InputError with OpenNI2's reason unless the status is ok.
-void check_openni(openni::Status status, const std::string& what);
+/// Hears that a camera was unplugged or has failed.
+class Departure : public ::openni::OpenNI::DeviceDisconnectedListener,
+                  public ::openni::OpenNI::DeviceStateChangedListener {
+ public:
+  explicit Departure(std::string uri) : uri_(std::move(uri)) {
+    ::openni::OpenNI::addDeviceDisconnectedListener(this);
+    ::openni::OpenNI::addDeviceStateChangedListener(this);
+  }
+  ~Departure() override {
+    ::openni::OpenNI::removeDeviceDisconnectedListener(this);
+    ::openni::OpenNI::removeDeviceStateChangedListener(this);
+  }
+  void onDeviceDisconnected(const ::openni::DeviceInfo* info) override {
+    if (uri_ == info->getUri()) gone = true;
+  }
+  void onDeviceStateChanged(const ::openni::DeviceInfo* info, ::openni::DeviceState state) override {
+    if (uri_ == info->getUri() && state == ::openni::DEVICE_STATE_ERROR) gone = true;
+  }
+  std::atomic<bool> gone{false};
 
-openni::SensorType openni_type(SensorImage::Sensor sensor);
-CameraMode camera_mode_of(const openni::VideoMode& mode);
+ private:
+  std::string uri_;
+};
+
+/// Throws InputError with OpenNI2's reason unless the status is ok.
+void check_openni(::openni::Status status, const std::string& what);
+
+::openni::SensorType openni_type(SensorImage::Sensor sensor);
+CameraMode camera_mode_of(const ::openni::VideoMode& mode);
 
 /// A sensor's mode with a pixel format that is understood here: RGB, or depth in millimetres or their tenths.
-std::optional<openni::VideoMode> find_mode(openni::Device& device, SensorImage::Sensor sensor,
-                                           const CameraMode& wanted);
+std::optional<::openni::VideoMode> find_mode(::openni::Device& device, SensorImage::Sensor sensor,
+                                             const CameraMode& wanted);
 
 /// The modes that depth and colour have in common.
-std::vector<CameraMode> common_modes(openni::Device& device);
+std::vector<CameraMode> common_modes(::openni::Device& device);
 
 /// The serial number, or nothing where the driver does not tell.
-std::string serial_of(const openni::Device& device);
+std::string serial_of(const ::openni::Device& device);
 
 /// The sensor of the image that is there first; nothing where none comes in time.
-std::optional<SensorImage::Sensor> wait_for_image(openni::VideoStream& depth, openni::VideoStream& colour,
+std::optional<SensorImage::Sensor> wait_for_image(::openni::VideoStream& depth, ::openni::VideoStream& colour,
                                                   std::chrono::milliseconds patience);
 
 /// Reads the stream's newest image, colour still as RGB: OpenCV would convert it with the help of other threads, for
 /// which the one that reads a camera must not wait. Its picture is empty where the device gave less than the frame
 /// should hold.
-std::optional<SensorImage> read_image(openni::VideoStream& stream, SensorImage::Sensor sensor);
+std::optional<SensorImage> read_image(::openni::VideoStream& stream, SensorImage::Sensor sensor);
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -16,7 +16,7 @@
 
 // Included by the .cpp files of this folder only.
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// Images in the order of their arrival, from one thread to another.
 class Inbox {
@@ -53,7 +53,7 @@ class Inbox {
 class StreamReader {
  public:
   /// Begins; the streams must run, and be stopped only after this has ended.
-  StreamReader(openni::VideoStream& depth, openni::VideoStream& colour, Inbox& to)
+  StreamReader(::openni::VideoStream& depth, ::openni::VideoStream& colour, Inbox& to)
       : depth_(depth), colour_(colour), inbox_(to), thread_([this] { run(); }) {}
   StreamReader(const StreamReader&) = delete;
   StreamReader& operator=(const StreamReader&) = delete;
@@ -76,11 +76,11 @@ class StreamReader {
     }
   }
 
-  openni::VideoStream& depth_;
-  openni::VideoStream& colour_;
+  ::openni::VideoStream& depth_;
+  ::openni::VideoStream& colour_;
   Inbox& inbox_;
   std::atomic<bool> running_{true};
   LastingThread thread_;  // last, so that it is waited for first: it uses the others
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

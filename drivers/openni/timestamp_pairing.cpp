@@ -3,7 +3,20 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace houghstream {
+namespace houghstream::openni {
+
+RgbdFrame frame_of_pair(const ImagePair& pair, const Camera& camera, std::int64_t utime) {
+  RgbdFrame frame;
+  frame.id.utime = utime;
+  frame.colour = pair.colour.image;
+  frame.depth = depth_from_millimetres(pair.depth.image);
+  frame.camera = camera;
+  return frame;
+}
+
+std::int64_t pairing_tolerance_us(const CameraMode& mode) {
+  return std::int64_t{550'000} / mode.rate_hz;
+}
 
 std::optional<ImagePair> TimestampPairing::put(SensorImage image) {
   const bool is_depth = image.sensor == SensorImage::Sensor::kDepth;
@@ -51,4 +64,4 @@ void TimestampPairing::give_up_older(Queue& queue, const SensorImage& image) {
   give_up_front(queue, count);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -2,17 +2,36 @@
 
 #include <cstdint>
 #include <deque>
+#include <opencv2/core.hpp>
 #include <optional>
 
-#include "drivers/openni/sensor_image.hpp"
+#include "drivers/openni/camera_options.hpp"
+#include "pipeline/types/frame.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
+
+/// One image of one of a camera's two sensors, as it arrived.
+struct SensorImage {
+  enum class Sensor { kDepth, kColour };
+
+  Sensor sensor = Sensor::kDepth;
+  std::uint64_t device_us = 0;  ///< capture time on the device's clock, whose zero is arbitrary
+  std::int64_t host_us = 0;     ///< arrival on the host's, microseconds since the epoch
+  std::int64_t number = 0;      ///< the device's count of this sensor's images
+  cv::Mat image;                ///< depth: CV_16UC1, millimetres, 0 = none; colour: CV_8UC3, BGR
+};
 
 /// A depth image and the colour image that was taken nearest to it.
 struct ImagePair {
   SensorImage depth;
   SensorImage colour;
 };
+
+/// The pair as a frame; its utime is the caller's.
+RgbdFrame frame_of_pair(const ImagePair& pair, const Camera& camera, std::int64_t utime);
+
+/// How far apart depth and colour may be taken: half the time between two images, and a little for jitter.
+std::int64_t pairing_tolerance_us(const CameraMode& mode);
 
 /// Brings depth and colour together by their capture times, whichever arrives first and however late. The last colour
 /// that has arrived would often be another moment's: where something moves, its colour would lie beside its depth.
@@ -48,4 +67,4 @@ class TimestampPairing {
   Queue colour_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

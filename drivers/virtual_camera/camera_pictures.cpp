@@ -6,7 +6,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 
 cv::Point2d pattern_disc(const Camera& camera, int k) {
   const double turn = 2.0 * M_PI * k / kPatternPictures;
@@ -47,4 +47,4 @@ CameraPictures load_scene_pictures(const std::filesystem::path& folder) {
   return all;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

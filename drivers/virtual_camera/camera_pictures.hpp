@@ -7,7 +7,7 @@
 
 #include "pipeline/types/camera.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 
 /// A picture of each of the virtual camera's sensors, depth registered to colour.
 struct CameraPicture {
@@ -34,4 +34,4 @@ CameraPictures make_test_pattern(const Camera& camera);
 /// All pictures of a BOP scene folder, forwards and then backwards, so that there is no jump. Throws InputError.
 CameraPictures load_scene_pictures(const std::filesystem::path& folder);
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

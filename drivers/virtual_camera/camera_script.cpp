@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 using Setter = std::function<void(CameraScript&, const std::string&)>;
@@ -96,4 +96,4 @@ CameraScript read_camera_script(const std::filesystem::path& file) {
   return script;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

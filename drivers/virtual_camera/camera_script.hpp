@@ -7,7 +7,7 @@
 
 #include "pipeline/types/camera.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 
 /// How the virtual camera behaves, read from a text file with one "key value" a line; # starts a comment. The file may
 /// be rewritten while the camera runs: what concerns only new images takes effect with the next one.
@@ -33,4 +33,4 @@ struct CameraScript {
 /// Throws InputError naming file and line. Without a file everything is at its default.
 CameraScript read_camera_script(const std::filesystem::path& file);
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

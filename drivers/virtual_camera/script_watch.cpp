@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod(10);
@@ -65,4 +65,4 @@ void ScriptWatch::look() {
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

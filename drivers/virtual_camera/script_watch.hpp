@@ -10,7 +10,7 @@
 
 #include "drivers/virtual_camera/camera_script.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 
 /// Reads the script again whenever its file has changed, in a thread of its own.
 class ScriptWatch {
@@ -41,4 +41,4 @@ class ScriptWatch {
   std::thread thread_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

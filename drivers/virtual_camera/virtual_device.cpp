@@ -9,7 +9,7 @@
 
 #include "pipeline/base/host_clock.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 using std::chrono::duration;
@@ -48,7 +48,7 @@ VirtualDevice::VirtualDevice(const ScriptWatch& script, const PicturesBySize& pi
     const OniPixelFormat format = i == 0 ? ONI_PIXEL_FORMAT_DEPTH_1_MM : ONI_PIXEL_FORMAT_RGB888;
     for (auto size = pictures.rbegin(); size != pictures.rend(); ++size) {
       const Camera& camera = size->second.camera;
-      if (sensors_[i].modes.empty()) sensors_[i].camera = camera;
+      sensors_[i].cameras.push_back(camera);
       sensors_[i].modes.push_back({format, camera.width, camera.height, rate});
     }
     infos_[i] = {sensors_[i].type, static_cast<int>(sensors_[i].modes.size()), sensors_[i].modes.data()};
@@ -172,7 +172,8 @@ void VirtualDevice::open_shutters(int number, Clock::time_point now) {
   const Clock::time_point colour_time = now + milliseconds_of(phase_ms);
   const std::uint64_t device_us = device_time_us(now, *script);
   for (const auto& stream : streams()) {
-    const std::vector<CameraPicture>& pictures = pictures_.at(stream->mode().resolutionX).pictures;
+    const OniVideoMode mode = stream->mode();
+    const std::vector<CameraPicture>& pictures = pictures_.at({mode.resolutionX, mode.resolutionY}).pictures;
     const CameraPicture& picture = pictures[static_cast<std::size_t>(number) % pictures.size()];
     if (stream->type() == ONI_SENSOR_COLOR) {
       if (is_dropped(number, script->drop_colour_every)) continue;
@@ -218,4 +219,4 @@ cv::Mat VirtualDevice::unregistered(const cv::Mat& depth_mm) const {
   return beside;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

@@ -9,14 +9,15 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "drivers/virtual_camera/script_watch.hpp"
 #include "drivers/virtual_camera/virtual_stream.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 
-/// Pictures by width: one test pattern for each mode, or a scene.
-using PicturesBySize = std::map<int, CameraPictures>;
+/// Pictures by {width, height}: one test pattern for each mode, or a scene.
+using PicturesBySize = std::map<std::pair<int, int>, CameraPictures>;
 
 /// One virtual camera: a thread that opens both shutters at the script's rate, and its streams.
 class VirtualDevice : public oni::driver::DeviceBase {
@@ -77,4 +78,4 @@ class VirtualDevice : public oni::driver::DeviceBase {
   std::thread thread_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

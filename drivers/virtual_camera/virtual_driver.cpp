@@ -8,7 +8,7 @@
 // An OpenNI2 driver whose cameras exist in a file only: so that all that happens between a camera and this program can
 // be tried, by tests and by people without one. $HOUGHSTREAM_VIRTUAL_CAMERA names the script (camera_script.hpp).
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 std::string uri_of(std::size_t index) {
@@ -27,10 +27,13 @@ PicturesBySize make_pictures(const CameraScript& script) {
   PicturesBySize all;
   if (!script.scene.empty()) {
     CameraPictures scene = load_scene_pictures(script.scene);
-    all.emplace(scene.camera.width, std::move(scene));
+    const std::pair<int, int> size(scene.camera.width, scene.camera.height);
+    all.emplace(size, std::move(scene));
     return all;
   }
-  for (const Camera& camera : script.sizes) all.emplace(camera.width, make_test_pattern(camera));
+  for (const Camera& camera : script.sizes) {
+    all.emplace(std::pair(camera.width, camera.height), make_test_pattern(camera));
+  }
   return all;
 }
 
@@ -116,6 +119,6 @@ class VirtualDriver : public oni::driver::DriverBase {
 };
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera
 
-ONI_EXPORT_DRIVER(houghstream::VirtualDriver)
+ONI_EXPORT_DRIVER(houghstream::virtual_camera::VirtualDriver)

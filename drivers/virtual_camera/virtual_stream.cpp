@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 constexpr int kMaxDepthMm = 10000;
@@ -33,7 +33,7 @@ int bytes_per_pixel(OniSensorType type) {
 }  // namespace
 
 VirtualStream::VirtualStream(VirtualDevice& device, const VirtualSensor& sensor)
-    : device_(device), sensor_(sensor), mode_(sensor.modes.front()) {}
+    : device_(device), sensor_(sensor), mode_(sensor.modes.at(0)), camera_(sensor.cameras.at(0)) {}
 
 OniVideoMode VirtualStream::mode() const {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -65,8 +65,8 @@ OniStatus VirtualStream::getProperty(int property, void* data, int* size) {
     case ONI_STREAM_PROPERTY_VIDEO_MODE: return give(mode_, data, size);
     case ONI_STREAM_PROPERTY_CROPPING:
       return give(OniCropping{FALSE, 0, 0, mode_.resolutionX, mode_.resolutionY}, data, size);
-    case ONI_STREAM_PROPERTY_HORIZONTAL_FOV: return give(angle(sensor_.camera.width, sensor_.camera.fx), data, size);
-    case ONI_STREAM_PROPERTY_VERTICAL_FOV: return give(angle(sensor_.camera.height, sensor_.camera.fy), data, size);
+    case ONI_STREAM_PROPERTY_HORIZONTAL_FOV: return give(angle(camera_.width, camera_.fx), data, size);
+    case ONI_STREAM_PROPERTY_VERTICAL_FOV: return give(angle(camera_.height, camera_.fy), data, size);
     case ONI_STREAM_PROPERTY_STRIDE: return give(mode_.resolutionX * bytes_per_pixel(sensor_.type), data, size);
     case ONI_STREAM_PROPERTY_MIRRORING: return give(mirrored_, data, size);
     case ONI_STREAM_PROPERTY_MAX_VALUE: return give(kMaxDepthMm, data, size);
@@ -98,9 +98,10 @@ OniStatus VirtualStream::setProperty(int property, const void* data, int size) {
 
 OniStatus VirtualStream::set_mode(const OniVideoMode& mode) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const OniVideoMode& known : sensor_.modes) {
-    if (std::memcmp(&known, &mode, sizeof(mode)) != 0) continue;
+  for (std::size_t i = 0; i < sensor_.modes.size(); ++i) {
+    if (std::memcmp(&sensor_.modes[i], &mode, sizeof(mode)) != 0) continue;
     mode_ = mode;
+    camera_ = sensor_.cameras.at(i);
     return ONI_STATUS_OK;
   }
   return ONI_STATUS_BAD_PARAMETER;
@@ -152,4 +153,4 @@ void VirtualStream::send(const cv::Mat& picture, int number, std::uint64_t devic
   getServices().releaseFrame(frame);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

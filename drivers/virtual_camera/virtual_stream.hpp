@@ -5,13 +5,13 @@
 #include "drivers/virtual_camera/camera_pictures.hpp"
 #include "drivers/virtual_camera/driver_api.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 
-/// The modes that a sensor offers, and the fields of view they share.
+/// The modes that a sensor offers, the first one at the start, and the camera of each.
 struct VirtualSensor {
   OniSensorType type = ONI_SENSOR_DEPTH;
   std::vector<OniVideoMode> modes;
-  Camera camera;  ///< of the first mode
+  std::vector<Camera> cameras;
 };
 
 class VirtualDevice;
@@ -42,6 +42,7 @@ class VirtualStream : public oni::driver::StreamBase {
   VirtualSensor sensor_;
   mutable std::mutex mutex_;
   OniVideoMode mode_;
+  Camera camera_;            // of the mode
   OniBool mirrored_ = TRUE;  // as cameras come: whoever wants it otherwise has to say so
   OniBool auto_exposure_ = TRUE;
   OniBool auto_white_balance_ = TRUE;
@@ -51,4 +52,4 @@ class VirtualStream : public oni::driver::StreamBase {
   bool running_ = false;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

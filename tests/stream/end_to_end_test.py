@@ -173,6 +173,28 @@ def check_bad_input(tools, folder):
     assert result.returncode != 0 and str(truncated) in result.stderr, result
 
 
+def check_strange_names(tools, folder):
+    """What shares no name cannot be compared: one line that names both sides, and a failure, instead of figures of nothing."""
+    scene, forest, models = folder / "scene", folder / "small.forest", folder / "views" / "models"
+    strange = folder / "strange_models"
+    strange.mkdir(exist_ok=True)
+    for name, copy in (("obj_000001.ply", "teapot.ply"), ("obj_000001.png", "obj_000001.png")):  # the mesh names its texture
+        (strange / copy).write_bytes((models / name).read_bytes())
+    log = ("--log", folder / "results.log")
+    for words, (a, b) in (
+        ((*log, "--forest", forest, "--models", strange), ("the forest", "has teapot")),
+        ((*log, "--classes", "teapot,kettle"), ("--classes has kettle, teapot", "the scene")),
+        ((*log, "--forest", forest), (None, None)),
+    ):
+        command = [str(word) for word in (tools / "hs-evaluate", "--scene", scene, *words)]
+        result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        if b is None:
+            assert result.returncode == 0, result
+            continue
+        assert result.returncode == 1 and result.stdout == "" and result.stderr.count("\n") == 1, result
+        assert all(part in result.stderr for part in ("no name in common: ", a, b)), result
+
+
 def main():
     enter_private_network()
     arguments = read_arguments(__doc__)
@@ -187,6 +209,7 @@ def main():
     capture_live(tools, folder)
     check_live_stream(tools, folder, start_stream, offline)
     check_bad_input(tools, folder)
+    check_strange_names(tools, folder)
     print("end to end: everything accounted for")
 
 

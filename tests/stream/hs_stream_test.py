@@ -1,4 +1,4 @@
-"""hs-stream with the real processes: what is killed comes back, Ctrl-C and even a killed hs-stream leave nothing behind.
+"""hs-stream with the real processes: what is killed or hangs comes back, Ctrl-C and even a killed hs-stream leave nothing behind.
 
 Takes the forest, models and scene that end_to_end_test.py has made.
 """
@@ -23,7 +23,7 @@ class Stream:
     def __init__(self, tools, made, folder, name, forest="small.forest"):
         self.log = folder / f"{name}.err"
         command = [tools / "hs-stream", "--source", f"bop:{made / 'scene'}", "--capture-options=--loop --rate 5",
-                   "--forest", made / forest, "--models", made / "views" / "models", "--every", "0.5",
+                   "--forest", made / forest, "--models", made / "views" / "models", "--every", "0.5", "--hang-patience", "4",
                    f"--view-options=--video {folder / name}.mp4"]
         with open(self.log, "w", encoding="utf-8") as log:
             self.process = subprocess.Popen([str(word) for word in command], stderr=log, stdout=subprocess.DEVNULL)
@@ -67,6 +67,12 @@ def check_restart_and_stop(tools, made, folder):
     after = stream.pids()
     assert after["detect"] != before["detect"] and not is_alive(before["detect"]), (before, after)
     assert all(after[name] == before[name] for name in NAMES if name != "detect"), "the others were left alone"
+    os.kill(after["detect"], signal.SIGSTOP)
+    stream.find(r"detect has said nothing for 4.0 s: it hangs and is ended", 10)
+    stream.find(r"detect hung and was killed by signal 9 \(Killed\); starts again in 0.\d+ s", 10)
+    stream.find(r"detect [1-9.]+\d* Hz \d+ ms[^|]*\(restarts: 2\)", 30)
+    hung, after = after["detect"], stream.pids()
+    assert after["detect"] != hung and not is_alive(hung), (hung, after)
     start = time.monotonic()
     stream.process.send_signal(signal.SIGINT)
     assert stream.process.wait(20) == 0, stream.log.read_text()

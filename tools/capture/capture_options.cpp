@@ -1,11 +1,11 @@
 #include "tools/capture/capture_options.hpp"
 
-#include "drivers/openni/camera_info.hpp"
+#include "drivers/openni/camera_options.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "drivers/openni/openni_device.hpp"
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::capture {
 namespace {
 
 struct Specification {
@@ -18,12 +18,12 @@ Specification split(const std::string& source) {
   return {source.substr(0, colon), colon == std::string::npos ? "" : source.substr(colon + 1)};
 }
 
-CameraOptions camera_options(const SourceOptions& options) {
-  CameraOptions live = options.live;
-  live.mode = parse_camera_mode(options.mode);
+openni::CameraOptions camera_options(const SourceOptions& options) {
+  openni::CameraOptions live = options.live;
+  live.mode = openni::parse_camera_mode(options.mode);
   live.auto_exposure = !options.fixed_exposure;
   live.auto_white_balance = !options.fixed_white_balance;
-  if (!options.camera.empty()) live.camera = camera_of_option(options.camera);
+  if (!options.camera.empty()) live.camera = openni::camera_of_option(options.camera);
   return live;
 }
 
@@ -45,20 +45,21 @@ void add_source_options(CommandLine& app, SourceOptions& options) {
   app.add_flag("--record-jpeg", options.live.record_jpeg, "with --record: colour as JPEG, much smaller, with losses");
 }
 
-std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const CameraListener& listener) {
+std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const openni::CameraListener& listener) {
   const auto [kind, value] = split(options.source);
   const bool live = kind == "openni2";
   require(live || options.live.record.empty(), "--record goes with --source openni2, not with {}", options.source);
-  if (live) return open_camera_source(value, camera_options(options), listener);
-  if (kind == "oni" && !value.empty()) return open_oni_source(value, camera_options(options));
+  if (live) return openni::open_camera_source(value, camera_options(options), listener);
+  if (kind == "oni" && !value.empty())
+    return openni::open_oni_source(value, camera_options(options), listener.stop_requested);
   require(options.camera.empty(), "--camera goes with --source openni2 or oni, not with {}", options.source);
   return open_frame_source(options.source);
 }
 
 std::string devices_text() {
-  const std::vector<CameraDescription> cameras = list_cameras(true);
+  const std::vector<openni::CameraDescription> cameras = openni::list_cameras(true);
   if (cameras.empty()) return "no camera found by OpenNI2's drivers";
-  return cameras_text(cameras);
+  return openni::cameras_text(cameras);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::capture

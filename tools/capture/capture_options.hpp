@@ -7,12 +7,12 @@
 #include "drivers/openni/camera_options.hpp"
 #include "tools/common/command_line.hpp"
 
-namespace houghstream {
+namespace houghstream::capture {
 
 /// What the command line says of the source and of a camera. `live` is for openni2 and oni only.
 struct SourceOptions {
   std::string source;
-  CameraOptions live;
+  openni::CameraOptions live;
   std::string mode = "640x480@30";
   std::string camera;
   bool fixed_exposure = false;
@@ -23,9 +23,9 @@ void add_source_options(CommandLine& app, SourceOptions& options);
 
 /// Opens openni2[:CAMERA], oni:FILE, or what open_frame_source() knows. Throws InputError, also for an option that the
 /// source cannot heed.
-std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const CameraListener& listener);
+std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const openni::CameraListener& listener);
 
 /// What --list-devices prints: the cameras that are there. Throws InputError where OpenNI2 finds no driver.
 std::string devices_text();
 
-}  // namespace houghstream
+}  // namespace houghstream::capture

@@ -7,6 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace houghstream;
+  using namespace houghstream::capture;
   CommandLine app("Publishes RGB-D frames as images_t, or writes them to an LCM log", "hs-capture");
   SourceOptions source;
   bool list = false;
@@ -38,7 +39,7 @@ int main(int argc, char** argv) {
     settings.format.zip_depth = !raw_depth;
     require(log.empty() || !settings.loop || settings.frames, "--loop into a log never ends; give --frames");
     catch_stop_signals();
-    const OpenSource open = [&](const CameraListener& listener) { return open_source(source, listener); };
+    const OpenSource open = [&](const openni::CameraListener& listener) { return open_source(source, listener); };
     const CaptureResult result =
         log.empty() ? capture_to_network(open, settings, url) : capture_to_log(open, settings, log);
     log_info("{} frames of {:.1f} kB to {}, {:.1f} s, {:.1f} Hz", result.frames,

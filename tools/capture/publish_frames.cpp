@@ -1,5 +1,6 @@
 #include "tools/capture/publish_frames.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -12,7 +13,7 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/status_reporter.hpp"
 
-namespace houghstream {
+namespace houghstream::capture {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -20,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 /// The source's frames, again and again where wanted, with utimes that never repeat: a frame is known by its utime.
 class FrameFeed {
  public:
-  FrameFeed(const OpenSource& open, const CaptureSettings& settings, CameraListener listener)
+  FrameFeed(const OpenSource& open, const CaptureSettings& settings, openni::CameraListener listener)
       : open_(open), settings_(settings), listener_(std::move(listener)) {
     source_ = open_(listener_);
     require(!source_->is_live() || !settings.rate_hz,
@@ -33,8 +34,8 @@ class FrameFeed {
   std::optional<RgbdFrame> next() {
     if (stop_requested() || (settings_.frames && count_ >= *settings_.frames)) return std::nullopt;
     std::optional<RgbdFrame> frame = source_->next();
-    if (!frame && settings_.loop && count_ > 0) frame = start_again();
     if (!frame && stop_requested()) return std::nullopt;
+    if (!frame && settings_.loop && count_ > 0) frame = start_again();
     require(frame.has_value() || count_ > 0, "the source has no frames");
     if (!frame) return std::nullopt;
     frame->id.utime += offset_us_;
@@ -59,7 +60,7 @@ class FrameFeed {
 
   const OpenSource& open_;
   const CaptureSettings& settings_;
-  CameraListener listener_;
+  openni::CameraListener listener_;
   std::unique_ptr<FrameSource> source_;
   double rate_hz_ = 0.0;
   std::int64_t count_ = 0;
@@ -74,14 +75,21 @@ class Pace {
   explicit Pace(double period_us)
       : period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::micro>(period_us))) {}
 
-  void wait() {
+  /// False where a stop signal comes first: at low rates a turn is seconds away.
+  bool wait() {
     const Clock::time_point now = Clock::now();
     due_ = now - due_ > period_ ? now : due_;
-    std::this_thread::sleep_until(due_);
+    while (Clock::now() < due_) {
+      if (stop_requested()) return false;
+      std::this_thread::sleep_until(std::min(due_, Clock::now() + kGlance));
+    }
     due_ += period_;
+    return true;
   }
 
  private:
+  static constexpr std::chrono::milliseconds kGlance{50};  // how long a stop signal may go unnoticed
+
   Clock::duration period_;
   Clock::time_point due_ = Clock::now();
 };
@@ -110,7 +118,7 @@ class StatusTicker {
   std::thread thread_;
 };
 
-CameraListener listener_of(StatusReporter& status) {
+openni::CameraListener listener_of(StatusReporter& status) {
   return {stop_requested, [&](const std::string& reason) { status.remember_error(reason); },
           [&](std::int64_t number) { status.note_sequence(number); }};
 }
@@ -134,7 +142,7 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
     const Clock::time_point read = Clock::now();
     status.count_received();
     const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
-    if (!feed.is_live()) pace.wait();
+    if (!feed.is_live() && !pace.wait()) break;
     bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->id.utime);
     status.count_processed(Clock::now() - read);
     ++result.frames;
@@ -163,4 +171,4 @@ CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& sett
   return result;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::capture

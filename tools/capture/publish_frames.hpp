@@ -10,7 +10,7 @@
 #include "drivers/openni/camera_options.hpp"
 #include "pipeline/messages/messages.hpp"
 
-namespace houghstream {
+namespace houghstream::capture {
 
 struct CaptureSettings {
   WireFormat format;
@@ -28,7 +28,7 @@ struct CaptureResult {
 };
 
 /// Opens the source; called again at its end where the settings say so. A camera tells the listener how it is.
-using OpenSource = std::function<std::unique_ptr<FrameSource>(const CameraListener&)>;
+using OpenSource = std::function<std::unique_ptr<FrameSource>(const openni::CameraListener&)>;
 
 /// Publishes the source's frames on the network at their rate, those of a camera as they come, until its end or a stop
 /// signal. The status goes out once a second whether frames come or not.
@@ -39,4 +39,4 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
 /// replayed; a camera's with their utimes.
 CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file);
 
-}  // namespace houghstream
+}  // namespace houghstream::capture

@@ -7,7 +7,7 @@
 
 #include "tools/doctor/openni_folder.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,4 +159,4 @@ Findings check_camera(const Machine& machine, bool needed) {
   return findings;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

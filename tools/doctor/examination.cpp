@@ -8,7 +8,7 @@
 #include "tools/doctor/network_checks.hpp"
 #include "tools/doctor/tool_checks.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 const char* to_string(Finding::Level level) {
@@ -55,4 +55,4 @@ int count_wrong(const Findings& findings) {
   }));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

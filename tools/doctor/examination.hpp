@@ -6,7 +6,7 @@
 #include "tools/doctor/finding.hpp"
 #include "tools/doctor/machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 
 struct ExaminationSettings {
   std::string lcm_url;                         ///< "" = LCM's default
@@ -26,4 +26,4 @@ std::string to_text(const Findings& findings);
 /// How many findings keep the stream from working.
 int count_wrong(const Findings& findings);
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

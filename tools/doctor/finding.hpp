@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::doctor {
 
 /// What one check found.
 struct Finding {
@@ -32,4 +32,4 @@ inline Finding wrong(std::string name, std::string what, std::string remedy = ""
   return {Finding::Level::kWrong, std::move(name), std::move(what), std::move(remedy)};
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

@@ -9,6 +9,7 @@
 
 int main(int argc, char** argv) {
   using namespace houghstream;
+  using namespace houghstream::doctor;
   CommandLine app(
       "Looks for what would keep the stream from working, and says how to mend it; changes nothing. Fails where the "
       "stream would not work.",

@@ -8,7 +8,7 @@
 
 #include "pipeline/bus/lcm_bus.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -61,4 +61,4 @@ SelfTest self_test(const std::string& url, std::size_t bytes) {
   return result;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

@@ -4,7 +4,7 @@
 
 // Probes of a Machine that use the bus itself. Neither throws.
 
-namespace houghstream {
+namespace houghstream::doctor {
 
 /// Machine::heard_bytes of this machine.
 std::size_t heard_bytes(const std::string& url, const std::string& channel);
@@ -12,4 +12,4 @@ std::size_t heard_bytes(const std::string& url, const std::string& channel);
 /// Machine::self_test of this machine: some messages one after another on a channel of their own.
 SelfTest self_test(const std::string& url, std::size_t bytes);
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

@@ -13,7 +13,7 @@
 #include "pipeline/bus/receive_buffer.hpp"
 #include "tools/doctor/lcm_probe.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ Machine this_machine() {
   return machine;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

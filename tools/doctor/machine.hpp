@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace houghstream {
+namespace houghstream::doctor {
 
 /// What became of messages that were sent on the bus to be received by the sender itself.
 struct SelfTest {
@@ -43,4 +43,4 @@ struct Machine {
 /// This machine, as the calling process sees it.
 Machine this_machine();
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

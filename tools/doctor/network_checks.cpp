@@ -10,7 +10,7 @@
 
 #include "pipeline/bus/receive_buffer.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 constexpr const char* kRoute = "multicast route";
@@ -118,4 +118,4 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
   return findings;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

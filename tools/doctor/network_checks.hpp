@@ -6,7 +6,7 @@
 #include "tools/doctor/finding.hpp"
 #include "tools/doctor/machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 
 struct BusSettings {
   std::string url;            ///< as LCM takes it, complete
@@ -17,4 +17,4 @@ struct BusSettings {
 /// Multicast route, receive buffers for the frames in use and for Java, and messages of that size sent and received.
 Findings check_network(const Machine& machine, const BusSettings& settings);
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

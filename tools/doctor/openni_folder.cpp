@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ std::string shown(const Machine& machine, const fs::path& path) {
   return "/" + path.lexically_relative(machine.root).string();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

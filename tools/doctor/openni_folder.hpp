@@ -7,7 +7,7 @@
 
 #include "tools/doctor/machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 
 /// The OpenNI2 library that a program would load, libOpenNI2.so.0: on $LD_LIBRARY_PATH, then in the system's folders.
 std::optional<std::filesystem::path> find_openni(const Machine& machine);
@@ -25,4 +25,4 @@ Drivers list_drivers(const std::filesystem::path& folder);
 /// A path as users know it: without the root that was looked at.
 std::string shown(const Machine& machine, const std::filesystem::path& path);
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

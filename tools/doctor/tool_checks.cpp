@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,4 +91,4 @@ Findings check_tools(const Machine& machine, const fs::path& types_jar) {
           check_display(machine)};
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

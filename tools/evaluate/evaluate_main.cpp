@@ -11,6 +11,7 @@
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/bop_results.hpp"
+#include "tools/evaluate/class_names.hpp"
 #include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/report.hpp"
 
@@ -31,19 +32,28 @@ struct EvaluateOptions {
   int every = 1;
 };
 
-/// The classes that were asked for, else those that the forest knows, else those of the truth.
+/// Whose names are measured: those that were asked for, else the forest's, else the truth's.
+NamedSide listed_side(const EvaluateOptions& options, const std::optional<Forest>& forest, const NamedSide& truth) {
+  if (!options.classes.empty()) return {"--classes", {options.classes.begin(), options.classes.end()}};
+  if (!forest) return truth;
+  NamedSide side{"the forest " + options.forest, {}};
+  for (const ObjectClass& known : forest->classes) side.names.insert(known.name);
+  return side;
+}
+
+/// The classes to measure, in the order in which they were asked for, else by name. Throws InputError where they are no
+/// class of the truth or of the models; a scene without objects is there to count false detections.
 std::vector<std::string> listed_classes(const EvaluateOptions& options, const std::optional<Forest>& forest,
-                                        const std::vector<EvaluatedFrame>& frames) {
-  if (!options.classes.empty()) return options.classes;
-  std::set<std::string> names;
-  if (forest) {
-    for (const ObjectClass& known : forest->classes) names.insert(known.name);
-  } else {
-    for (const EvaluatedFrame& frame : frames) {
-      for (const NamedObject& object : frame.objects) names.insert(object.class_name);
-    }
+                                        const NamedSide& truth, const std::map<std::string, Mesh>& meshes) {
+  const NamedSide listed = listed_side(options, forest, truth);
+  if (!truth.names.empty()) require_shared_name(listed, truth);
+  if (!meshes.empty() && !listed.names.empty()) {
+    NamedSide models{"the models " + options.models, {}};
+    for (const auto& [name, mesh] : meshes) models.names.insert(name);
+    require_shared_name(listed, models);
   }
-  return {names.begin(), names.end()};
+  if (!options.classes.empty()) return options.classes;
+  return {listed.names.begin(), listed.names.end()};
 }
 
 /// Poses are measured for the listed classes that have a model.
@@ -70,6 +80,13 @@ PublishedResults search_in_process(const EvaluateOptions& options, const BopScen
   return run_in_process(scene, detector, options.every, models);
 }
 
+/// Published results, or those of the forest in this process.
+PublishedResults read_results(const EvaluateOptions& options, const BopScene& scene,
+                              const std::optional<Forest>& forest, const std::map<std::string, Mesh>& meshes) {
+  if (!options.log.empty()) return read_result_log(options.log, options.channel);
+  return search_in_process(options, scene, *forest, meshes);
+}
+
 void run(const EvaluateOptions& options) {
   require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
   const BopScene scene(options.scene);
@@ -77,12 +94,14 @@ void run(const EvaluateOptions& options) {
   std::vector<EvaluatedFrame> frames = read_truth(scene, names);
   std::optional<Forest> forest;
   if (!options.forest.empty()) forest = load_forest(options.forest);
-  const std::vector<std::string> classes = listed_classes(options, forest, frames);
   const std::map<std::string, Mesh> meshes =
       options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
-  const PublishedResults results =
-      options.log.empty() ? search_in_process(options, scene, *forest, meshes) : read_result_log(options.log, options.channel);
+  const NamedSide truth{"the scene " + options.scene, true_names(frames)};
+  const std::vector<std::string> classes = listed_classes(options, forest, truth, meshes);
+  const PublishedResults results = read_results(options, scene, forest, meshes);
   const std::string source = options.log.empty() ? options.scene : options.log;
+  const std::set<std::string> detected = detected_names(results.detections);
+  if (!forest && !detected.empty() && !truth.names.empty()) require_shared_name({"the log " + source, detected}, truth);
   frames = every_nth(std::move(frames), options.every);
   add_results(frames, results, source);
   const Evaluation evaluation = measure(options, scene, frames, classes, meshes);

@@ -36,7 +36,7 @@ void write_names(const std::map<std::string, int>& ids, const fs::path& scene_fo
   write_bop_names(names, scene_folder / "names.json");
 }
 
-FramePair named_pair(const fs::path& source, const std::string& name) {
+FrameFiles named_pair(const fs::path& source, const std::string& name) {
   return {name, source / (name + "_color.png"), source / (name + "_depth.png")};
 }
 

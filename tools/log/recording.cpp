@@ -167,9 +167,9 @@ NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses)
     return reading(std::make_shared<KlgRecording>(*file, settings, losses));
   }
   if (const auto file = file_of(settings.source, "oni")) {
-    CameraOptions options;
+    openni::CameraOptions options;
     options.camera = settings.camera;
-    return reading(std::make_shared<SourceRecording>(open_oni_source(*file, options)));
+    return reading(std::make_shared<SourceRecording>(openni::open_oni_source(*file, options)));
   }
   if (is_frame_source(settings.source)) {
     return reading(std::make_shared<SourceRecording>(open_frame_source(settings.source)));

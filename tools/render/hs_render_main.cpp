@@ -8,6 +8,7 @@
 // hs-render: training views, backgrounds and test scenes made by code, in BOP format.
 
 using namespace houghstream;
+using namespace houghstream::render;
 
 namespace {
 
@@ -15,11 +16,10 @@ struct Arguments {
   RenderOptions common;
   std::vector<std::string> objects = {"all"};
   std::vector<std::string> attitudes = {"upright"};
-  TurntableSettings turntable;
+  world::TurntableSettings turntable;
   int background_count = 215;
-  std::string scene;
-  int frames = 300;
-  int every = 1;
+  SceneJob scene;
+  std::string sensor = "structured_light";
 };
 
 void add_common(CommandLine& command, Arguments& arguments) {
@@ -58,9 +58,13 @@ CommandLine add_background(CommandLine& app, Arguments& arguments) {
 void add_scene(CommandLine& app, Arguments& arguments) {
   CommandLine scene = app.add_subcommand("scene", "one of the test scenes");
   add_common(scene, arguments);
-  scene.add_option("name", arguments.scene, scene_names()).required();
-  scene.add_option("--frames", arguments.frames, "frames along the camera's whole way").capture_default_str();
-  scene.add_option("--every", arguments.every, "write only every Nth of them").capture_default_str();
+  scene.add_option("name", arguments.scene.name, world::scene_names()).required();
+  scene.add_option("--frames", arguments.scene.frames, "frames along the camera's whole way").capture_default_str();
+  scene.add_option("--every", arguments.scene.every, "write only every Nth of them").capture_default_str();
+  scene
+      .add_option("--sensor", arguments.sensor,
+                  "structured_light, as everything is taught, or time_of_flight, with another colour camera too")
+      .capture_default_str();
 }
 
 }  // namespace
@@ -77,12 +81,14 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     if (training.given()) {
       arguments.turntable.attitudes.clear();
-      for (const std::string& name : arguments.attitudes) arguments.turntable.attitudes.push_back(parse_attitude(name));
+      for (const std::string& name : arguments.attitudes)
+        arguments.turntable.attitudes.push_back(world::parse_attitude(name));
       render_training(arguments.common, arguments.objects, arguments.turntable);
     } else if (background.given()) {
       render_background(arguments.common, arguments.background_count);
     } else {
-      render_scene(arguments.common, arguments.scene, arguments.frames, arguments.every);
+      arguments.scene.sensor = world::parse_sensor(arguments.sensor);
+      render_scene(arguments.common, arguments.scene);
     }
   });
 }

@@ -8,7 +8,7 @@
 
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::render {
 namespace {
 
 /// Lets items through one at a time, by number.
@@ -47,12 +47,13 @@ void show_progress(const std::string& title, int done, int count) {
 
 }  // namespace
 
-void render_in_order(const std::string& title, int threads, int count, const std::function<SceneFrame(int)>& render,
-                     const std::function<void(const SceneFrame&)>& write) {
+void render_in_order(const std::string& title, int threads, int count,
+                     const std::function<world::SceneFrame(int)>& render,
+                     const std::function<void(const world::SceneFrame&)>& write) {
   Gate gate;
   parallel_for(threads, count, [&](int index) {
     try {
-      const SceneFrame frame = render(index);
+      const world::SceneFrame frame = render(index);
       gate.pass(index, [&] {
         write(frame);
         show_progress(title, index + 1, count);
@@ -64,4 +65,4 @@ void render_in_order(const std::string& title, int threads, int count, const std
   });
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::render

@@ -5,11 +5,12 @@
 
 #include "tools/render/world/scene_frames.hpp"
 
-namespace houghstream {
+namespace houghstream::render {
 
 /// Renders `count` frames on `threads` threads and hands them to `write` one at a time, in order; shows progress on
 /// standard error under `title`. An exception of either ends the loop and is rethrown.
-void render_in_order(const std::string& title, int threads, int count, const std::function<SceneFrame(int)>& render,
-                     const std::function<void(const SceneFrame&)>& write);
+void render_in_order(const std::string& title, int threads, int count,
+                     const std::function<world::SceneFrame(int)>& render,
+                     const std::function<void(const world::SceneFrame&)>& write);
 
-}  // namespace houghstream
+}  // namespace houghstream::render

@@ -7,7 +7,10 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/ordered_frames.hpp"
 
-namespace houghstream {
+namespace houghstream::render {
+
+using namespace world;
+
 namespace {
 
 constexpr int kMostFrames = 100000;
@@ -100,18 +103,18 @@ void render_background(const RenderOptions& options, int count) {
   writer.finish();
 }
 
-void render_scene(const RenderOptions& options, const std::string& name, int frames, int every) {
-  require(frames >= 1 && frames <= kMostFrames, "scene: {} frames, expected 1 to {}", frames, kMostFrames);
-  require(every >= 1, "scene: every {}th frame, expected at least 1", every);
-  const Scene scene = make_named_scene(name);
+void render_scene(const RenderOptions& options, const SceneJob& job) {
+  require(job.frames >= 1 && job.frames <= kMostFrames, "scene: {} frames, expected 1 to {}", job.frames, kMostFrames);
+  require(job.every >= 1, "scene: every {}th frame, expected at least 1", job.every);
+  const Scene scene = make_named_scene(job.name);
   const LitWorld lit_world = light_world(scene.world);
   write_models(taught_objects(classes_of(scene)), options.out / "models");
   BopWriter writer(fresh_scene(options.out));
   render_in_order(
-      name, options.threads, (frames + every - 1) / every,
-      [&](int index) { return render_scene_frame(scene, lit_world, index * every, frames); },
+      job.name, options.threads, (job.frames + job.every - 1) / job.every,
+      [&](int index) { return render_scene_frame(scene, lit_world, index * job.every, job.frames, job.sensor); },
       [&](const SceneFrame& view) { writer.add(view.frame, view.objects, view.visible_masks); });
   writer.finish();
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::render

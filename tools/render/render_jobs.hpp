@@ -7,7 +7,7 @@
 
 #include "tools/render/world/training_views.hpp"
 
-namespace houghstream {
+namespace houghstream::render {
 
 /// What all jobs share.
 struct RenderOptions {
@@ -19,13 +19,21 @@ struct RenderOptions {
 /// OUT/00000I/ for each object id I, and OUT/models/. `objects` holds names, or only "all" (the demo's four classes) or
 /// only "all_20" (twenty_class_ids()) or "all_40" (forty_object_ids()).
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
-                     const TurntableSettings& turntable);
+                     const world::TurntableSettings& turntable);
 
 /// OUT/ becomes one BOP scene of `count` frames of training rooms without the objects.
 void render_background(const RenderOptions& options, int count);
 
-/// OUT/ becomes one BOP scene: every `every`-th of `frames` frames of the test scene `name`, and OUT/models/ with
-/// the demo's four classes or, where the scene holds others, all twenty.
-void render_scene(const RenderOptions& options, const std::string& name, int frames, int every);
+/// Which pictures of a test scene.
+struct SceneJob {
+  std::string name;  ///< see world/scenes.hpp
+  int frames = 300;  ///< along the camera's whole way
+  int every = 1;     ///< only every so-many-th of them is written
+  world::SensorKind sensor = world::SensorKind::kStructuredLight;
+};
 
-}  // namespace houghstream
+/// OUT/ becomes one BOP scene, and OUT/models/ has the demo's four classes or, where the scene holds others, all
+/// twenty.
+void render_scene(const RenderOptions& options, const SceneJob& job);
+
+}  // namespace houghstream::render

@@ -10,7 +10,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 Ending describe(int status) {
@@ -64,4 +64,4 @@ void Child::signal(int number) const {
   kill(-pid_, number);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::stream {
 
 /// How a process ended, in words; whether it did what it was to do.
 struct Ending {
@@ -38,4 +38,4 @@ class Child {
   std::optional<Ending> ending_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

@@ -9,13 +9,15 @@
 #include "tools/stream/state_board.hpp"
 #include "tools/stream/stream_plan.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 /// Seconds.
 struct Pace {
-  double every = 5.0;     ///< between two lines of state
-  double patience = 1.5;  ///< for the processes to end by themselves
+  double every = 5.0;            ///< between two lines of state
+  double patience = 1.5;         ///< for the processes to end by themselves
+  double hang_patience = 10.0;   ///< with a process that was heard and is silent
+  double start_patience = 60.0;  ///< with one that was never heard
 };
 
 void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
@@ -33,6 +35,16 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--every", pace.every, "seconds between two lines of state").range(0.1, 3600.0).capture_default_str();
   app.add_option("--patience", pace.patience, "seconds to end in, before a process is killed; a video may need more")
       .range(0.1, 600.0)
+      .capture_default_str();
+  app.add_option(
+         "--hang-patience", pace.hang_patience,
+         "seconds without a status (each process sends one a second) after which a process counts as hung: it is "
+         "asked to end, killed --patience later, and started again")
+      .range(2.0, 3600.0)
+      .capture_default_str();
+  app.add_option("--start-patience", pace.start_patience,
+                 "the same for a process that has not sent any yet, as it may still read a forest or models")
+      .range(2.0, 3600.0)
       .capture_default_str();
   add_lcm_url_option(app, options.lcm_url);
 }
@@ -57,6 +69,8 @@ void run_stream(StreamOptions options, const Pace& pace) {
   require(!bus.is_log(), "{}: is a log; the stream runs on a network", bus.url());
   SupervisorSettings settings;
   settings.patience = from_seconds<std::chrono::milliseconds>(pace.patience);
+  settings.silence = from_seconds<std::chrono::milliseconds>(pace.hang_patience);
+  settings.start_silence = from_seconds<std::chrono::milliseconds>(pace.start_patience);
   Supervisor supervisor(plan_stream(options), settings, [](const std::string& words) { log_info("{}", words); });
   StateBoard board;
   bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
@@ -77,13 +91,14 @@ void run_stream(StreamOptions options, const Pace& pace) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::stream
 
 int main(int argc, char** argv) {
   using namespace houghstream;
+  using namespace houghstream::stream;
   CommandLine app(
-      "Starts capture, detection, poses and view, shows their state, starts again what dies, and ends all on Ctrl-C. "
-      "The end of the source and the closing of the window end the stream too.",
+      "Starts capture, detection, poses and view, shows their state, starts again what dies or hangs, and ends "
+      "all on Ctrl-C. The end of the source and the closing of the window end the stream too.",
       "hs-stream");
   StreamOptions options;
   Pace pace;

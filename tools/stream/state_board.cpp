@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 std::string describe(const status_t& status) {
@@ -38,4 +38,4 @@ std::string StateBoard::line(const std::vector<Supervisor::State>& states, Clock
   return line;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

@@ -8,7 +8,7 @@
 
 #include "tools/stream/supervisor.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 
 /// What the processes say of themselves, and since when.
 class StateBoard {
@@ -29,4 +29,4 @@ class StateBoard {
   std::map<pid_t, Entry> entries_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -49,4 +49,4 @@ std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
   return plans;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

@@ -6,7 +6,7 @@
 
 #include "tools/stream/supervisor.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 
 /// What hs-stream starts.
 struct StreamOptions {
@@ -27,4 +27,4 @@ struct StreamOptions {
 /// The processes with their command lines, in the order of the stream. Without models there is no hs-pose.
 std::vector<ChildPlan> plan_stream(const StreamOptions& options);
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

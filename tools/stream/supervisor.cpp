@@ -6,9 +6,20 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 
 using std::chrono::milliseconds;
+
+namespace {
+
+// Steps come every 50 ms and less; a longer pause was this process's own.
+constexpr milliseconds kLongestStep(500);
+
+double seconds(milliseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace
 
 Supervisor::Supervisor(std::vector<ChildPlan> plans, const SupervisorSettings& settings, Say say)
     : settings_(settings), say_(std::move(say)) {
@@ -26,20 +37,34 @@ Supervisor::~Supervisor() {
 void Supervisor::start(Member& member) {
   member.child = std::make_unique<Child>(member.plan.command);
   member.since = Clock::now();
+  member.has_spoken = false;
+  member.silent = Clock::duration(0);
+  member.asked_end.reset();
   say_(fmt::format("{} started, process {}", member.plan.name, member.child->pid()));
 }
 
-void Supervisor::plan_restart(Member& member, const Ending& ending) {
+void Supervisor::plan_restart(Member& member, const std::string& words) {
   const bool settled = Clock::now() - member.since > settings_.settled;
   member.wait =
       settled || member.wait.count() == 0 ? settings_.first_wait : std::min(2 * member.wait, settings_.longest_wait);
   member.since = Clock::now() + member.wait;
   member.child.reset();
-  say_(fmt::format("{} {}; starts again in {:.2f} s", member.plan.name, ending.words,
-                   static_cast<double>(member.wait.count()) * 1e-3));
+  say_(fmt::format("{} {}; starts again in {:.2f} s", member.plan.name, words, seconds(member.wait)));
 }
 
-bool Supervisor::look_after(Member& member) {
+void Supervisor::look_for_hang(Member& member, Clock::duration listened) {
+  member.silent += listened;
+  const milliseconds limit = member.has_spoken ? settings_.silence : settings_.start_silence;
+  if (!member.asked_end && member.silent >= limit) {
+    say_(fmt::format("{} has said nothing for {:.1f} s: it hangs and is ended", member.plan.name, seconds(limit)));
+    member.child->signal(SIGTERM);
+    member.asked_end = Clock::now();
+  } else if (member.asked_end && Clock::now() - *member.asked_end > settings_.patience) {
+    member.child->signal(SIGKILL);
+  }
+}
+
+bool Supervisor::look_after(Member& member, Clock::duration listened) {
   if (!member.child) {
     if (Clock::now() < member.since) return true;
     ++member.restarts;
@@ -48,7 +73,14 @@ bool Supervisor::look_after(Member& member) {
   }
   if (Clock::now() - member.since > settings_.start_time) member.has_run = true;
   const std::optional<Ending> ending = member.child->ending();
-  if (!ending) return true;
+  if (!ending) {
+    look_for_hang(member, listened);
+    return true;
+  }
+  if (member.asked_end) {
+    plan_restart(member, "hung and " + ending->words);
+    return true;
+  }
   if (ending->success && member.plan.ends_stream) {
     say_(fmt::format("{} has ended: the stream ends", member.plan.name));
     return false;
@@ -57,17 +89,22 @@ bool Supervisor::look_after(Member& member) {
   const bool gave_up = !ending->success && !ending->by_signal;
   require(member.has_run || !gave_up, "{} {} at its start; its own line above says why", member.plan.name,
           ending->words);
-  plan_restart(member, *ending);
+  plan_restart(member, ending->words);
   return true;
 }
 
 bool Supervisor::step() {
-  return std::all_of(members_.begin(), members_.end(), [&](Member& member) { return look_after(member); });
+  const Clock::time_point now = Clock::now();
+  const Clock::duration listened = std::min<Clock::duration>(now - last_step_, kLongestStep);
+  last_step_ = now;
+  return std::all_of(members_.begin(), members_.end(), [&](Member& member) { return look_after(member, listened); });
 }
 
 void Supervisor::note_running(pid_t pid) {
   for (Member& member : members_) {
-    if (member.child && member.child->pid() == pid) member.has_run = true;
+    if (!member.child || member.child->pid() != pid) continue;
+    member.has_run = member.has_spoken = true;
+    member.silent = Clock::duration(0);
   }
 }
 
@@ -96,4 +133,4 @@ std::vector<Supervisor::State> Supervisor::states() const {
   return states;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

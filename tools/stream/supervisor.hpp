@@ -3,12 +3,13 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/stream/child.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 
 /// A process of the stream.
 struct ChildPlan {
@@ -20,13 +21,18 @@ struct ChildPlan {
 struct SupervisorSettings {
   std::chrono::milliseconds first_wait{250};  ///< before a restart; doubled by each failure that follows
   std::chrono::milliseconds longest_wait{10'000};
-  std::chrono::milliseconds settled{10'000};   ///< after so long a run the next failure counts as the first
-  std::chrono::milliseconds start_time{3000};  ///< who runs that long has started
-  std::chrono::milliseconds patience{1500};    ///< for a process to end by itself when it is asked to
+  std::chrono::milliseconds settled{10'000};        ///< after so long a run the next failure counts as the first
+  std::chrono::milliseconds start_time{3000};       ///< who runs that long has started
+  std::chrono::milliseconds patience{1500};         ///< for a process to end by itself when it is asked to
+  std::chrono::milliseconds silence{10'000};        ///< who has spoken and then says nothing for so long hangs
+  std::chrono::milliseconds start_silence{60'000};  ///< the same for one that has not spoken yet: it may still read
 };
 
 /// Keeps the processes of a stream running: one that dies is started again, after a pause that grows with each failure.
-/// One that fails before it has ever run is not: it would fail again for the same reason. Call it from one thread.
+/// One that fails before it has ever run is not: it would fail again for the same reason. One that hangs, as its
+/// silence tells, is asked to end (SIGTERM), killed where it does not (SIGKILL after `patience`), and started again
+/// likewise. Only silence that was listened to counts: where this process has stood still itself, its children have
+/// not. Call it from one thread.
 class Supervisor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -40,7 +46,7 @@ class Supervisor {
   /// Looks after the processes. False once the stream is to end. Throws InputError when one has failed at its start.
   bool step();
 
-  /// The process has shown that it runs.
+  /// The process has shown that it runs; expected of each one every second.
   void note_running(pid_t pid);
 
   /// Asks all to end, waits, insists after `patience`. Returns the names of those that had to be killed.
@@ -58,18 +64,23 @@ class Supervisor {
   struct Member {
     ChildPlan plan;
     std::unique_ptr<Child> child;
-    bool has_run = false;
+    bool has_run = false;  // once, since the stream began
+    bool has_spoken = false;
+    Clock::duration silent{0};                   // so long, as far as was listened
+    std::optional<Clock::time_point> asked_end;  // when it was asked to end because it hangs
     int restarts = 0;
     std::chrono::milliseconds wait{0};
     Clock::time_point since;  // of the start, or when the restart is due
   };
   void start(Member& member);
-  bool look_after(Member& member);
-  void plan_restart(Member& member, const Ending& ending);
+  bool look_after(Member& member, Clock::duration listened);
+  void look_for_hang(Member& member, Clock::duration listened);
+  void plan_restart(Member& member, const std::string& words);
 
   std::vector<Member> members_;
   SupervisorSettings settings_;
   Say say_;
+  Clock::time_point last_step_ = Clock::now();
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::stream

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "drivers/datasets/bop_dataset.hpp"
@@ -29,15 +30,28 @@ void append(std::vector<TrainingView> from, std::vector<TrainingView>& to) {
   std::move(from.begin(), from.end(), std::back_inserter(to));
 }
 
-/// Renames classes and numbers them by name, so that instances of one name become one class.
-void rename_classes(const std::vector<std::string>& renames, std::vector<TrainingView>& views) {
+/// New names by old ones. Throws InputError where one has no effect.
+std::map<std::string, std::string> parse_renames(const std::vector<std::string>& renames,
+                                                 const std::set<std::string>& there) {
   std::map<std::string, std::string> new_names;
   for (const std::string& rename : renames) {
     const std::size_t equals = rename.find('=');
     require(equals != std::string::npos && equals > 0 && equals + 1 < rename.size(),
             "--rename '{}', expected OLD=NEW, for instance can_1=can", rename);
-    new_names[rename.substr(0, equals)] = rename.substr(equals + 1);
+    const std::string old_name = rename.substr(0, equals);
+    require(there.count(old_name) == 1, "--rename '{}': no instance '{}' is read, but {}", rename, old_name,
+            fmt::join(there, ", "));
+    const bool is_first = new_names.emplace(old_name, rename.substr(equals + 1)).second;
+    require(is_first, "--rename '{}': '{}' has another new name already", rename, old_name);
   }
+  return new_names;
+}
+
+/// Renames classes and numbers them by name, so that instances of one name become one class.
+void rename_classes(const std::vector<std::string>& renames, std::vector<TrainingView>& views) {
+  std::set<std::string> there;
+  for (const TrainingView& view : views) there.insert(view.class_name);
+  const std::map<std::string, std::string> new_names = parse_renames(renames, there);
   std::map<std::string, int> ids;
   for (TrainingView& view : views) {
     const auto new_name = new_names.find(view.class_name);
@@ -66,6 +80,9 @@ std::vector<TrainingView> read_training_sources(const TrainingSources& sources, 
   }
   require(all.empty() || turntable.empty(),
           "--views: bop: and uw: number their classes differently, expected one kind");
+  require(!turntable.empty() || (sources.renames.empty() && sources.instances.empty()),
+          "{} goes with --views uw:DIR; the objects of bop:DIR have their names from models/names.json",
+          sources.renames.empty() ? "--instances" : "--rename");
   if (!turntable.empty()) rename_classes(sources.renames, turntable);
   append(std::move(turntable), all);
   for (const std::string& source : sources.backgrounds) {

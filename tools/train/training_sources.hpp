@@ -17,7 +17,8 @@ struct TrainingSources {
   std::optional<std::string> camera;     ///< for data that publish none, see parse_camera
 };
 
-/// Reads everything; class ids of uw: folders count from 1 in the order of their names. Throws InputError.
+/// Reads everything; class ids of uw: folders count from 1 in the order of their names. Throws InputError, also for
+/// instances and renames that have no effect.
 std::vector<TrainingView> read_training_sources(const TrainingSources& sources, int threads = 1);
 
 }  // namespace houghstream

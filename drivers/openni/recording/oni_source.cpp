@@ -1,21 +1,22 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/openni/camera_source.hpp"
-#include "drivers/openni/frame_of_pair.hpp"
+#include "drivers/openni/openni_device.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 constexpr std::chrono::seconds kPatience(5);  // with a disk that is asleep
 
 class OniSource : public FrameSource {
  public:
-  OniSource(const std::string& file, const CameraOptions& options)
-      : device_(OpenniDevice::open_file(file)),
-        camera_(camera_of_device(*device_, options)),
+  OniSource(const std::string& file, const CameraOptions& options, StopRequested stop_requested)
+      : stop_requested_(std::move(stop_requested)),
+        device_(OpenniDevice::open_file(file, stop_requested_)),
+        camera_(device_->camera(options)),
         pairing_(pairing_tolerance_us(device_->mode())) {}
 
   std::optional<RgbdFrame> next() override {
-    while (!device_->ended()) {
+    while (!device_->ended() && !(stop_requested_ && stop_requested_())) {
       std::optional<SensorImage> image = device_->wait(kPatience);
       if (!image) continue;
       const std::optional<ImagePair> pair = pairing_.put(std::move(*image));
@@ -31,6 +32,7 @@ class OniSource : public FrameSource {
     return dataset_utime(0) + static_cast<std::int64_t>(pair.depth.device_us);
   }
 
+  StopRequested stop_requested_;
   std::unique_ptr<OpenniDevice> device_;
   Camera camera_;
   TimestampPairing pairing_;
@@ -38,8 +40,9 @@ class OniSource : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_oni_source(const std::string& file, const CameraOptions& options) {
-  return std::make_unique<OniSource>(file, options);
+std::unique_ptr<FrameSource> open_oni_source(const std::string& file, const CameraOptions& options,
+                                             const StopRequested& stop_requested) {
+  return std::make_unique<OniSource>(file, options, stop_requested);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

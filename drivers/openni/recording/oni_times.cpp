@@ -6,7 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 // The format, little endian: a file header, then records of a header, fields and a payload (OpenNI2's DataRecords.h).
@@ -98,4 +98,4 @@ void delay_oni_node(const std::filesystem::path& file, OniNode node, std::int64_
   oni.add(places, static_cast<std::uint64_t>(delay_us));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// The streams of a .oni file in the order in which they were attached to OpenNI2's recorder.
 enum class OniNode : std::uint32_t { kFirst = 1, kSecond = 2 };
@@ -14,4 +14,4 @@ enum class OniNode : std::uint32_t { kFirst = 1, kSecond = 2 };
 /// file is not a whole recording of OpenNI2's (version 1.0.1), and then leaves it as it was.
 void delay_oni_node(const std::filesystem::path& file, OniNode node, std::int64_t delay_us);
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

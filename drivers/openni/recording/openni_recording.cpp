@@ -11,7 +11,7 @@
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 constexpr std::size_t kRemembered = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
@@ -38,7 +38,8 @@ std::int64_t device_start_us(const std::string& stream, const std::vector<Rememb
 
 }  // namespace
 
-OpenniRecording::OpenniRecording(std::string file, bool jpeg, openni::VideoStream& depth, openni::VideoStream& colour)
+OpenniRecording::OpenniRecording(std::string file, bool jpeg, ::openni::VideoStream& depth,
+                                 ::openni::VideoStream& colour)
     : file_(std::move(file)), jpeg_(jpeg) {
   // OpenNI2 would crash later.
   require(std::ofstream(file_).good(), "{}: cannot be written, expected a place for a recording", file_);
@@ -70,4 +71,4 @@ void OpenniRecording::mend_times() noexcept {
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "drivers/openni/recording/recorded_start.hpp"
-#include "drivers/openni/sensor_image.hpp"
+#include "drivers/openni/timestamp_pairing.hpp"
 
 // Recording of a camera to a .oni file. Included by the .cpp files of this folder only.
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// The first images of a camera's two streams.
 struct FirstImages {
@@ -27,7 +27,7 @@ struct FirstImages {
 class OpenniRecording {
  public:
   /// Throws InputError where the file cannot be written.
-  OpenniRecording(std::string file, bool jpeg, openni::VideoStream& depth, openni::VideoStream& colour);
+  OpenniRecording(std::string file, bool jpeg, ::openni::VideoStream& depth, ::openni::VideoStream& colour);
 
   bool started() const { return started_us_ > 0; }
   void start();
@@ -45,9 +45,9 @@ class OpenniRecording {
  private:
   std::string file_;
   bool jpeg_;
-  openni::Recorder recorder_;
+  ::openni::Recorder recorder_;
   std::int64_t started_us_ = 0;  // host's time, 0 before
   FirstImages live_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

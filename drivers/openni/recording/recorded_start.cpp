@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 constexpr int kStep = 8;
@@ -53,4 +53,4 @@ std::optional<RecordedStart> find_recorded_start(const std::vector<Remembered>& 
   return best;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "drivers/openni/sensor_image.hpp"
+#include "drivers/openni/timestamp_pairing.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// An image of a stream, small enough to be remembered.
 struct Remembered {
@@ -30,4 +30,4 @@ struct RecordedStart {
 std::optional<RecordedStart> find_recorded_start(const std::vector<Remembered>& recorded,
                                                  const std::vector<Remembered>& live);
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -127,14 +127,64 @@ TEST(BopScene, AbsurdNumbersAreRefused) {
   expect_refused("scene_gt_info.json", "{", "[");
 }
 
-TEST(BopScene, APoseThatIsNoRotationIsRefused) {
-  const fs::path folder = fresh_folder("bop_rotation");
+/// A scene with one object of this "rotation".
+fs::path scene_with_rotation(const Eigen::Matrix3d& R) {
+  fs::path folder = fresh_folder("bop_rotation");
   TrueObject object = some_object();
-  object.T_camera_object.linear() *= 1.01;
+  object.T_camera_object.linear() = R;
   BopWriter writer(folder);
   writer.add(plain_frame(), {object}, {});
   writer.finish();
-  EXPECT_THROW(BopScene{folder}, InputError);
+  return folder;
+}
+
+Eigen::Matrix3d rounded_to(const Eigen::Matrix3d& R, double step) {
+  return (R / step).array().round().matrix() * step;
+}
+
+TEST(BopScene, ARotationThatIsOffByLessThanAPerCentBecomesTheNearestOne) {
+  const Eigen::Matrix3d R = some_object().T_camera_object.linear();
+  const Eigen::Matrix3d sheared = R + 0.004 * Eigen::Vector3d::UnitX() * Eigen::RowVector3d(1.0, 1.0, -1.0);
+  for (const Eigen::Matrix3d& published : {Eigen::Matrix3d(0.992 * R), rounded_to(R, 0.01), sheared}) {
+    const Eigen::Matrix3d read =
+        BopScene(scene_with_rotation(published)).images()[0].objects[0].T_camera_object.linear();
+    EXPECT_TRUE((read * read.transpose()).isIdentity(1e-12)) << read;
+    EXPECT_GT(read.determinant(), 0.0);
+    const double off = (read - published).norm();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double angle : {-1e-3, 1e-3}) {
+        const Eigen::Matrix3d other = Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(axis)) * read;
+        EXPECT_LE(off, (other - published).norm()) << "no rotation is nearer";
+      }
+    }
+  }
+}
+
+TEST(BopScene, ARotationIsReadAsItWasWritten) {
+  const Eigen::Matrix3d R = some_object().T_camera_object.linear();
+  const Eigen::Matrix3d read = BopScene(scene_with_rotation(R)).images()[0].objects[0].T_camera_object.linear();
+  EXPECT_LT((read - R).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(BopScene, WhatIsFartherOffARotationIsRefused) {
+  const Eigen::Matrix3d R = some_object().T_camera_object.linear();
+  Eigen::Matrix3d mirrored = R;
+  mirrored.col(2) *= -1.0;
+  Eigen::Matrix3d stretched = R;
+  stretched.col(0) *= 1.02;
+  for (const Eigen::Matrix3d& published : {Eigen::Matrix3d(1.01 * R), mirrored, stretched}) {
+    const fs::path folder = scene_with_rotation(published);
+    try {
+      const BopScene scene(folder);
+      FAIL() << published << " was accepted";
+    } catch (const InputError& error) {
+      const std::string words = error.what();
+      EXPECT_NE(words.find((folder / "scene_gt.json").string() + " image 0 object 0: 'cam_R_m2c' is off"),
+                std::string::npos)
+          << words;
+      EXPECT_NE(words.find("expected less than 1 %"), std::string::npos) << words;
+    }
+  }
 }
 
 TEST(BopScene, MissingAndUnreadableFilesAreRefused) {

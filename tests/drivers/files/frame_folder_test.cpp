@@ -23,7 +23,7 @@ TEST(FrameFolder, PairsAreFoundUnderAnyOfTheirNamesAndOrderedByNumber) {
   plant(folder, "a_10.png", "a_10_depth.png");
   plant(folder, "a_9_color.png", "a_9_depth.png");
   plant(folder, "a_2-color.png", "a_2-depth.png");
-  const std::vector<FramePair> pairs = list_frame_pairs(folder);
+  const std::vector<FrameFiles> pairs = list_frame_pairs(folder);
   ASSERT_EQ(pairs.size(), 3U);
   EXPECT_EQ(pairs[0].name, "a_2");
   EXPECT_EQ(pairs[1].colour.filename(), "a_9_color.png");

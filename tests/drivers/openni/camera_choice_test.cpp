@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 const std::vector<CameraDescription> kCameras = {{"1d27/0609@1/4", "PrimeSense", "Xtion", "1103", {}},
@@ -35,4 +35,4 @@ TEST(CameraChoice, WhatIsNotThereIsAnErrorThatNamesWhatIs) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

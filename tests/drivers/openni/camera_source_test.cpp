@@ -3,13 +3,13 @@
 #include <chrono>
 #include <thread>
 
-#include "drivers/openni/frame_of_pair.hpp"
+#include "drivers/openni/timestamp_pairing.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -51,11 +51,11 @@ TEST(CameraSource, FramesAreRegisteredNotMirroredAndCarryTheCamera) {
   check_frame(frame, "virtual camera");
   EXPECT_NEAR(frame.camera.fx, 525.0 / 2, 1e-3);
   EXPECT_NEAR(frame.camera.cx, 159.5, 1e-9);
-  const CameraPictures pattern = make_test_pattern(frame.camera);
+  const virtual_camera::CameraPictures pattern = virtual_camera::make_test_pattern(frame.camera);
   cv::Mat rgb;
   cv::cvtColor(frame.colour, rgb, cv::COLOR_BGR2RGB);
   int alike = 0;
-  for (const CameraPicture& picture : pattern.pictures) {
+  for (const virtual_camera::CameraPicture& picture : pattern.pictures) {
     alike += cv::norm(rgb, picture.colour, cv::NORM_INF) == 0 &&
              cv::norm(depth_to_millimetres(frame.depth), picture.depth_mm, cv::NORM_INF) == 0;
   }
@@ -185,6 +185,16 @@ TEST(CameraSource, AJumpOfTheDevicesClockDoesNotShow) {
   }
 }
 
+TEST(CameraSource, EndsSoonWhenAskedThoughItsColourNeverComes) {
+  const VirtualCamera camera("no_colour", "size 320x240\ndrop_colour_every 1\n");
+  CameraOptions options;
+  options.mode = {320, 240, 30};
+  const Clock::time_point start = Clock::now();
+  const auto stop = [start] { return Clock::now() > start + std::chrono::milliseconds(100); };
+  EXPECT_FALSE(open_camera_source("", options, {stop, {}, {}})->next().has_value());
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 1.0);
+}
+
 TEST(CameraSource, EndsWhenAskedThoughNoCameraIsThere) {
   const VirtualCamera camera("stop", "");
   bool stop = false;
@@ -202,4 +212,4 @@ TEST(CameraSource, EndsWhenAskedThoughNoCameraIsThere) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

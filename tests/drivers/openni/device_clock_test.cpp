@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 constexpr std::int64_t kPeriod = 33'333;
@@ -114,4 +114,4 @@ TEST(DeviceClock, TimesRiseEvenWhereTheHostsClockIsSetBack) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

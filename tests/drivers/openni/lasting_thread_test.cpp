@@ -5,7 +5,7 @@
 #include <future>
 #include <thread>
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 TEST(LastingThread, ItsEndIsTheWorksEndAndTheNextWorkGetsTheSameThread) {
@@ -36,4 +36,4 @@ TEST(LastingThread, TwoWorksRunBesideEachOther) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 using Sensor = SensorImage::Sensor;
@@ -63,4 +63,4 @@ TEST(OpenniDevice, WhatItLacksIsAnErrorAndAFileMustBeARecording) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 using Sensor = SensorImage::Sensor;
@@ -85,4 +85,4 @@ TEST(TimestampPairing, WithoutColourNothingPilesUp) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

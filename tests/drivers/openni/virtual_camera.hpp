@@ -13,7 +13,7 @@
 #include "drivers/virtual_camera/camera_pictures.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 
 /// A virtual camera's script, in force from construction on; OpenNI2 must not be running yet. CTest sets
 /// LD_LIBRARY_PATH so that OpenNI2 finds its driver.
@@ -47,12 +47,12 @@ inline cv::Point2d centre_of(const cv::Mat& mask) {
 }
 inline cv::Point2d disc_in_colour(const cv::Mat& bgr) {
   cv::Mat mask;
-  const cv::Vec3b rgb = kPatternDiscColour;
+  const cv::Vec3b rgb = virtual_camera::kPatternDiscColour;
   cv::inRange(bgr, cv::Scalar(rgb[2], rgb[1], rgb[0]), cv::Scalar(rgb[2], rgb[1], rgb[0]), mask);
   return centre_of(mask);
 }
 inline cv::Point2d disc_in_depth_mm(const cv::Mat& depth_mm) {
-  return centre_of(depth_mm == kPatternDiscMm);
+  return centre_of(depth_mm == virtual_camera::kPatternDiscMm);
 }
 
 /// How far the disc's colour lies beside its depth, pixels.
@@ -60,4 +60,4 @@ inline double disc_error_px(const cv::Mat& bgr, const cv::Mat& depth_mm) {
   return cv::norm(disc_in_colour(bgr) - disc_in_depth_mm(depth_mm));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -6,7 +6,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 TEST(CameraPictures, TheDiscOfThePatternMoves) {
@@ -40,4 +40,4 @@ TEST(CameraPictures, ASceneIsPlayedForwardsAndBackwards) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

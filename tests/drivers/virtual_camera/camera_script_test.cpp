@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 TEST(CameraScript, WithoutAFileOneSynchronisedVgaCameraIsThere) {
@@ -51,4 +51,4 @@ TEST(CameraScript, BadLinesAreRefusedWithTheirNumber) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

@@ -6,7 +6,7 @@
 
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 TEST(ScriptWatch, NoticesAChangeAndOutlivesAMistake) {
@@ -46,4 +46,4 @@ TEST(ScriptWatch, NoticesAChangeThatKeepsTheFilesTime) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

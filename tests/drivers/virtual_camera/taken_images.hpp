@@ -7,7 +7,7 @@
 
 #include "drivers/virtual_camera/virtual_device.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 
 /// What OpenNI2 is to a stream: gives room for images, and takes them.
 class TakenImages {
@@ -59,4 +59,4 @@ class TakenImages {
   std::vector<Image> images_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

@@ -5,7 +5,7 @@
 #include "tests/drivers/test_files.hpp"
 #include "tests/drivers/virtual_camera/taken_images.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 const Camera kLarge{64, 48, 50.0, 50.0, 31.5, 23.5};
@@ -21,7 +21,7 @@ struct ScriptedDevice {
     return file;
   }
 
-  const PicturesBySize pictures{{64, make_test_pattern(kLarge)}, {32, make_test_pattern(kSmall)}};
+  const PicturesBySize pictures{{{64, 48}, make_test_pattern(kLarge)}, {{32, 24}, make_test_pattern(kSmall)}};
   ScriptWatch watch;
   VirtualDevice device{watch, pictures, "SERIAL7"};
 };
@@ -84,7 +84,7 @@ TEST(VirtualDevice, RegistersAndSynchronisesWhereTheScriptSaysSo) {
 TEST(VirtualDevice, UnregisteredDepthLiesBesideItsColour) {
   ScriptedDevice scripted("rate_hz 100\n");
   constexpr int kShift = VirtualDevice::kParallaxPx * 64 / 640;
-  const auto& pictures = scripted.pictures.at(64).pictures;
+  const auto& pictures = scripted.pictures.at({64, 48}).pictures;
   const auto beside = images_of(scripted.device, ONI_SENSOR_DEPTH, 1).front();
   const cv::Mat& original = pictures[static_cast<std::size_t>(beside.frame.frameIndex) % pictures.size()].depth_mm;
   EXPECT_EQ(cv::norm(beside.picture.colRange(kShift, 64), original.colRange(0, 64 - kShift), cv::NORM_INF), 0.0);
@@ -108,7 +108,7 @@ TEST(VirtualDevice, DropsImagesAndCountsThemAllTheSame) {
 
 TEST(VirtualDevice, UnsynchronisedColourHasItsOwnCount) {
   ScriptedDevice scripted("rate_hz 100\n");
-  const auto& pictures = scripted.pictures.at(64).pictures;
+  const auto& pictures = scripted.pictures.at({64, 48}).pictures;
   const auto is_ahead_by = [&](int ahead) {
     const auto image = images_of(scripted.device, ONI_SENSOR_COLOR, 1).front();
     const auto number = static_cast<std::size_t>(image.frame.frameIndex - ahead);
@@ -121,4 +121,4 @@ TEST(VirtualDevice, UnsynchronisedColourHasItsOwnCount) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
 
 #include "drivers/virtual_camera/virtual_device.hpp"
 #include "tests/drivers/test_files.hpp"
+#include "tests/drivers/virtual_camera/taken_images.hpp"
 
 // What OpenNI2 asks of a driver library, by its names.
 // NOLINTBEGIN(readability-identifier-naming)
@@ -22,7 +24,7 @@ void oniDriverDisableFrameSync(void* group);
 }
 // NOLINTEND(readability-identifier-naming)
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 /// The driver as OpenNI2 has it while this lives, and what it told OpenNI2.
@@ -110,6 +112,33 @@ TEST(VirtualDriver, OpensACameraByItsUri) {
   EXPECT_EQ(oniDriverDeviceOpen("houghstream-virtual://3", nullptr), nullptr);
 }
 
+TEST(VirtualDriver, TwoSizesOfEqualWidthAreTwoModes) {
+  const LoadedDriver driver("size 64x36\nsize 64x48\n");
+  oni::driver::DeviceBase* device = oniDriverDeviceOpen(kFirst, nullptr);
+  ASSERT_NE(device, nullptr);
+  OniSensorInfo* infos = nullptr;
+  int count = 0;
+  ASSERT_EQ(device->getSensorInfoList(&infos, &count), ONI_STATUS_OK);
+  ASSERT_EQ(infos[0].numSupportedVideoModes, 2);
+  for (int i = 0; i < 2; ++i) {
+    oni::driver::StreamBase* stream = device->createStream(ONI_SENSOR_DEPTH);
+    TakenImages taken(*stream);
+    const OniVideoMode& mode = infos[0].pSupportedVideoModes[i];
+    ASSERT_EQ(stream->setProperty(ONI_STREAM_PROPERTY_VIDEO_MODE, &mode, sizeof(mode)), ONI_STATUS_OK);
+    float angle = 0.0F;
+    int size = sizeof(angle);
+    ASSERT_EQ(stream->getProperty(ONI_STREAM_PROPERTY_VERTICAL_FOV, &angle, &size), ONI_STATUS_OK);
+    EXPECT_NEAR(0.5 * mode.resolutionY / std::tan(0.5 * angle), 52.5, 1e-3) << "pixels are square in each";
+    stream->start();
+    const auto images = taken.wait(1);
+    stream->stop();
+    ASSERT_FALSE(images.empty());
+    EXPECT_EQ(images[0].picture.size(), cv::Size(64, i == 0 ? 48 : 36));
+    device->destroyStream(stream);
+  }
+  oniDriverDeviceClose(device);
+}
+
 TEST(VirtualDriver, SynchronisesTheStreamsOfACameraThatCan) {
   for (const bool able : {true, false}) {
     const LoadedDriver driver(able ? "size 64x48\n" : "size 64x48\ncan_sync no\n");
@@ -139,4 +168,4 @@ TEST(VirtualDriver, ASceneThatIsNotThereIsFoundOutWhenTheCameraIsOpened) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

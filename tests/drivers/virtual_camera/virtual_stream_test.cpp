@@ -7,7 +7,7 @@
 
 #include "tests/drivers/virtual_camera/taken_images.hpp"
 
-namespace houghstream {
+namespace houghstream::virtual_camera {
 namespace {
 
 const OniVideoMode kLarge{ONI_PIXEL_FORMAT_DEPTH_1_MM, 64, 48, 30};
@@ -29,12 +29,12 @@ class VirtualStreamTest : public ::testing::Test {
   }
 
   const Camera camera{64, 48, 50.0, 60.0, 31.5, 23.5};
-  const PicturesBySize pictures{{64, make_test_pattern(camera)}};
+  const PicturesBySize pictures{{{64, 48}, make_test_pattern(camera)}};
   const ScriptWatch script{std::filesystem::path()};
   VirtualDevice device{script, pictures, "TEST"};
-  VirtualStream stream{device, {ONI_SENSOR_DEPTH, {kLarge, kSmall}, camera}};
+  VirtualStream stream{device, {ONI_SENSOR_DEPTH, {kLarge, kSmall}, {camera, {32, 24, 40.0, 40.0, 15.5, 11.5}}}};
   TakenImages taken{stream};
-  const cv::Mat picture = pictures.at(64).pictures[3].depth_mm;
+  const cv::Mat picture = pictures.at({64, 48}).pictures[3].depth_mm;
 };
 
 TEST_F(VirtualStreamTest, PicturesAreSentWhileItRunsMirroredUnlessAskedOtherwise) {
@@ -76,13 +76,15 @@ TEST_F(VirtualStreamTest, OnlyItsModesCanBeSetAndOtherSizesAreNotSent) {
   EXPECT_EQ(images[0].frame.frameIndex, 2);
 }
 
-TEST_F(VirtualStreamTest, FieldsOfViewAreThoseOfTheFirstModeAndColoursSettingsAreNotDepths) {
+TEST_F(VirtualStreamTest, FieldsOfViewAreThoseOfTheModeAndColoursSettingsAreNotDepths) {
   EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_HORIZONTAL_FOV), 2.0 * std::atan(32.0 / 50.0), 1e-6);
   EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_VERTICAL_FOV), 2.0 * std::atan(24.0 / 60.0), 1e-6);
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, kSmall), ONI_STATUS_OK);
+  EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_HORIZONTAL_FOV), 2.0 * std::atan(16.0 / 40.0), 1e-6);
   EXPECT_EQ(set(ONI_STREAM_PROPERTY_GAIN, 50), ONI_STATUS_NOT_SUPPORTED);
   EXPECT_FALSE(stream.isPropertySupported(ONI_STREAM_PROPERTY_AUTO_EXPOSURE));
   EXPECT_GT(get<int>(ONI_STREAM_PROPERTY_MAX_VALUE), kPatternWallMm);
-  VirtualStream colour(device, {ONI_SENSOR_COLOR, {{ONI_PIXEL_FORMAT_RGB888, 64, 48, 30}}, camera});
+  VirtualStream colour(device, {ONI_SENSOR_COLOR, {{ONI_PIXEL_FORMAT_RGB888, 64, 48, 30}}, {camera}});
   const int gain = 50;
   EXPECT_EQ(colour.setProperty(ONI_STREAM_PROPERTY_GAIN, &gain, sizeof(gain)), ONI_STATUS_OK);
   int told = 0;
@@ -93,4 +95,4 @@ TEST_F(VirtualStreamTest, FieldsOfViewAreThoseOfTheFirstModeAndColoursSettingsAr
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::virtual_camera

@@ -12,6 +12,8 @@
 namespace houghstream {
 namespace {
 
+using namespace world;
+
 const cv::Mat kGrey(8, 8, CV_8UC3, cv::Scalar(128, 128, 128));
 
 Mesh grey_box(double x, double y, double z) {

@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::capture {
 namespace {
 
 /// What the command line makes of the words.
@@ -53,4 +53,4 @@ TEST(CaptureOptions, WhatNamesNoSourceModeOrCameraIsRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::capture

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -10,7 +12,7 @@
 #include "tests/pipeline/test_frame.hpp"
 #include "tools/capture/publish_frames.hpp"
 
-namespace houghstream {
+namespace houghstream::capture {
 namespace {
 
 /// Frames at 1000, 2000, ...
@@ -43,8 +45,8 @@ class CaptureLog : public testing::Test {
     std::int64_t sequence = 0;
   };
   std::vector<Line> capture(int frames_in_source, const CaptureSettings& settings) const {
-    capture_to_log([&](const CameraListener&) { return std::make_unique<FakeSource>(frames_in_source); }, settings,
-                   file.string());
+    capture_to_log([&](const openni::CameraListener&) { return std::make_unique<FakeSource>(frames_in_source); },
+                   settings, file.string());
     std::vector<Line> lines;
     LogReader reader(file);
     while (const std::optional<LogEvent> event = reader.next()) {
@@ -89,6 +91,34 @@ TEST_F(CaptureLog, LoopsWithoutRepeatingATime) {
   }
 }
 
+/// A camera: its frames end with a stop signal.
+class StoppedSource : public FrameSource {
+ public:
+  std::optional<RgbdFrame> next() override {
+    if (given_++ == 0) return make_test_frame(1000);
+    std::raise(SIGTERM);
+    return std::nullopt;
+  }
+  double rate_hz() const override { return 1e3; }
+
+ private:
+  int given_ = 0;
+};
+
+TEST_F(CaptureLog, WhatIsStoppedIsNotStartedAgain) {
+  CaptureSettings settings;
+  settings.loop = true;
+  settings.frames = 8;
+  int opened = 0;
+  const auto open = [&](const openni::CameraListener&) {
+    ++opened;
+    return std::make_unique<StoppedSource>();
+  };
+  EXPECT_EQ(capture_to_log(open, settings, file.string()).frames, 1);
+  EXPECT_EQ(opened, 1);
+  catch_stop_signals();  // forgets the signal
+}
+
 TEST_F(CaptureLog, RefusesWhatMakesNoSense) {
   EXPECT_THROW(capture(0, CaptureSettings{}), InputError);
   CaptureSettings settings;
@@ -102,16 +132,46 @@ TEST_F(CaptureLog, RefusesWhatMakesNoSense) {
   EXPECT_THROW(capture(3, settings), InputError);
 }
 
+/// Asks this process to end, a moment after it was made.
+class StopSoon {
+ public:
+  StopSoon()
+      : hand_([] {
+          std::this_thread::sleep_for(std::chrono::milliseconds(200));
+          kill(getpid(), SIGTERM);
+        }) {}
+  StopSoon(const StopSoon&) = delete;
+  StopSoon& operator=(const StopSoon&) = delete;
+  ~StopSoon() {
+    hand_.join();
+    catch_stop_signals();  // forgets the signal
+  }
+
+ private:
+  std::thread hand_;
+};
+
+TEST(Capture, EndsSoonAfterASignalHoweverFarTheNextFrameIs) {
+  catch_stop_signals();
+  CaptureSettings settings;
+  settings.rate_hz = 0.1;
+  const StopSoon stop_soon;
+  const CaptureResult result = capture_to_network(
+      [](const openni::CameraListener&) { return std::make_unique<FakeSource>(3); }, settings, "memq://");
+  EXPECT_EQ(result.frames, 1) << "the second one's turn had not come";
+  EXPECT_LT(result.seconds, 1.0);
+}
+
 TEST(Capture, KeepsTheRateOnTheNetwork) {
   catch_stop_signals();
   CaptureSettings settings;
   settings.rate_hz = 50.0;
-  const CaptureResult result =
-      capture_to_network([](const CameraListener&) { return std::make_unique<FakeSource>(11); }, settings, "memq://");
+  const CaptureResult result = capture_to_network(
+      [](const openni::CameraListener&) { return std::make_unique<FakeSource>(11); }, settings, "memq://");
   EXPECT_EQ(result.frames, 11);
   EXPECT_GE(result.seconds, 0.19);
   EXPECT_GT(result.bytes, 11 * 1000);
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::capture

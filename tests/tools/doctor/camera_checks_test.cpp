@@ -4,7 +4,7 @@
 
 #include "tests/tools/doctor/healthy_machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 using Level = Finding::Level;
@@ -62,4 +62,4 @@ TEST(CameraChecks, WhatIsMissingIsANoteWhereNoCameraIsThereOrNeeded) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::doctor

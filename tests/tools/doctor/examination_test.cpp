@@ -7,7 +7,7 @@
 
 #include "tests/tools/doctor/healthy_machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ TEST(Examination, ABusWithoutDatagramsNeedsNoRouteAndNoBuffers) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::doctor

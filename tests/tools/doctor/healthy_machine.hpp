@@ -6,7 +6,7 @@
 #include "tests/drivers/test_files.hpp"
 #include "tools/doctor/examination.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 
 /// A file with all folders above it.
 inline void plant(const std::filesystem::path& file, const std::string& text = "") {
@@ -63,4 +63,4 @@ struct HealthyMachine {
   ExaminationSettings settings;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::doctor

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 TEST(LcmProbe, MessagesOfAnySizeComeBackOnABusOfThisProcess) {
@@ -26,4 +26,4 @@ TEST(LcmProbe, NothingIsHeardWhereNobodySpeaks) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::doctor

@@ -6,7 +6,7 @@
 
 #include "tests/tools/doctor/healthy_machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,4 +58,4 @@ TEST(Machine, ThisOneStartsProgramsAndLoadsLibraries) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::doctor

@@ -5,7 +5,7 @@
 #include "pipeline/bus/receive_buffer.hpp"
 #include "tests/tools/doctor/healthy_machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 using Level = Finding::Level;
@@ -77,4 +77,4 @@ TEST(NetworkChecks, BuffersThatAreJustLargeEnoughForTheFramesHeardAreFine) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::doctor

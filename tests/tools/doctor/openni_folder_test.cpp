@@ -4,7 +4,7 @@
 
 #include "tests/tools/doctor/healthy_machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ TEST(OpenniFolder, PathsAreShownAsUsersKnowThem) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::doctor

@@ -4,7 +4,7 @@
 
 #include "tests/tools/doctor/healthy_machine.hpp"
 
-namespace houghstream {
+namespace houghstream::doctor {
 namespace {
 
 using Level = Finding::Level;
@@ -61,4 +61,4 @@ TEST(ToolChecks, EachJarAndEitherDisplayWillDo) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::doctor

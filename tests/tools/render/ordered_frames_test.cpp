@@ -4,7 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::render {
 namespace {
 
 TEST(OrderedFrames, AreWrittenInOrderByAnyNumberOfThreads) {
@@ -13,21 +13,21 @@ TEST(OrderedFrames, AreWrittenInOrderByAnyNumberOfThreads) {
     render_in_order(
         "test", threads, 20,
         [](int index) {
-          SceneFrame frame;
+          world::SceneFrame frame;
           frame.frame.id.utime = index;
           return frame;
         },
-        [&](const SceneFrame& frame) { order.push_back(frame.frame.id.utime); });
+        [&](const world::SceneFrame& frame) { order.push_back(frame.frame.id.utime); });
     ASSERT_EQ(order.size(), 20U);
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], static_cast<std::int64_t>(i));
   }
 }
 
 TEST(OrderedFrames, AFailureEndsTheLoopAndIsRethrown) {
-  const auto render = [](int) { return SceneFrame{}; };
-  const auto write = [](const SceneFrame&) { fail("disk full"); };
+  const auto render = [](int) { return world::SceneFrame{}; };
+  const auto write = [](const world::SceneFrame&) { fail("disk full"); };
   EXPECT_THROW(render_in_order("test", 3, 20, render, write), InputError);
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::render

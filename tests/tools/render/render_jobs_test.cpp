@@ -6,10 +6,11 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::render {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace world;
 
 TurntableSettings one_view() {
   TurntableSettings turntable;
@@ -50,7 +51,7 @@ TEST(RenderJobs, AllMeansTheFourClassesAndNamesMayBeAny) {
 
 TEST(RenderJobs, ASceneBringsTheModelsOfWhatItMayHold) {
   const fs::path folder = fresh_folder("render_jobs_scene");
-  render_scene(into(folder), "objects_20_b", 1, 1);
+  render_scene(into(folder), {"objects_20_b", 1, 1});
   const BopModels models = read_bop_models(folder / "models");
   EXPECT_EQ(models.names.size(), 20U);
   ASSERT_EQ(models.symmetries.at(104).continuous.size(), 1U) << "a tumbler";
@@ -61,9 +62,20 @@ TEST(RenderJobs, ASceneBringsTheModelsOfWhatItMayHold) {
   for (const TrueObject& object : scene.images().at(0).objects)
     EXPECT_EQ(models.names.count(object.object_id), 1U) << object.object_id;
   const fs::path demo = fresh_folder("render_jobs_demo");
-  render_scene(into(demo), "table_small_1", 1, 1);
+  render_scene(into(demo), {"table_small_1", 1, 1});
   EXPECT_EQ(read_bop_models(demo / "models").names.size(), 4U);
 }
 
+TEST(RenderJobs, ASceneMayBeSeenByAnotherSensor) {
+  const fs::path usual = fresh_folder("render_jobs_usual");
+  const fs::path other = fresh_folder("render_jobs_other");
+  render_scene(into(usual), {"table_small_1", 2, 2});
+  render_scene(into(other), {"table_small_1", 2, 2, SensorKind::kTimeOfFlight});
+  for (const char* same : {"scene_gt.json", "scene_camera.json", "scene_gt_info.json", "models/models_info.json"})
+    EXPECT_EQ(read_text(usual / same), read_text(other / same)) << same;
+  EXPECT_NE(read_text(usual / "depth/000000.png"), read_text(other / "depth/000000.png"));
+  EXPECT_NE(read_text(usual / "rgb/000000.png"), read_text(other / "rgb/000000.png"));
+}
+
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::render

@@ -11,7 +11,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 using std::chrono::milliseconds;
@@ -80,4 +80,4 @@ TEST(Child, AMissingProgramIsNamed) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::stream

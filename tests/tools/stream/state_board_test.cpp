@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 using std::chrono::seconds;
@@ -36,4 +36,4 @@ TEST(StateBoard, TellsTheStreamsStateInOneLine) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::stream

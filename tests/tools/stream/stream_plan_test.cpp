@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -40,4 +40,4 @@ TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::stream

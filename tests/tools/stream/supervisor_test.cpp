@@ -8,7 +8,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::stream {
 namespace {
 
 using std::chrono::milliseconds;
@@ -83,6 +83,53 @@ TEST(Supervisor, WhoDoesNotEndIsKilled) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, settings.patience);
 }
 
+TEST(Supervisor, WhoHangsIsKilledAndStartedAgain) {
+  SupervisorSettings settings = quick();
+  settings.silence = milliseconds(300);
+  settings.patience = milliseconds(100);
+  std::vector<std::string> lines;
+  Supervisor supervisor({shell("a", "exec sleep 100"), shell("b", "exec sleep 100")}, settings,
+                        [&](const std::string& words) { lines.push_back(words); });
+  const pid_t hung = supervisor.states()[0].pid;
+  const pid_t other = supervisor.states()[1].pid;
+  supervisor.note_running(hung);
+  kill(hung, SIGSTOP);
+  ASSERT_TRUE(step_until(supervisor, [&] {
+    supervisor.note_running(other);
+    return supervisor.states()[0].restarts == 1;
+  }));
+  EXPECT_NE(supervisor.states()[0].pid, hung);
+  EXPECT_EQ(supervisor.states()[1].pid, other) << "it has spoken all the time";
+  EXPECT_FALSE(is_running(hung));
+  ASSERT_EQ(lines.size(), 5U);
+  EXPECT_EQ(lines[2], "a has said nothing for 0.3 s: it hangs and is ended");
+  EXPECT_EQ(lines[3], "a hung and was killed by signal 9 (Killed); starts again in 0.02 s");
+}
+
+TEST(Supervisor, WhoNeverSpeaksIsGivenLonger) {
+  SupervisorSettings settings = quick();
+  settings.silence = milliseconds(50);
+  settings.start_silence = milliseconds(600);
+  // It ends with status 0 when it is asked to, as a window does: that is not the stream's end.
+  Supervisor supervisor({shell("mute", "trap 'exit 0' TERM; while true; do sleep 0.02; done", true)}, settings,
+                        be_silent);
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 1; }));
+  EXPECT_GE(std::chrono::steady_clock::now() - start, settings.start_silence);
+}
+
+TEST(Supervisor, SilenceWhileNobodyListenedDoesNotCount) {
+  SupervisorSettings settings = quick();
+  settings.silence = milliseconds(900);
+  std::vector<std::string> lines;
+  Supervisor supervisor({shell("a", "exec sleep 100")}, settings,
+                        [&](const std::string& words) { lines.push_back(words); });
+  supervisor.note_running(supervisor.states()[0].pid);
+  std::this_thread::sleep_for(milliseconds(1200));  // as with Ctrl-Z
+  supervisor.step();
+  EXPECT_EQ(lines.size(), 1U) << lines.back();
+}
+
 TEST(Supervisor, WhoFailsAtItsStartIsNotTriedAgain) {
   Supervisor supervisor({shell("wrong", "exit 3")}, quick(), be_silent);
   try {
@@ -129,4 +176,4 @@ TEST(Supervisor, AMissingProgramIsNamed) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::stream

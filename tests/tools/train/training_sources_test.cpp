@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
@@ -95,6 +96,36 @@ TEST(TrainingSources, RenamesNeedAnOldAndANewName) {
     sources.renames = {bad};
     EXPECT_NE(refusal(sources).find("--rename '" + bad + "'"), std::string::npos) << refusal(sources);
   }
+}
+
+TEST(TrainingSources, ARenameWithoutEffectIsRefused) {
+  TrainingSources sources = good_sources();
+  sources.renames = {"can_1=tin", "can_9=tin"};
+  EXPECT_EQ(refusal(sources), "--rename 'can_9=tin': no instance 'can_9' is read, but can_1, can_2, cup_1");
+  sources.instances = {"can_2", "cup_1"};
+  sources.renames = {"can_1=tin"};
+  EXPECT_EQ(refusal(sources), "--rename 'can_1=tin': no instance 'can_1' is read, but can_2, cup_1");
+  sources.renames = {"can_2=tin", "can_2=box"};
+  EXPECT_NE(refusal(sources).find("has another new name already"), std::string::npos) << refusal(sources);
+}
+
+TEST(TrainingSources, BopObjectsHaveNamesAlready) {
+  const fs::path folder = fresh_folder("training_sources_bop");
+  BopWriter writer(folder);
+  TrueObject object;
+  object.object_id = 1;
+  object.T_camera_object.translation().z() = 1.0;
+  object.box_visible_px = {20, 10, 16, 12};
+  writer.add(plain_frame(), {object}, {box_mask(object.box_visible_px)});
+  writer.finish();
+  TrainingSources sources;
+  sources.views = {"bop:" + folder.string()};
+  EXPECT_EQ(refusal(sources), "");
+  sources.renames = {"object_1=can"};
+  EXPECT_NE(refusal(sources).find("--rename goes with --views uw:DIR"), std::string::npos) << refusal(sources);
+  sources.renames.clear();
+  sources.instances = {"object_1"};
+  EXPECT_NE(refusal(sources).find("--instances goes with --views uw:DIR"), std::string::npos) << refusal(sources);
 }
 
 TEST(TrainingSources, AMissingFolderIsNamed) {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/base/checks.hpp"
 #include "tools/render/world/optics/depth_sensor.hpp"
 #include "tools/render/world/optics/photo.hpp"
+#include "tools/render/world/optics/time_of_flight.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr int kLeastVisiblePx = 50;
@@ -53,21 +55,34 @@ Camera synthetic_camera() {
   return {640, 480, 525.0, 525.0, 319.5, 239.5};
 }
 
-SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed) {
+SensorKind parse_sensor(const std::string& name) {
+  if (name == "structured_light") return SensorKind::kStructuredLight;
+  if (name == "time_of_flight") return SensorKind::kTimeOfFlight;
+  fail("sensor '{}', expected structured_light or time_of_flight", name);
+}
+
+SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
+                        SensorKind sensor) {
   SceneFrame result;
   result.frame.camera = synthetic_camera();
   const ShadedView view = shade_view(lit_world, result.frame.camera, T_camera_world);
   result.frame.colour = take_photo(view.radiance, lit_world.world.photo, aspect_seed(noise_seed, 1));
-  result.frame.depth = measure_depth({view.geometry.depth, view.cos_incidence, view.reflectance, view.gloss},
-                                     result.frame.camera, DepthSensorSettings{}, aspect_seed(noise_seed, 2));
+  const SensorView seen{view.geometry.depth, view.cos_incidence, view.reflectance, view.gloss};
+  const std::uint64_t depth_seed = aspect_seed(noise_seed, 2);
+  if (sensor == SensorKind::kTimeOfFlight) {
+    result.frame.colour = processed_photo(result.frame.colour, other_colour_camera());
+    result.frame.depth = measure_time_of_flight(seen, TimeOfFlightSettings{}, depth_seed);
+  } else {
+    result.frame.depth = measure_depth(seen, result.frame.camera, DepthSensorSettings{}, depth_seed);
+  }
   add_truth(lit_world, T_camera_world, view.geometry.id, result);
   return result;
 }
 
-SceneFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count) {
+SceneFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count, SensorKind sensor) {
   const double time = count > 1 ? static_cast<double>(index) / (count - 1) : 0.0;
   const std::uint64_t noise_seed = aspect_seed(scene.seed, kFirstFrameAspect + static_cast<std::uint64_t>(index));
-  return render_frame(lit_world, camera_at(scene.trajectory, time), noise_seed);
+  return render_frame(lit_world, camera_at(scene.trajectory, time), noise_seed, sensor);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

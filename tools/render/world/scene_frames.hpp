@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "drivers/datasets/bop_dataset.hpp"
@@ -7,7 +8,7 @@
 #include "tools/render/world/optics/shading.hpp"
 #include "tools/render/world/scenes.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// The camera of everything rendered: 640x480, as the usual structured-light cameras.
 Camera synthetic_camera();
@@ -19,10 +20,22 @@ struct SceneFrame {
   std::vector<cv::Mat> visible_masks;  ///< CV_8UC1 0/255, one per object
 };
 
+/// What kind of camera looks. Everything that is taught is seen by the first: the second is there to find out how much
+/// of a result is the sensor's.
+enum class SensorKind : std::uint8_t {
+  kStructuredLight,  ///< optics/depth_sensor.hpp, and a picture in plain sRGB
+  kTimeOfFlight      ///< optics/time_of_flight.hpp, and the picture of other_colour_camera() (optics/photo.hpp)
+};
+
+/// "structured_light" or "time_of_flight". Throws InputError naming them for another.
+SensorKind parse_sensor(const std::string& name);
+
 /// Colour and measured depth seen from a camera. `noise_seed` names the frame's noise.
-SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed);
+SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
+                        SensorKind sensor = SensorKind::kStructuredLight);
 
 /// Frame `index` of `count` along the scene's camera path. The utime is left 0: sources stamp their frames.
-SceneFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count);
+SceneFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count,
+                              SensorKind sensor = SensorKind::kStructuredLight);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

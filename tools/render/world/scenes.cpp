@@ -8,7 +8,7 @@
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/rooms/table_setter.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // Aspects of a world, each with a seed of its own (aspect_seed).
@@ -198,4 +198,4 @@ Scene make_background_scene(int index, std::uint64_t seed) {
   return make_scene("background", style, {false, 0, 0, 16, kNone}, TimeOfDay::kDay, own);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

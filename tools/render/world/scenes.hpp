@@ -8,7 +8,7 @@
 #include "tools/render/world/seeds.hpp"
 #include "tools/render/world/trajectory.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// A furnished, cluttered world and the camera's way through it.
 struct Scene {
@@ -70,4 +70,4 @@ Scene make_named_scene(const std::string& name);
 /// Training room number `index` with clutter of its own and none of the taught objects.
 Scene make_background_scene(int index, std::uint64_t seed);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

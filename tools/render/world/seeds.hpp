@@ -4,7 +4,7 @@
 
 #include "pipeline/base/random.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// What a rendered world is for.
 enum class WorldUse : std::uint8_t { kTraining, kTest };
@@ -22,4 +22,4 @@ inline std::uint64_t aspect_seed(std::uint64_t seed_of_world, std::uint64_t aspe
   return (mixed & ~1ULL) | (seed_of_world & 1ULL);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

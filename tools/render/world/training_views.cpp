@@ -9,7 +9,7 @@
 #include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/objects/vessels.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr double kTopM = 0.02;
@@ -95,4 +95,4 @@ SceneFrame Turntable::render(const TaughtObject& object, const AttitudeChoice* c
   return render_frame(light_world(std::move(world)), look_at(eye, target), random.bits() & ~1ULL);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

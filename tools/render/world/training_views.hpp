@@ -6,7 +6,7 @@
 #include "tools/render/world/rooms/attitudes.hpp"
 #include "tools/render/world/scene_frames.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Training views as in the paper's Section 4 (and Lai et al. 2011): an object on a turntable in front of a fixed
 /// camera, all round at several pitches; for each way of lying in steps twice as long.
@@ -39,4 +39,4 @@ class Turntable {
   std::vector<World> worlds_;  ///< one per pitch
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::world

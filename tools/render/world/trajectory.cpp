@@ -5,7 +5,7 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/world.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 Trajectory make_trajectory(std::uint64_t seed) {
   Random random(seed);
@@ -41,4 +41,4 @@ Eigen::Isometry3d camera_at(const Trajectory& trajectory, double time) {
   return look_at(target + distance * from_target + sway, target);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

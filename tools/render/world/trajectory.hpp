@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// A camera carried by hand along an arc round a table: azimuth sweeps once, height and distance swing.
 struct Trajectory {
@@ -22,4 +22,4 @@ Trajectory make_trajectory(std::uint64_t seed);
 /// The camera at `time`, 0 (first frame) to 1 (last).
 Eigen::Isometry3d camera_at(const Trajectory& trajectory, double time);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

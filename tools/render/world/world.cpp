@@ -1,6 +1,6 @@
 #include "tools/render/world/world.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 Eigen::Isometry3d look_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world) {
   const Eigen::Vector3d forward = (target_world - eye_world).normalized();
@@ -15,4 +15,4 @@ Eigen::Isometry3d look_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3
   return T_camera_world;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

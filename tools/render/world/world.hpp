@@ -7,7 +7,7 @@
 
 // A world to be photographed. World frame: z up, metres, origin on the middle of the table top (or turntable).
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// A thing in its place.
 struct Placed {
@@ -47,4 +47,4 @@ struct World {
 /// Camera at `eye` looking at `target` with the picture upright.
 Eigen::Isometry3d look_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -148,7 +148,7 @@ final class DetectionViewer implements Viewer {
   @Override
   public void close() {
     synchronized (running) {
-      Viewers.closeAll(running);
+      Viewer.closeAll(running);
     }
   }
 }

@@ -135,6 +135,6 @@ final class PictureViewer implements Viewer {
 
   @Override
   public void close() {
-    Viewers.closeAll(running);
+    Viewer.closeAll(running);
   }
 }

@@ -1,6 +1,7 @@
 package houghstream.spy;
 
 import java.awt.Dimension;
+import java.util.List;
 import javax.swing.JComponent;
 
 /** Something that shows a channel until it is closed. */
@@ -12,4 +13,16 @@ interface Viewer {
 
   /** Stops listening. */
   void close();
+
+  /** Ends listeners and threads. */
+  static void closeAll(List<AutoCloseable> running) {
+    for (AutoCloseable one : running) {
+      try {
+        one.close();
+      } catch (Exception error) {
+        System.err.println("hs-spy: " + error);
+      }
+    }
+    running.clear();
+  }
 }

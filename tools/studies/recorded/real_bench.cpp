@@ -78,7 +78,7 @@ RealBench run_real_bench(const std::filesystem::path& scenes, const DrawnBoxes& 
   RealBench bench;
   DetectorWorkspace workspace;
   std::int64_t utime = 0;
-  for (const FramePair& pair : list_frame_pairs(scenes)) {
+  for (const FrameFiles& pair : list_frame_pairs(scenes)) {
     const RgbdFrame frame = read_frame_pair(pair, drawn.camera, ++utime);
     const Detections detections = method.detector.detect(frame, workspace);
     const ObjectPoses poses = method.estimator.estimate(frame, detections);

@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 struct Recording {
@@ -49,7 +49,7 @@ double colour_difference(const RgbdFrame& a, const RgbdFrame& b) {
 
 /// The device's number of a frame, which runs through the pattern's pictures.
 std::int64_t number_of(const RgbdFrame& frame) {
-  const std::vector<CameraPicture> pictures = make_test_pattern(frame.camera).pictures;
+  const std::vector<virtual_camera::CameraPicture> pictures = virtual_camera::make_test_pattern(frame.camera).pictures;
   const cv::Mat depth_mm = depth_to_millimetres(frame.depth);
   std::size_t k = 0;
   while (k < pictures.size() && cv::norm(pictures[k].depth_mm, depth_mm, cv::NORM_INF) > 0.0) ++k;
@@ -85,6 +85,23 @@ TEST(OniSource, GivesEveryFrameAsItWasSeen) {
   }
 }
 
+TEST(OniSource, EndsSoonWhenAskedThoughTheNextImageNeverComes) {
+  const VirtualCamera camera("oni_stop", "size 320x240\n");
+  const Recording recording = record(camera, 20, false);
+  {
+    std::fstream file(recording.file, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(recording.file) / 2));
+    file << std::string(std::filesystem::file_size(recording.file) / 4, '\0');
+  }
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point stop_at = Clock::time_point::max();
+  const auto source = open_oni_source(recording.file.string(), CameraOptions{}, [&] { return Clock::now() > stop_at; });
+  stop_at = Clock::now() + std::chrono::milliseconds(500);
+  while (source->next().has_value()) {
+  }
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - stop_at).count(), 1.0);
+}
+
 TEST(OniSource, BadFilesAreRefused) {
   const VirtualCamera camera("oni_bad", "size 320x240\n");
   const Recording recording = record(camera, 20, true);
@@ -108,4 +125,4 @@ TEST(OniSource, APlaceThatCannotBeWrittenIsAnError) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

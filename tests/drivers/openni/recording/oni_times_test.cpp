@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 /// A recording of two streams with two images each, as OpenNI2 writes them.
@@ -109,4 +109,4 @@ TEST_F(OniTimes, WhatIsNoWholeRecordingIsRefusedAndLeftAsItWas) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

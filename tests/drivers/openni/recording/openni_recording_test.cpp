@@ -3,7 +3,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 constexpr std::chrono::seconds kPatience(5);
@@ -31,7 +31,7 @@ std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesyste
 }
 
 /// The step of the pattern that an image shows; JPEG leaves the disc's colour where it was, roughly.
-int picture_of(const cv::Mat& image, const CameraPictures& pattern) {
+int picture_of(const cv::Mat& image, const virtual_camera::CameraPictures& pattern) {
   double least = 1e9;
   int found = -1;
   for (int k = 0; k < static_cast<int>(pattern.pictures.size()); ++k) {
@@ -46,7 +46,8 @@ int picture_of(const cv::Mat& image, const CameraPictures& pattern) {
 
 /// Each depth image's colour, by the pattern, lies `apart_us` after it in the file.
 void expect_apart(const std::filesystem::path& file, std::int64_t apart_us) {
-  const CameraPictures pattern = make_test_pattern({320, 240, 262.5, 262.5, 159.5, 119.5});
+  const virtual_camera::CameraPictures pattern =
+      virtual_camera::make_test_pattern({320, 240, 262.5, 262.5, 159.5, 119.5});
   auto images = images_of(file);
   std::map<int, std::int64_t> colour_times;
   for (const auto& [time, image] : images[Sensor::kColour]) colour_times[picture_of(image, pattern)] = time;
@@ -86,4 +87,4 @@ TEST(OpenniRecording, EndsWhileImagesCome) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 constexpr std::int64_t kOpened = 5'000'000;
@@ -79,4 +79,4 @@ TEST(RecordedStart, IsUnknownWhereNothingOrTooLittleWasSeen) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

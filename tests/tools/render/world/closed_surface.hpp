@@ -7,7 +7,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Whether every edge, with vertices at equal positions taken as one, is passed once in each direction.
 inline bool is_closed(const Mesh& mesh) {
@@ -46,4 +46,4 @@ inline double agreeing_normals(const Mesh& mesh) {
   return static_cast<double>(agreeing) / static_cast<double>(mesh.triangles.size());
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -9,7 +9,7 @@
 #include "tools/render/world/rooms/table_layout.hpp"
 #include "tools/render/world/scenes.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 std::vector<const char*> lying_scenes() {
@@ -127,4 +127,4 @@ TEST(LyingScenes, SeedsAreOddForTestsAndEvenForDevelopment) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

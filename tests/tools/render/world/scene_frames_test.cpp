@@ -4,9 +4,10 @@
 
 #include <array>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 class SceneFrames : public ::testing::Test {
@@ -63,6 +64,25 @@ TEST_F(SceneFrames, TruthAgreesWithThePicture) {
   EXPECT_GE(seen, 8);
 }
 
+TEST_F(SceneFrames, AnotherSensorSeesTheSameWorldInItsOwnWay) {
+  const SceneFrame usual = render_scene_frame(scene, lit_world, 100, 300);
+  const SceneFrame named = render_scene_frame(scene, lit_world, 100, 300, parse_sensor("structured_light"));
+  EXPECT_TRUE(identical(usual.frame.colour, named.frame.colour) && identical(usual.frame.depth, named.frame.depth));
+  const SceneFrame other = render_scene_frame(scene, lit_world, 100, 300, parse_sensor("time_of_flight"));
+  check_frame(other.frame, "rendered");
+  EXPECT_FALSE(identical(usual.frame.colour, other.frame.colour));
+  ASSERT_EQ(other.objects.size(), usual.objects.size());
+  for (std::size_t i = 0; i < usual.objects.size(); ++i)
+    EXPECT_TRUE(identical(usual.visible_masks[i], other.visible_masks[i])) << i;
+  const cv::Mat both = (usual.frame.depth == usual.frame.depth) & (other.frame.depth == other.frame.depth);
+  EXPECT_GT(cv::countNonZero(both), 640 * 480 / 2);
+  EXPECT_GT(cv::countNonZero(other.frame.depth == other.frame.depth),
+            cv::countNonZero(usual.frame.depth == usual.frame.depth))
+      << "no infrared shadow";
+  EXPECT_NEAR(cv::mean(usual.frame.depth, both)[0], cv::mean(other.frame.depth, both)[0], 0.02);
+  EXPECT_THROW(parse_sensor("sonar"), InputError);
+}
+
 TEST_F(SceneFrames, DepthHasHolesButNotMany) {
   const cv::Mat depth = render(1)[0].frame.depth;
   const double valid = cv::countNonZero(depth == depth) / static_cast<double>(depth.total());
@@ -71,4 +91,4 @@ TEST_F(SceneFrames, DepthHasHolesButNotMany) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -11,7 +11,7 @@
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/rooms/table_layout.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // Each is made once: drawing all textures takes a while.
@@ -160,4 +160,4 @@ TEST(Scenes, UnknownNamesAreRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

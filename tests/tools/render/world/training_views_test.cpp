@@ -10,7 +10,7 @@
 #include "pipeline/geometry/renderer.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 TEST(TrainingViews, ShowOneObjectFromAllRoundAtSeveralPitches) {
@@ -118,4 +118,4 @@ TEST(TrainingViews, RefusesAbsurdSettings) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -6,7 +6,7 @@
 // The sixteen further classes (ids 101 to 116), by family. Sizes and colours are fixed, the generator only draws
 // prints. Each is finished: origin at the centre of its bounding box, z up, front to -y.
 
-namespace houghstream {
+namespace houghstream::world {
 
 // Tableware.
 ThingPtr make_plate(Random& random);    ///< plain with a coloured rim
@@ -32,4 +32,4 @@ ThingPtr make_toy_truck(Random& random);
 ThingPtr make_banana(Random& random);
 ThingPtr make_flashlight(Random& random);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -7,7 +7,7 @@
 #include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // White noise in [-1,1], CV_32FC1.
@@ -157,4 +157,4 @@ cv::Mat metal(const cv::Size& size, Random& random) {
   return tint(streaks + smooth_noise(size, 3.0, 3, random), hsv(220, 0.04, value), 0.08);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -6,7 +6,7 @@
 
 // Textures of things that are not printed. All CV_8UC3 BGR, drawn from the given generator only.
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Smooth noise of several octaves, CV_32FC1, mean about 0, range about -1 to 1. `cells` is the number of
 /// grid cells across the width in the coarsest octave.
@@ -25,4 +25,4 @@ cv::Mat wallpaper(const cv::Size& size, Random& random);
 /// Brushed or cast metal.
 cv::Mat metal(const cv::Size& size, Random& random);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

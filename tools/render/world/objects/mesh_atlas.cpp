@@ -4,7 +4,7 @@
 
 #include "tools/render/world/objects/mesh_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr int kGutterPx = 8;  // edge pixels repeated around each texture, so that smaller mip levels do not bleed
@@ -105,4 +105,4 @@ Mesh finish_object(Mesh mesh) {
   return mesh;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -9,7 +9,7 @@
 // Building blocks of all rendered things. Every part is a closed surface with outward normals and its own texture;
 // compose() joins parts into one mesh with one texture.
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// A point of the outline that is turned about z. Two equal consecutive points make a sharp edge.
 struct ProfilePoint {
@@ -60,4 +60,4 @@ Mesh compose(const std::vector<Part>& parts);
 /// Moves the origin to the centre of the bounding box and colours the vertices from the texture.
 Mesh finish_object(Mesh mesh);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

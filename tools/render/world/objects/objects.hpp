@@ -8,7 +8,7 @@
 
 // The objects. Frame of each: origin at the centre of its bounding box, z up, front to -y.
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// An object that can be taught. Ids 1-4 (bowl, cereal_box, coffee_mug, soda_can) are the demo's classes; 5-8 are
 /// their second instances (bowl_2 ...), of other proportions and prints; 101-116 are sixteen further classes
@@ -50,4 +50,4 @@ ThingPtr make_other_instance(int class_id, std::uint64_t seed);
 inline constexpr int kDistractorKinds = 16;
 ThingPtr make_distractor(int kind, std::uint64_t seed, double taught_colours = 0.0);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

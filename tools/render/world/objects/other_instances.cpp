@@ -7,7 +7,7 @@
 #include "tools/render/world/objects/vessels.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // Either of the taught object's colour and of another size, or of its size and another colour: never both the same,
@@ -71,4 +71,4 @@ ThingPtr make_other_instance(int class_id, std::uint64_t seed) {
   }
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

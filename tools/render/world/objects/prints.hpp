@@ -7,7 +7,7 @@
 
 // Print-like textures: what is on boxes, cans, mugs and covers. All CV_8UC3 BGR, drawn from the given generator only.
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// The colours one print uses.
 struct Palette {
@@ -41,4 +41,4 @@ cv::Mat screen_picture(const cv::Size& size, Random& random);  ///< windows on a
 cv::Mat keyboard_top(const cv::Size& size, Random& random);
 cv::Mat poster(const cv::Size& size, Random& random);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

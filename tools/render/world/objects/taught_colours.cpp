@@ -7,7 +7,7 @@
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/objects/prints.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 const ClassColours& class_colours(int class_id) {
   static constexpr std::array<ClassColours, kClassCount> kColours = {{{{42, 0.18, 0.86}, {42, 0.18, 0.86}},
@@ -27,4 +27,4 @@ cv::Scalar near_colour(const Hsv& colour, Random& random) {
              std::min(1.0, colour.value * random.uniform(0.85, 1.1)));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

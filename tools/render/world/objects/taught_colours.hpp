@@ -6,7 +6,7 @@
 
 // The colours by which the four classes are known, so that other things can be given them too.
 
-namespace houghstream {
+namespace houghstream::world {
 
 struct Hsv {
   double hue_deg = 0.0;
@@ -28,4 +28,4 @@ cv::Scalar bgr(const Hsv& colour);
 /// One that a person would call the same: BGR.
 cv::Scalar near_colour(const Hsv& colour, Random& random);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -12,7 +12,7 @@
 #include "tools/render/world/objects/taught_colours.hpp"
 #include "tools/render/world/objects/vessels.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // Fixed, so that an object looks the same in every training view and scene.
@@ -147,4 +147,4 @@ int taught_object_id(const std::string& name) {
   fail("object \"{}\": expected one of {}, {}", name, fmt::join(kNames, ", "), fmt::join(further, ", "));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

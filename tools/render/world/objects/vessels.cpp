@@ -4,7 +4,7 @@
 
 #include "tools/render/world/objects/materials.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // Outline of a thick-walled cup: foot, outside, rim, inside, inner bottom.
@@ -133,4 +133,4 @@ Mesh turned_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& tex
   return finish_object(lathe(with_arc_length(profile), texture));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

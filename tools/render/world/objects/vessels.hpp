@@ -5,7 +5,7 @@
 
 // Meshes of vessels and cartons, finished (origin at the centre of the bounding box). Lengths in metres.
 
-namespace houghstream {
+namespace houghstream::world {
 
 struct BowlShape {
   double rim_radius = 0.075;
@@ -36,4 +36,4 @@ Mesh carton_mesh(const Eigen::Vector3d& size, const Palette& palette, Random& ra
 /// Solid body of revolution through (radius, z) points from bottom to top, ends closed.
 Mesh turned_mesh(const std::vector<Eigen::Vector2d>& outline, const cv::Mat& texture);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -7,7 +7,7 @@
 
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -147,4 +147,4 @@ cv::Mat measure_depth(const SensorView& view, const Camera& camera, const DepthS
   return measured;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -15,7 +15,7 @@
 //   degrees, plus 0.0001 / sqrt(z) * t^2 / (pi/2 - t)^2 at incidence t; lateral deviation 0.8 + 0.035 t / (pi/2 - t)
 //   pixels.
 
-namespace houghstream {
+namespace houghstream::world {
 
 struct DepthSensorSettings {
   double baseline_m = 0.075;         ///< projector to the right of the camera
@@ -51,4 +51,4 @@ cv::Mat infrared_shadow(const cv::Mat& depth, const Camera& camera, double basel
 cv::Mat measure_depth(const SensorView& view, const Camera& camera, const DepthSensorSettings& settings,
                       std::uint64_t seed);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -5,7 +5,7 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 Eigen::Vector3f light_colour(double warmth, double strength) {
@@ -55,4 +55,4 @@ void set_light_and_photo(World& world, TimeOfDay time, std::uint64_t seed) {
   if (time == TimeOfDay::kEvening) turn_to_evening(world, random);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

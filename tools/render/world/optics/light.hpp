@@ -2,7 +2,7 @@
 
 #include "tools/render/world/world.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 enum class TimeOfDay : std::uint8_t { kDay, kEvening };
 
@@ -10,4 +10,4 @@ enum class TimeOfDay : std::uint8_t { kDay, kEvening };
 /// are weaker and warmer, and the picture is darker and noisier.
 void set_light_and_photo(World& world, TimeOfDay time, std::uint64_t seed);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -7,7 +7,7 @@
 
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr int kLevels = 4096;
@@ -63,4 +63,41 @@ cv::Mat take_photo(const cv::Mat& radiance, const PhotoSettings& settings, std::
   return picture;
 }
 
-}  // namespace houghstream
+ColourResponse other_colour_camera() {
+  ColourResponse response;
+  response.further_vignetting = 0.15;
+  response.white_balance_bgr = {1.08, 1.0, 0.93};
+  response.gamma = 0.85;
+  response.saturation = 1.25;
+  response.sharpening = 0.6;
+  return response;
+}
+
+cv::Mat processed_photo(const cv::Mat& photo, const ColourResponse& response) {
+  const double corner_sq = 0.25 * (photo.cols * photo.cols + photo.rows * photo.rows);
+  cv::Mat toned(photo.size(), CV_32FC3);
+  for (int y = 0; y < photo.rows; ++y) {
+    const double dy = y - 0.5 * (photo.rows - 1);
+    for (int x = 0; x < photo.cols; ++x) {
+      const double dx = x - 0.5 * (photo.cols - 1);
+      const double vignette = 1.0 - response.further_vignetting * (dx * dx + dy * dy) / corner_sq;
+      Eigen::Array3d bgr;
+      for (int c = 0; c < 3; ++c) bgr[c] = photo.at<cv::Vec3b>(y, x)[c] / 255.0;
+      bgr = (vignette * bgr * response.white_balance_bgr.array()).min(1.0).pow(response.gamma);
+      const double grey = 0.114 * bgr[0] + 0.587 * bgr[1] + 0.299 * bgr[2];  // ITU-R BT.601
+      bgr = 255.0 * (grey + response.saturation * (bgr - grey));
+      toned.at<cv::Vec3f>(y, x) =
+          cv::Vec3f(static_cast<float>(bgr[0]), static_cast<float>(bgr[1]), static_cast<float>(bgr[2]));
+    }
+  }
+  if (response.sharpening > 0.0) {
+    cv::Mat soft;
+    cv::GaussianBlur(toned, soft, {0, 0}, response.sharpening_px);
+    toned += response.sharpening * (toned - soft);
+  }
+  cv::Mat processed;
+  toned.convertTo(processed, CV_8U);  // rounds, and clips to 0 to 255
+  return processed;
+}
+
+}  // namespace houghstream::world

@@ -4,10 +4,29 @@
 
 #include "tools/render/world/world.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// The picture a colour camera takes of linear light (CV_32FC3 BGR): lens blur, vignetting, automatic exposure,
 /// white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same picture.
 cv::Mat take_photo(const cv::Mat& radiance, const PhotoSettings& settings, std::uint64_t seed);
 
-}  // namespace houghstream
+/// How a camera's own processing departs from plain sRGB; as it stands, not at all. The steps and their order are those
+/// of Karaimer & Brown, "A Software Platform for Manipulating the Camera Imaging Pipeline", ECCV 2016; cameras differ
+/// in each of them (Kim, Lin, Lu, Suesstrunk, Lin & Brown, "A New In-Camera Imaging Model for Color Computer Vision and
+/// Its Application", PAMI 34(12), 2012). The numbers of other_colour_camera() are ours.
+struct ColourResponse {
+  double further_vignetting = 0.0;                              ///< light lost in the corners besides, 0 to 1
+  Eigen::Vector3d white_balance_bgr = Eigen::Vector3d::Ones();  ///< gain on each coded channel
+  double gamma = 1.0;                                           ///< exponent on coded values; below 1 brightens
+  double saturation = 1.0;                                      ///< factor on what a colour differs from its grey
+  double sharpening = 0.0;                                      ///< share of the unsharp mask that is added
+  double sharpening_px = 1.0;                                   ///< its standard deviation, pixels
+};
+
+/// A camera of another make: a cooler white, brighter middle tones, stronger colours and sharpened edges.
+ColourResponse other_colour_camera();
+
+/// What such a camera makes of a photo (CV_8UC3 BGR, as take_photo() gives it).
+cv::Mat processed_photo(const cv::Mat& photo, const ColourResponse& response);
+
+}  // namespace houghstream::world

@@ -4,7 +4,7 @@
 
 #include "pipeline/base/random.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// True with the given probability.
 inline bool chance(Random& random, double probability) {
@@ -33,4 +33,4 @@ inline float pixel_uniform(std::uint64_t seed, std::uint64_t index) {
   return static_cast<float>(Random(seed + index * 0xd1342543de82ef95ULL).bits() >> 40U) * (1.0F / 16777216.0F);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -6,7 +6,7 @@
 
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr std::uint64_t kPatternSeed = 77;
@@ -165,4 +165,4 @@ ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eig
   return view;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -5,7 +5,7 @@
 #include "pipeline/geometry/renderer.hpp"
 #include "tools/render/world/optics/shadow_map.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// A world with the shadows of its lights computed once.
 struct LitWorld {
@@ -26,4 +26,4 @@ struct ShadedView {
 /// Geometry, then texture (mip-mapped, bilinear), Lambert and Blinn-Phong light per pixel.
 ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

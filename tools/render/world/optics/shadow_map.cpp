@@ -5,7 +5,7 @@
 
 #include "pipeline/geometry/renderer.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr double kMapPxPerM = 430.0;  // of the part of the world that the map shows
@@ -87,4 +87,4 @@ float ShadowLookup::lit(const Eigen::Vector3f& point_camera, float turn) const {
   return static_cast<float>(lit) / kTaps;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -5,7 +5,7 @@
 #include "pipeline/types/camera.hpp"
 #include "tools/render/world/world.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Depth of the world seen from a light: what lies deeper is in shadow (Williams 1978).
 struct ShadowMap {
@@ -32,4 +32,4 @@ class ShadowLookup {
   float penumbra_m_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -7,7 +7,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 Attitude parse_attitude(const std::string& name) {
   if (name == "upright") return Attitude::kUpright;
@@ -44,4 +44,4 @@ double height_above_table(const Mesh& mesh, const Eigen::Matrix3d& R_table_objec
   return -lowest;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -6,7 +6,7 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/rooms/resting.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// How an object is put down.
 enum class Attitude : std::uint8_t {
@@ -44,4 +44,4 @@ class AttitudeChoice {
 /// Height of the object frame's origin over a table that the mesh's lowest point touches, metres.
 double height_above_table(const Mesh& mesh, const Eigen::Matrix3d& R_table_object);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

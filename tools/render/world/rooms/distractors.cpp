@@ -9,7 +9,7 @@
 #include "tools/render/world/objects/vessels.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // What colours things have: any, or with some probability those of the taught objects.
@@ -247,4 +247,4 @@ ThingPtr make_distractor(int kind, std::uint64_t seed, double taught_colours) {
   return kMakers[static_cast<std::size_t>(kind)](random, Dyes(taught_colours));
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

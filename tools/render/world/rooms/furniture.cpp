@@ -8,7 +8,7 @@
 #include "tools/render/world/objects/vessels.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 cv::Scalar paint(Random& random) {
@@ -123,4 +123,4 @@ ThingPtr make_bin(Random& random) {
   return make_thing("bin", cup_mesh({0.14, 0.11, 0.32, 0.006}, plain({128, 128}, paint(random), 0.06, random)), 0.1F);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -5,7 +5,7 @@
 
 // Furniture, as things whose origin is on the floor (or wall) in the middle, front to -y. Lengths in metres.
 
-namespace houghstream {
+namespace houghstream::world {
 
 ThingPtr make_table(const Eigen::Vector2d& half, double height, const cv::Mat& top, Random& random);  ///< top at z = 0
 ThingPtr make_chair(Random& random);
@@ -15,4 +15,4 @@ ThingPtr make_picture(Random& random);                               ///< a post
 ThingPtr make_window(Random& random);                                ///< bright, with a frame; origin at its centre
 ThingPtr make_bin(Random& random);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -9,7 +9,7 @@
 #include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/rooms/attitudes.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr double kLeastSlopeDeg = 12.0;
@@ -82,4 +82,4 @@ Eigen::Vector2d half_extent(const Group& group) {
   return half;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -8,7 +8,7 @@
 // Things put down otherwise than upright, alone or on something: groups that belong together. Group frame: z up, z = 0
 // on the table, origin within the group; `T_world_object` of a group's members maps into it.
 
-namespace houghstream {
+namespace houghstream::world {
 
 using Group = std::vector<Placed>;
 
@@ -22,4 +22,4 @@ Group put_on_wedge(const ThingPtr& thing, int object_id, Random& random);
 /// Half the sides of the rectangle about the group's origin over which its members reach, metres.
 Eigen::Vector2d half_extent(const Group& group);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/rooms/tipping.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr int kDrops = 400;  // attitudes from which it is let go
@@ -89,4 +89,4 @@ std::vector<RestingFamily> lying_families(const std::vector<RestingFamily>& fami
   return lying;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -5,7 +5,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// A way in which a thing lies still on a level table. Table frame: z up, z = 0 on its top.
 struct RestingAttitude {
@@ -28,4 +28,4 @@ std::vector<RestingFamily> resting_families(const Mesh& mesh);
 /// Those without the family that stands upright, z up. Throws InputError where nothing is left.
 std::vector<RestingFamily> lying_families(const std::vector<RestingFamily>& families);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

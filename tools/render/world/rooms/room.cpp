@@ -9,7 +9,7 @@
 #include "tools/render/world/rooms/furniture.hpp"
 #include "tools/render/world/seeds.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr double kTableHeight = 0.74;
@@ -132,4 +132,4 @@ Room make_room(RoomStyle style, std::uint64_t seed) {
   return room;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -3,7 +3,7 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/world.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 enum class RoomStyle : std::uint8_t { kTable, kDesk, kKitchen, kMeeting };
 inline constexpr int kRoomStyles = 4;
@@ -17,4 +17,4 @@ struct Room {
 /// Walls, floor, table and furniture. The back wall is at +y; the camera's side is -y.
 Room make_room(RoomStyle style, std::uint64_t seed);
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -6,7 +6,7 @@
 
 #include "tools/render/world/objects/mesh_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr double kGapM = 0.006;
@@ -71,4 +71,4 @@ std::optional<Eigen::Isometry3d> TableLayout::place(const Thing& thing, const Ei
   return T_world_object;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

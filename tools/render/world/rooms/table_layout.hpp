@@ -6,7 +6,7 @@
 #include "pipeline/base/random.hpp"
 #include "tools/render/world/world.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Upright rectangle round a thing's shadow on the table, in world x and y.
 struct Footprint {
@@ -41,4 +41,4 @@ class TableLayout {
   std::vector<Footprint> taken_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::world

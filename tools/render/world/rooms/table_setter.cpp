@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/objects.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // The truth does not name look-alikes.
@@ -49,4 +49,4 @@ void TableSetter::tilt_object(int id, const Eigen::AlignedBox2d& where) {
   require(put(put_on_wedge(object.thing, true_id(id), random_), where), "scene: no place left for {}", object.name);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

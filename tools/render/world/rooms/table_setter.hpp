@@ -3,7 +3,7 @@
 #include "tools/render/world/rooms/put_down.hpp"
 #include "tools/render/world/rooms/table_layout.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Puts things on a world's table, where there is room for them.
 class TableSetter {
@@ -38,4 +38,4 @@ class TableSetter {
   Random random_;
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr int kSmallestMipPx = 4;
@@ -44,4 +44,4 @@ std::shared_ptr<const Thing> make_thing(std::string name, Mesh mesh, float gloss
   return thing;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

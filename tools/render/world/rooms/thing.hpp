@@ -7,7 +7,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Something that stands in a rendered world: its surface, and what shading needs to know of it beforehand.
 struct Thing {
@@ -24,4 +24,4 @@ std::shared_ptr<const Thing> make_thing(std::string name, Mesh mesh, float gloss
 
 using ThingPtr = std::shared_ptr<const Thing>;
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 constexpr double kTouchM = 2e-5;  // above the lowest point and yet on the plane: vertices are floats
@@ -151,4 +151,4 @@ Eigen::Vector3d TippingBody::settled(Eigen::Vector3d down) const {
   fail("mesh rolls on after {} edges", kMostSteps);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -6,7 +6,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 
 /// Where a body touches the level plane below it. Plane coordinates have their origin below the centre of mass.
 struct Support {
@@ -48,4 +48,4 @@ class TippingBody {
   std::vector<Eigen::Vector3d> points_;  ///< from the centre of mass, metres
 };
 
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/tools/render/world/closed_surface.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 const cv::Mat kTexture(16, 16, CV_8UC3, cv::Scalar(10, 20, 30));
@@ -64,4 +64,4 @@ TEST(MeshParts, TaperedTubeIsAClosedCone) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

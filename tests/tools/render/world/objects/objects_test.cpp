@@ -10,7 +10,7 @@
 #include "tests/tools/render/world/closed_surface.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 // All that can be taught: the four classes, their look-alikes and the sixteen further ones.
@@ -127,4 +127,4 @@ TEST(Objects, RefusesWhatItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

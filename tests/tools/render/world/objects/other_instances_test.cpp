@@ -8,7 +8,7 @@
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/objects.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 double height_ratio(const Thing& other, const Thing& taught) {
@@ -57,4 +57,4 @@ TEST(OtherInstances, ThereAreNoneOfOtherClasses) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/objects.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 /// Share of a jar's surface, of several jars, that has about a colour of the four classes.
@@ -61,4 +61,4 @@ TEST(TaughtColours, RefusesAnotherClass) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

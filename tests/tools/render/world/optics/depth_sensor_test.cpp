@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 const Camera kCamera{160, 120, 525.0, 525.0, 79.5, 59.5};
@@ -93,4 +93,4 @@ TEST(DepthSensor, SameSeedSameNoise) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 World lit(TimeOfDay time, std::uint64_t seed) {
@@ -33,4 +33,4 @@ TEST(Light, FollowsTheSeed) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

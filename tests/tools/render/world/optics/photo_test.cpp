@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 TEST(Photo, ExposureBringsDarkAndBrightRoomsCloser) {
@@ -28,5 +28,51 @@ TEST(Photo, NoiseFollowsTheSeed) {
   EXPECT_EQ(deviation[0], 0.0);
 }
 
+/// An edge between two colours of the camera's own kind.
+cv::Mat two_colours() {
+  cv::Mat photo(60, 80, CV_8UC3, cv::Scalar(60, 90, 140));
+  photo.colRange(40, 80).setTo(cv::Scalar(120, 110, 100));
+  return photo;
+}
+
+TEST(ColourResponse, AsItStandsChangesNothing) {
+  EXPECT_EQ(cv::norm(processed_photo(two_colours(), {}), two_colours(), cv::NORM_INF), 0.0);
+}
+
+TEST(ColourResponse, EachStepDoesWhatItSays) {
+  const cv::Mat photo = two_colours();
+  const cv::Point middle(20, 30);
+  const auto changed = [&](const ColourResponse& response) { return processed_photo(photo, response); };
+  ColourResponse cool;
+  cool.white_balance_bgr = {1.1, 1.0, 0.9};
+  EXPECT_EQ(changed(cool).at<cv::Vec3b>(middle), cv::Vec3b(66, 90, 126));
+  ColourResponse bright;
+  bright.gamma = 0.5;
+  EXPECT_EQ(changed(bright).at<cv::Vec3b>(middle)[0], 124) << "255 (60 / 255)^0.5";
+  ColourResponse strong;
+  strong.saturation = 2.0;
+  const cv::Vec3b stronger = changed(strong).at<cv::Vec3b>(middle);
+  EXPECT_EQ(stronger[2] - stronger[0], 2 * (140 - 60));
+  ColourResponse dim_corners;
+  dim_corners.further_vignetting = 0.5;
+  EXPECT_EQ(changed(dim_corners).at<cv::Vec3b>(30, 40)[1], 110);
+  EXPECT_NEAR(changed(dim_corners).at<cv::Vec3b>(0, 0)[1], 46, 1);
+  ColourResponse sharp;
+  sharp.sharpening = 0.6;
+  const cv::Mat edge = changed(sharp);
+  EXPECT_EQ(edge.at<cv::Vec3b>(middle), photo.at<cv::Vec3b>(middle));
+  EXPECT_LT(edge.at<cv::Vec3b>(30, 39)[0], 60) << "an edge overshoots on both sides";
+  EXPECT_GT(edge.at<cv::Vec3b>(30, 40)[0], 120);
+}
+
+TEST(ColourResponse, TheOtherCameraIsCoolerBrighterAndStronger) {
+  const cv::Mat photo = two_colours();
+  const cv::Mat other = processed_photo(photo, other_colour_camera());
+  const cv::Scalar before = cv::mean(photo);
+  const cv::Scalar after = cv::mean(other);
+  EXPECT_GT(after[0] / after[2], 1.1 * before[0] / before[2]);
+  EXPECT_GT(after[0] + after[1] + after[2], before[0] + before[1] + before[2] + 15.0);
+}
+
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -4,7 +4,7 @@
 
 #include "tools/render/world/objects/mesh_parts.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 const Camera kCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
@@ -52,4 +52,4 @@ TEST(Shading, TextureIsWhereItBelongs) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

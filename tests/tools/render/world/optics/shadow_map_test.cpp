@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 /// A plate of 0.4 m, half a metre above the floor, under a lamp.
@@ -61,4 +61,4 @@ TEST(ShadowMap, BeyondTheFocusThereIsLight) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

@@ -9,7 +9,7 @@
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/rooms/tipping.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 std::size_t count(const std::vector<RestingFamily>& families) {
@@ -120,4 +120,4 @@ TEST(Resting, SurfacesWithoutVolumeAreRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

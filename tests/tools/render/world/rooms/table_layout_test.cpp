@@ -4,7 +4,7 @@
 
 #include "tools/render/world/objects/objects.hpp"
 
-namespace houghstream {
+namespace houghstream::world {
 namespace {
 
 TEST(TableLayout, RectanglesTouchAsTheirSidesSay) {
@@ -33,4 +33,4 @@ TEST(TableLayout, ThingsStandApartUntilTheTableIsFull) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::world

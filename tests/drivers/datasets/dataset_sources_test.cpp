@@ -1,4 +1,4 @@
-#include "drivers/datasets/tum_source.hpp"
+#include "drivers/datasets/dataset_sources.hpp"
 
 #include <gtest/gtest.h>
 

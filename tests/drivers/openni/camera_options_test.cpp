@@ -1,12 +1,27 @@
-#include "drivers/openni/camera_info.hpp"
+#include "drivers/openni/camera_options.hpp"
 
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
+
+TEST(CameraMode, IsReadAsItIsWritten) {
+  const CameraMode mode = parse_camera_mode("320x240@60");
+  EXPECT_TRUE((mode == CameraMode{320, 240, 60}));
+  EXPECT_EQ(mode_text(mode), "320x240@60");
+  EXPECT_TRUE((parse_camera_mode("1280x1024") == CameraMode{1280, 1024, 30}));
+  EXPECT_EQ(modes_text({}), "none");
+  EXPECT_EQ(modes_text({mode, CameraMode{}}), "320x240@60, 640x480@30");
+}
+
+TEST(CameraMode, OtherTextsAreRefused) {
+  for (const char* text : {"", "VGA", "640", "640x", "640x480@", "640x480@30Hz", "0x480", "640x-480", "640x480@0"}) {
+    EXPECT_THROW(parse_camera_mode(text), InputError) << text;
+  }
+}
 
 const std::string kYaml = R"(image_width: 640
 image_height: 480
@@ -52,4 +67,4 @@ TEST(CameraInfo, BadFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::openni

@@ -1,15 +1,15 @@
-#include "drivers/openni/camera_info.hpp"
+#include "drivers/openni/camera_options.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 
-namespace houghstream {
+namespace houghstream::openni {
 namespace {
 
 /// OpenCV reads YAML that starts with its own header; ROS writes none.
@@ -40,6 +40,28 @@ int size_of(const cv::FileStorage& yaml, const char* key, const std::filesystem:
 
 }  // namespace
 
+std::string mode_text(const CameraMode& mode) {
+  return fmt::format("{}x{}@{}", mode.width, mode.height, mode.rate_hz);
+}
+
+std::string modes_text(const std::vector<CameraMode>& modes) {
+  std::string text;
+  for (const CameraMode& mode : modes) text += (text.empty() ? "" : ", ") + mode_text(mode);
+  return text.empty() ? "none" : text;
+}
+
+CameraMode parse_camera_mode(const std::string& text) {
+  CameraMode mode;
+  int with_rate = -1;
+  int size_only = -1;
+  std::sscanf(text.c_str(), "%5dx%5d%n@%4d%n", &mode.width, &mode.height, &size_only, &mode.rate_hz, &with_rate);
+  const int end = static_cast<int>(text.size());
+  const bool positive = mode.width > 0 && mode.height > 0 && mode.rate_hz > 0;
+  require((with_rate == end || size_only == end) && positive,
+          "--mode '{}', expected WIDTHxHEIGHT or WIDTHxHEIGHT@RATE, for instance 640x480@30", text);
+  return mode;
+}
+
 Camera read_camera_info(const std::filesystem::path& file) {
   const cv::FileStorage yaml = parse_yaml(file);
   const std::vector<double> K = numbers_of(yaml["camera_matrix"]["data"]);
@@ -62,4 +84,4 @@ Camera camera_of_option(const std::string& text) {
   return parse_camera(text);
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::openni

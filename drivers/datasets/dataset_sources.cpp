@@ -1,4 +1,4 @@
-#include "drivers/datasets/tum_source.hpp"
+#include "drivers/datasets/dataset_sources.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,47 @@
 #include <vector>
 
 #include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/files/frame_folder.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {
 namespace {
+
+class BopSource : public FrameSource {
+ public:
+  explicit BopSource(const std::filesystem::path& folder) : scene_(folder) {}
+
+  std::optional<RgbdFrame> next() override {
+    if (index_ == scene_.images().size()) return std::nullopt;
+    return scene_.read_frame(index_++);
+  }
+
+  double rate_hz() const override { return kDatasetRateHz; }
+
+ private:
+  BopScene scene_;
+  std::size_t index_ = 0;
+};
+
+class UwSource : public FrameSource {
+ public:
+  UwSource(const std::filesystem::path& folder, const Camera& camera)
+      : pairs_(list_frame_pairs(folder)), camera_(camera) {}
+
+  std::optional<RgbdFrame> next() override {
+    if (index_ == pairs_.size()) return std::nullopt;
+    const std::size_t index = index_++;
+    return read_frame_pair(pairs_[index], camera_, dataset_utime(index));
+  }
+
+  double rate_hz() const override { return kDatasetRateHz; }
+
+ private:
+  std::vector<FrameFiles> pairs_;
+  Camera camera_;
+  std::size_t index_ = 0;
+};
 
 namespace fs = std::filesystem;
 
@@ -98,6 +134,14 @@ class TumSource : public FrameSource {
 };
 
 }  // namespace
+
+std::unique_ptr<FrameSource> open_bop_source(const std::filesystem::path& folder) {
+  return std::make_unique<BopSource>(folder);
+}
+
+std::unique_ptr<FrameSource> open_uw_source(const std::filesystem::path& folder, const Camera& camera) {
+  return std::make_unique<UwSource>(folder, camera);
+}
 
 std::unique_ptr<FrameSource> open_tum_source(const fs::path& folder, const Camera& camera) {
   return std::make_unique<TumSource>(folder, camera);
