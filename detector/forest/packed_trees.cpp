@@ -75,8 +75,8 @@ void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t co
   for (std::size_t i = 0; i < count; ++i) fetched[i] = nodes[at[i]];
 }
 
-void fetch_pixels(const std::uint8_t* origin, const std::int32_t* first, const std::int32_t* second, std::size_t count,
-                  std::uint8_t* first_values, std::uint8_t* second_values) {
+void fetch_pixels(const std::uint8_t* origin, const PixelPairs& pairs, std::size_t count) {
+  const auto [first, second, first_values, second_values] = pairs;
   for (std::size_t i = 0; i < count; ++i) {
     first_values[i] = origin[first[i]];
     second_values[i] = origin[second[i]];

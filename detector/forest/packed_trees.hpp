@@ -25,7 +25,12 @@ void pack_trees(Forest& forest);
 /// Copies the nodes that patches stand at, and the values of the pixels that they look at, side by side. Apart from the
 /// walk, whose instruction set has gathers: dozens of plain loads overlap where a cache misses, but few gathers do.
 void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t count, PackedNode* fetched);
-void fetch_pixels(const std::uint8_t* origin, const std::int32_t* first, const std::int32_t* second, std::size_t count,
-                  std::uint8_t* first_values, std::uint8_t* second_values);
+struct PixelPairs {
+  const std::int32_t* first = nullptr;  ///< where pixels lie behind the origin, bytes
+  const std::int32_t* second = nullptr;
+  std::uint8_t* first_values = nullptr;
+  std::uint8_t* second_values = nullptr;
+};
+void fetch_pixels(const std::uint8_t* origin, const PixelPairs& pairs, std::size_t count);
 
 }  // namespace houghstream

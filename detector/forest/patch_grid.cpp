@@ -69,15 +69,21 @@ void reserve_places(cv::Size size, int stride, PatchGrid& grid) {
   grid.cell_px.reserve(count);
 }
 
-/// `side`: of the part of the picture that the patch stands for, working pixels.
-void add_place(int x, int y, const FeatureLevel& level, std::uint8_t level_index, float side, PatchGrid& grid) {
+/// Where a patch stands and the side of the part of the picture that it stands for, working pixels.
+struct Place {
+  int x;
+  int y;
+  float side;
+};
+
+void add_place(const Place& place, const FeatureLevel& level, std::uint8_t level_index, PatchGrid& grid) {
   const float to_frame = 1.0F / level.scale;
-  const float side_px = side * to_frame;
+  const float side_px = place.side * to_frame;
   grid.level.push_back(level_index);
-  grid.x.push_back(static_cast<std::int16_t>(x));
-  grid.y.push_back(static_cast<std::int16_t>(y));
-  const float left = (static_cast<float>(x) + 0.5F) * to_frame - 0.5F * side_px;
-  const float top = (static_cast<float>(y) + 0.5F) * to_frame - 0.5F * side_px;
+  grid.x.push_back(static_cast<std::int16_t>(place.x));
+  grid.y.push_back(static_cast<std::int16_t>(place.y));
+  const float left = (static_cast<float>(place.x) + 0.5F) * to_frame - 0.5F * side_px;
+  const float top = (static_cast<float>(place.y) + 0.5F) * to_frame - 0.5F * side_px;
   grid.cell_px.emplace_back(left, top, side_px, side_px);
 }
 
@@ -105,7 +111,7 @@ void add_patches(const WorkingFrame& frame, const FeatureLevel& level, std::uint
     if (!level.holds(z) || !thinning.leaves(thinnings_survived(x / spacing.stride, y / spacing.stride), z)) return;
     const float side = sides[thinning.count(z)];
     const float side_metres = side * metres_per_px * z;
-    add_place(x, y, level, level_index, side, grid);
+    add_place({x, y, side}, level, level_index, grid);
     grid.scale.push_back(patch_scale(layout.patch, frame.camera.fx, z));
     grid.point_camera.emplace_back(frame.camera.backproject(x, y, z).cast<float>());
     grid.area.push_back(side_metres * side_metres);
@@ -132,7 +138,7 @@ void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level
   const std::int32_t scale = limited_scale(patch, patch.unit);
   reserve_places(frame.filled_depth.size(), stride, grid);
   for_places(frame.filled_depth.size(), stride, [&](int x, int y) {
-    add_place(x, y, level, 0, static_cast<float>(stride), grid);
+    add_place({x, y, static_cast<float>(stride)}, level, 0, grid);
     grid.scale.push_back(scale);
   });
 }

@@ -41,6 +41,7 @@ struct Walkers {
 
 /// Some of the patches, as they set out.
 struct Batch {
+  const FeatureImage* image;
   PerWalker<std::int32_t> centre;
   PerWalker<std::int32_t> scale;
   std::size_t count = 0;
@@ -48,6 +49,7 @@ struct Batch {
 
 Batch gather_batch(const WalkingPatches& patches, std::size_t first) {
   Batch batch;
+  batch.image = patches.image;
   batch.count = std::min(kMost, static_cast<std::size_t>(patches.count) - first);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const std::size_t p = first + i;
@@ -159,16 +161,15 @@ void take_step(Walkers& w) {
   }
 }
 
-void walk_tree(const PackedTrees& trees, std::size_t tree, const FeatureImage& image, const Batch& batch, Walkers& w,
-               std::int32_t* leaves) {
+void walk_tree(const PackedTrees& trees, std::size_t tree, const Batch& batch, Walkers& w, std::int32_t* leaves) {
   set_out(batch, trees.roots[tree], w);
   for (;;) {
     fetch_nodes(trees.nodes.data(), w.at.data(), w.count, w.nodes.data());
     close_up(w, leaves);
     if (w.count == 0) return;
-    find_pixels(image, w);
-    fetch_pixels(image.at(0, 0), w.first.data(), w.second.data(), w.count, w.first_values.data(),
-                 w.second_values.data());
+    find_pixels(*batch.image, w);
+    fetch_pixels(batch.image->at(0, 0),
+                 {w.first.data(), w.second.data(), w.first_values.data(), w.second_values.data()}, w.count);
     take_step(w);
   }
 }
@@ -179,7 +180,7 @@ void walk(const PackedTrees& trees, TreeRange range, const WalkingPatches& patch
   for (std::size_t first = 0; first < count; first += kMost) {
     const Batch batch = gather_batch(patches, first);
     for (std::size_t tree = range.first; tree < range.last; ++tree) {
-      walk_tree(trees, tree, *patches.image, batch, w, leaves + (tree - range.first) * count + first);
+      walk_tree(trees, tree, batch, w, leaves + (tree - range.first) * count + first);
     }
   }
 }

@@ -22,21 +22,25 @@ static_assert(sizeof(LeafVote) == 4 * sizeof(float) && sizeof(Vote) == 4 * sizeo
 
 /// From the frame of a patch's ray to that of the camera: a rotation and the patch's point.
 struct Motion {
-  Floats xx, xy, xz, x;
-  Floats yx, yy, yz, y;
-  Floats zx, zy, zz, z;
+  struct Row {
+    Floats x, y, z, origin;
+  };
+  Row x;
+  Row y;
+  Row z;
 };
 
 HWY_INLINE Motion motion_to(const Eigen::Vector3f& point) {
   const Float d;
   const Eigen::Matrix3f r = ray_rotation(point);
-  return {hn::Set(d, r(0, 0)), hn::Set(d, r(0, 1)), hn::Set(d, r(0, 2)), hn::Set(d, point.x()),
-          hn::Set(d, r(1, 0)), hn::Set(d, r(1, 1)), hn::Set(d, r(1, 2)), hn::Set(d, point.y()),
-          hn::Set(d, r(2, 0)), hn::Set(d, r(2, 1)), hn::Set(d, r(2, 2)), hn::Set(d, point.z())};
+  const auto row = [&](int i) HWY_ATTR {
+    return Motion::Row{hn::Set(d, r(i, 0)), hn::Set(d, r(i, 1)), hn::Set(d, r(i, 2)), hn::Set(d, point[i])};
+  };
+  return {row(0), row(1), row(2)};
 }
 
-HWY_INLINE Floats moved(Floats ax, Floats ay, Floats az, Floats origin, Floats x, Floats y, Floats z) {
-  return hn::Add(origin, hn::Add(hn::Mul(ax, x), hn::Add(hn::Mul(ay, y), hn::Mul(az, z))));
+HWY_INLINE Floats moved(const Motion::Row& to, Floats x, Floats y, Floats z) {
+  return hn::Add(to.origin, hn::Add(hn::Mul(to.x, x), hn::Add(hn::Mul(to.y, y), hn::Mul(to.z, z))));
 }
 
 /// The cells in which centres are seen.
@@ -59,21 +63,22 @@ struct Ballot {
   float probability;  // p(class | leaf)
   float share;        // of one tree
   std::uint32_t voter;
+  const CellGrid& grid;
 };
 
 /// Writes the votes of one vector's leaf votes to the place `at`.
-HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, const Ballot& ballot, const CellGrid& grid,
-                          std::size_t at, CastVotes& cast) {
+HWY_INLINE void cast_some(const float* leaf_votes, const Motion& m, const Ballot& ballot, std::size_t at,
+                          CastVotes& cast) {
   const Float d;
   const Int di;
   Floats x, y, z, weight;
   hn::LoadInterleaved4(d, leaf_votes, x, y, z, weight);
-  const Floats cx = moved(m.xx, m.xy, m.xz, m.x, x, y, z);
-  const Floats cy = moved(m.yx, m.yy, m.yz, m.y, x, y, z);
-  const Floats cz = moved(m.zx, m.zy, m.zz, m.z, x, y, z);
+  const Floats cx = moved(m.x, x, y, z);
+  const Floats cy = moved(m.y, x, y, z);
+  const Floats cz = moved(m.z, x, y, z);
   const Floats w = hn::Mul(hn::Mul(hn::Set(d, ballot.probability), weight), hn::Set(d, ballot.share));
   hn::StoreInterleaved4(cx, cy, cz, w, d, cast.votes[at].centre_camera.data());
-  hn::StoreU(cells_of(cx, cy, cz, grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
+  hn::StoreU(cells_of(cx, cy, cz, ballot.grid), di, reinterpret_cast<std::int32_t*>(cast.cells.data() + at));
   hn::StoreU(hn::Set(di, static_cast<std::int32_t>(ballot.voter)), di,
              reinterpret_cast<std::int32_t*>(cast.voters.data() + at));
 }
@@ -89,13 +94,14 @@ HWY_INLINE void prefetch_ahead(const Forest& forest, const std::vector<Voter>& v
 }
 
 /// Casts the votes of voters from `first` on, as many as there is room for; returns the first who did not vote.
-std::size_t cast_from(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters,
-                      std::size_t first, const CellGrid& grid, CastVotes& cast) {
+std::size_t cast_from(const CastInput& input, std::size_t first, CastVotes& cast) {
+  const Forest& forest = input.forest;
+  const std::vector<Voter>& voters = input.voters;
   constexpr std::size_t kLanes = hn::MaxLanes(Float());
   static_assert(kLanes <= CastVotes::kSlack);
   const float share = 1.0F / static_cast<float>(forest.roots.size());
   std::uint32_t patch = voters[first].patch;
-  Motion motion = motion_to(patches.point_camera[patch]);
+  Motion motion = motion_to(input.patches.point_camera[patch]);
   std::size_t count = cast.count;
   const std::size_t room = cast.votes.size() - CastVotes::kSlack;
   std::size_t i = first;
@@ -103,8 +109,8 @@ std::size_t cast_from(const Forest& forest, const PatchGrid& patches, const std:
     prefetch_ahead(forest, voters, i);
     const LeafClass& entry = forest.leaf_classes[voters[i].leaf_class];
     if (count + entry.vote_count > room) break;
-    if (voters[i].patch != patch) motion = motion_to(patches.point_camera[patch = voters[i].patch]);
-    const Ballot ballot{entry.probability, share, static_cast<std::uint32_t>(i)};
+    if (voters[i].patch != patch) motion = motion_to(input.patches.point_camera[patch = voters[i].patch]);
+    const Ballot ballot{entry.probability, share, static_cast<std::uint32_t>(i), input.grid};
     for (std::size_t v = 0; v < entry.vote_count; v += kLanes) {
       const LeafVote* votes = forest.votes.data() + entry.first_vote + v;
       std::array<LeafVote, kLanes> last;
@@ -112,7 +118,7 @@ std::size_t cast_from(const Forest& forest, const PatchGrid& patches, const std:
         std::copy(votes, forest.votes.data() + forest.votes.size(), last.begin());
         votes = last.data();
       }
-      cast_some(votes->offset.data(), motion, ballot, grid, count + v, cast);
+      cast_some(votes->offset.data(), motion, ballot, count + v, cast);
     }
     count += entry.vote_count;
   }
@@ -136,17 +142,16 @@ CellGrid::CellGrid(const Camera& camera, int cell_px)
       cx(static_cast<float>((camera.cx + 0.5) / cell_px)),
       cy(static_cast<float>((camera.cy + 0.5) / cell_px)) {}
 
-void cast_all(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters, const CellGrid& grid,
-              CastVotes& cast) {
+void cast_all(const CastInput& input, CastVotes& cast) {
   constexpr std::size_t kMostPerVoter = UINT8_MAX;
   cast.count = 0;
-  for (std::size_t next = 0; next < voters.size();) {
+  for (std::size_t next = 0; next < input.voters.size();) {
     if (cast.count + kMostPerVoter + CastVotes::kSlack > cast.votes.size()) {
       cast.votes.resize(2 * cast.votes.size() + kMostPerVoter + CastVotes::kSlack);
       cast.cells.resize(cast.votes.size());
       cast.voters.resize(cast.votes.size());
     }
-    next = HWY_DYNAMIC_DISPATCH(cast_from)(forest, patches, voters, next, grid, cast);
+    next = HWY_DYNAMIC_DISPATCH(cast_from)(input, next, cast);
   }
 }
 

@@ -21,9 +21,16 @@ struct CellGrid {
   float cy = 0.0F;
 };
 
+/// Who casts votes, and where to.
+struct CastInput {
+  const Forest& forest;
+  const PatchGrid& patches;
+  const std::vector<Voter>& voters;
+  const CellGrid& grid;
+};
+
 /// Casts the votes of all voters, several at once: the same on every machine, since each vote's numbers depend on it
 /// alone. What `cast` held is overwritten and its memory used again.
-void cast_all(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters, const CellGrid& grid,
-              CastVotes& cast);
+void cast_all(const CastInput& input, CastVotes& cast);
 
 }  // namespace houghstream

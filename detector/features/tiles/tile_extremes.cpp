@@ -11,16 +11,22 @@ namespace houghstream::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Extremes of `side` vectors, `step` values apart.
+template <class V>
+struct Extremes {
+  V most;
+  V least;
+};
+
+/// Of `side` vectors, `step` values apart.
 template <int kSide, class D, typename T, class V = hn::Vec<D>>
-HWY_INLINE void extremes(D d, const T* largest, const T* smallest, std::ptrdiff_t step, int side, V& most, V& least) {
-  most = hn::LoadU(d, largest);
-  least = hn::LoadU(d, smallest);
+HWY_INLINE Extremes<V> extremes(D d, const T* largest, const T* smallest, std::ptrdiff_t step, int side) {
+  Extremes<V> found{hn::LoadU(d, largest), hn::LoadU(d, smallest)};
   const int count = kSide > 0 ? kSide : side;
   for (int i = 1; i < count; ++i) {
-    most = hn::Max(most, hn::LoadU(d, largest + i * step));
-    least = hn::Min(least, hn::LoadU(d, smallest + i * step));
+    found.most = hn::Max(found.most, hn::LoadU(d, largest + i * step));
+    found.least = hn::Min(found.least, hn::LoadU(d, smallest + i * step));
   }
+  return found;
 }
 
 /// Calls store(largest, smallest, x, y) for each vector of pixels. `kSide` is that of the neighbourhood where it is
@@ -33,18 +39,16 @@ HWY_INLINE void for_extremes(D d, const TilePlane<T>& plane, Neighbourhood aroun
   T* largest = largest_of_columns + kWidestMargin;
   T* smallest = smallest_of_columns + kWidestMargin;
   const int before = around.before();
-  hn::Vec<D> most;
-  hn::Vec<D> least;
   for (int y = 0; y < plane.height(); ++y) {
     const T* first = plane.row(y - before);
     for (int x = -before; x < plane.width() + around.after(); x += lanes) {
-      extremes<kSide>(d, first + x, first + x, plane.stride(), around.side, most, least);
-      hn::StoreU(most, d, largest + x);
-      hn::StoreU(least, d, smallest + x);
+      const auto column = extremes<kSide>(d, first + x, first + x, plane.stride(), around.side);
+      hn::StoreU(column.most, d, largest + x);
+      hn::StoreU(column.least, d, smallest + x);
     }
     for (int x = 0; x < plane.width(); x += lanes) {
-      extremes<kSide>(d, largest + x - before, smallest + x - before, 1, around.side, most, least);
-      store(most, least, x, y);
+      const auto square = extremes<kSide>(d, largest + x - before, smallest + x - before, 1, around.side);
+      store(square.most, square.least, x, y);
     }
   }
 }
@@ -59,15 +63,15 @@ HWY_INLINE void for_all_extremes(D d, const TilePlane<T>& plane, Neighbourhood a
   }
 }
 
-void bytes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, int largest, int smallest, TileRows& rows) {
+void bytes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, ExtremePlanes planes, TileRows& rows) {
   const hn::CappedTag<std::uint8_t, TilePlane<std::uint8_t>::kVector> d;
   for_all_extremes(d, plane, around, [&](auto most, auto least, int x, int y) HWY_ATTR {
-    hn::StoreU(most, d, rows.row(y, largest) + x);
-    hn::StoreU(least, d, rows.row(y, smallest) + x);
+    hn::StoreU(most, d, rows.row(y, planes.largest) + x);
+    hn::StoreU(least, d, rows.row(y, planes.smallest) + x);
   });
 }
 
-void steps(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes kind, int largest, int smallest,
+void steps(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes kind, ExtremePlanes planes,
            TileRows& rows) {
   const hn::CappedTag<std::uint16_t, TilePlane<std::uint16_t>::kVector / 2> d;
   const hn::Rebind<std::uint8_t, decltype(d)> half;
@@ -77,8 +81,8 @@ void steps(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepByte
     return hn::DemoteTo(half, hn::BitCast(hn::RebindToSigned<decltype(d)>(), limited));
   };
   for_all_extremes(d, plane, around, [&](auto most, auto least, int x, int y) HWY_ATTR {
-    hn::StoreU(to_byte(most), half, rows.row(y, largest) + x);
-    hn::StoreU(to_byte(least), half, rows.row(y, smallest) + x);
+    hn::StoreU(to_byte(most), half, rows.row(y, planes.largest) + x);
+    hn::StoreU(to_byte(least), half, rows.row(y, planes.smallest) + x);
   });
 }
 
@@ -91,14 +95,13 @@ namespace houghstream {
 HWY_EXPORT(bytes);
 HWY_EXPORT(steps);
 
-void byte_extremes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, int largest, int smallest,
-                   TileRows& rows) {
-  HWY_DYNAMIC_DISPATCH(bytes)(plane, around, largest, smallest, rows);
+void byte_extremes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, ExtremePlanes planes, TileRows& rows) {
+  HWY_DYNAMIC_DISPATCH(bytes)(plane, around, planes, rows);
 }
 
-void step_extremes(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes bytes, int largest,
-                   int smallest, TileRows& rows) {
-  HWY_DYNAMIC_DISPATCH(steps)(plane, around, bytes, largest, smallest, rows);
+void step_extremes(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes bytes, ExtremePlanes planes,
+                   TileRows& rows) {
+  HWY_DYNAMIC_DISPATCH(steps)(plane, around, bytes, planes, rows);
 }
 
 }  // namespace houghstream

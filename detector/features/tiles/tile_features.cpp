@@ -40,7 +40,7 @@ void TileFeatures::compute(const TileSources& sources, cv::Rect part) {
 }
 
 void TileFeatures::add_extremes(const TilePlane<std::uint8_t>& plane, int first, int index, int count) {
-  byte_extremes(plane, around_, first + index, first + count + index, rows_);
+  byte_extremes(plane, around_, {first + index, first + count + index}, rows_);
 }
 
 void TileFeatures::add_intensity(const TileSources& sources, const FeatureBlock& block) {
@@ -101,7 +101,7 @@ void TileFeatures::add_depth_value(const TileSources& sources, const FeatureBloc
   steps_.reset(part_.size(), around_.before());
   const DepthSteps steps = depth_steps(sources.frame, sources.settings);
   count_steps(metres_, steps.metres, steps_);
-  step_extremes(steps_, around_, steps.bytes, block.first, block.first + 1, rows_);
+  step_extremes(steps_, around_, steps.bytes, {block.first, block.first + 1}, rows_);
 }
 
 void TileFeatures::add_base(const std::vector<cv::Mat>& base, const FeatureBlock& block) {

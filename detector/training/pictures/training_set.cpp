@@ -74,6 +74,21 @@ void measure_classes(const std::vector<TrainingPicture>& pictures, TrainingSet& 
   }
 }
 
+/// Moves the pictures and their samples to the set.
+void take_samples(std::vector<TrainingPicture>& pictures, TrainingSet& set) {
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    for (TrainingSample& sample : pictures[i].samples) {
+      sample.picture = static_cast<std::int32_t>(i);
+      set.samples.push_back(sample);
+    }
+    for (TrainingSample& sample : pictures[i].spare_background) {
+      sample.picture = static_cast<std::int32_t>(i);
+      set.spare_background.push_back(sample);
+    }
+    set.pictures.push_back(std::move(pictures[i].features));
+  }
+}
+
 }  // namespace
 
 TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile) {
@@ -116,17 +131,7 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     }
   });
   measure_classes(pictures, set);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    for (TrainingSample& sample : pictures[i].samples) {
-      sample.picture = static_cast<std::int32_t>(i);
-      set.samples.push_back(sample);
-    }
-    for (TrainingSample& sample : pictures[i].spare_background) {
-      sample.picture = static_cast<std::int32_t>(i);
-      set.spare_background.push_back(sample);
-    }
-    set.pictures.push_back(std::move(pictures[i].features));
-  }
+  take_samples(pictures, set);
   return set;
 }
 

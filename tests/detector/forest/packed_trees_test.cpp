@@ -74,7 +74,7 @@ TEST(PackedTrees, NodesAndPixelsAreFetched) {
   const std::vector<std::int32_t> second = {0, 0, 1};
   std::vector<std::uint8_t> first_values(3);
   std::vector<std::uint8_t> second_values(3);
-  fetch_pixels(pixels.data() + 1, first.data(), second.data(), 3, first_values.data(), second_values.data());
+  fetch_pixels(pixels.data() + 1, {first.data(), second.data(), first_values.data(), second_values.data()}, 3);
   EXPECT_EQ(first_values, (std::vector<std::uint8_t>{30, 10, 20}));
   EXPECT_EQ(second_values, (std::vector<std::uint8_t>{20, 20, 30}));
 }

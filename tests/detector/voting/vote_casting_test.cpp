@@ -51,7 +51,7 @@ std::uint32_t cell_of(const Eigen::Vector3f& centre, const CellGrid& grid) {
 void expect_as_one_by_one(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters) {
   const CellGrid grid(kCamera, 2);
   CastVotes cast;
-  cast_all(forest, patches, voters, grid, cast);
+  cast_all({forest, patches, voters, grid}, cast);
   std::size_t v = 0;
   std::size_t outside = 0;
   for (std::uint32_t i = 0; i < voters.size(); ++i) {
@@ -93,7 +93,7 @@ TEST(VoteCasting, ManyAtOnceAreAsOneByOneOnEveryMachine) {
 TEST(VoteCasting, NobodyCastsNothing) {
   CastVotes cast;
   cast.count = 7;
-  cast_all({}, {}, {}, CellGrid(kCamera, 2), cast);
+  cast_all({{}, {}, {}, CellGrid(kCamera, 2)}, cast);
   EXPECT_EQ(cast.count, 0U);
 }
 

@@ -25,7 +25,7 @@ TEST(TileExtremes, ReachHalfTheSideAndFartherLeftWhereItIsEven) {
   const TilePlane<std::uint8_t> plane = plane_with_a_peak<std::uint8_t>(200, 3);
   TileRows rows;
   rows.reset({kWidth, kHeight}, 2);
-  byte_extremes(plane, {5}, 0, 1, rows);
+  byte_extremes(plane, {5}, {0, 1}, rows);
   EXPECT_EQ(rows.row(3, 0)[18], 200);
   EXPECT_EQ(rows.row(3, 0)[22], 200);
   EXPECT_EQ(rows.row(1, 0)[20], 200);
@@ -33,7 +33,7 @@ TEST(TileExtremes, ReachHalfTheSideAndFartherLeftWhereItIsEven) {
   EXPECT_EQ(rows.row(3, 1)[20], 9);
   EXPECT_EQ(rows.row(1, 1)[1], 0);
   EXPECT_EQ(rows.row(2, 1)[1], 9);
-  byte_extremes(plane, {4}, 0, 1, rows);
+  byte_extremes(plane, {4}, {0, 1}, rows);
   EXPECT_EQ(rows.row(3, 0)[22], 200);
   EXPECT_EQ(rows.row(3, 0)[19], 200);
   EXPECT_EQ(rows.row(3, 0)[18], 9);
@@ -43,10 +43,10 @@ TEST(TileExtremes, StepsBecomeBytesAfterwards) {
   const TilePlane<std::uint16_t> plane = plane_with_a_peak<std::uint16_t>(300, 1);
   TileRows rows;
   rows.reset({kWidth, kHeight}, 2);
-  step_extremes(plane, {3}, StepBytes::kWrapped, 0, 1, rows);
+  step_extremes(plane, {3}, StepBytes::kWrapped, {0, 1}, rows);
   EXPECT_EQ(rows.row(3, 0)[21], 300 - 256);
   EXPECT_EQ(rows.row(3, 1)[21], 9);
-  step_extremes(plane, {3}, StepBytes::kLimited, 0, 1, rows);
+  step_extremes(plane, {3}, StepBytes::kLimited, {0, 1}, rows);
   EXPECT_EQ(rows.row(3, 0)[21], 255);
 }
 
