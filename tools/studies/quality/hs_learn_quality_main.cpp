@@ -63,9 +63,10 @@ void run(const LearnOptions& options) {
   const quality::Learnt learnt = quality::learn_quality(gather(options));
   const quality::Published published = quality::published_from(learnt.checked, learnt.settings.least);
   fmt::print(
-      "// {} poses in {} scenes, {} right; from {:.2f} on {} of {} right in scenes that the fit has not seen\n{}",
+      "// {} poses in {} scenes, {} right; from {:.2f} on {} of {} right in scenes that the fit has not seen\n"
+      "// the numbers in use: {} of {} right\n{}",
       learnt.examples, learnt.scenes, learnt.right, learnt.settings.least, published.right, published.poses,
-      quality::to_initialisers(learnt.settings));
+      learnt.in_use.right, learnt.in_use.poses, quality::to_initialisers(learnt.settings));
   if (!options.out.empty()) write_json(quality::to_json(learnt), options.out);
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
@@ -62,6 +64,11 @@ std::string to_braces(const QualityTerms& terms) {
   return "{" + text + "}";
 }
 
+OrderedJson to_json(const Published& published) {
+  return {
+      {"poses", published.poses}, {"right", published.right}, {"right_share", finite_or_null(published.right_share())}};
+}
+
 OrderedJson to_json(const QualityTerms& terms) {
   OrderedJson out = OrderedJson::object();
   for (std::size_t i = 0; i < kQualityTerms.size(); ++i) out[kNames[i]] = terms.*kQualityTerms[i];
@@ -92,6 +99,14 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
   return settings;
 }
 
+std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples) {
+  std::vector<CheckedPose> checked;
+  for (const Example& example : examples) {
+    checked.push_back({pose_quality(example.terms, settings), example.is_right});
+  }
+  return checked;
+}
+
 std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, int parts) {
   const std::vector<std::string> scenes = scenes_of(examples);
   require(static_cast<int>(scenes.size()) >= parts,
@@ -102,13 +117,12 @@ std::vector<CheckedPose> check_by_scene(const std::vector<Example>& examples, in
       const auto at = std::find(scenes.begin(), scenes.end(), example.scene) - scenes.begin();
       return at % parts == part;
     };
+    std::vector<Example> judged;
     std::vector<Example> others;
-    std::copy_if(examples.begin(), examples.end(), std::back_inserter(others),
-                 [&](const Example& example) { return !is_judged(example); });
-    const QualitySettings settings = fit_quality(others);
-    for (const Example& example : examples) {
-      if (is_judged(example)) checked.push_back({pose_quality(example.terms, settings), example.is_right});
-    }
+    std::partition_copy(examples.begin(), examples.end(), std::back_inserter(judged), std::back_inserter(others),
+                        is_judged);
+    const std::vector<CheckedPose> here = check_by(fit_quality(others), judged);
+    checked.insert(checked.end(), here.begin(), here.end());
   }
   return checked;
 }
@@ -145,6 +159,8 @@ Learnt learn_quality(const std::vector<Example>& examples) {
   require(least.has_value(), "{} poses: from no quality are {:.0f} % of those in unseen scenes right", examples.size(),
           100.0 * kRightShare);
   learnt.settings.least = *least;
+  const QualitySettings in_use;
+  learnt.in_use = published_from(check_by(in_use, examples), in_use.least);
   return learnt;
 }
 
@@ -159,14 +175,13 @@ OrderedJson to_json(const Learnt& learnt) {
   out["bias"] = learnt.settings.bias;
   out["weights"] = to_json(learnt.settings.weights);
   out["typical"] = to_json(learnt.settings.typical);
-  out["least"] = learnt.settings.least;
+  out["least"] = std::round(static_cast<double>(learnt.settings.least) * kRoundSteps) / kRoundSteps;
+  out["in_use"] = to_json(learnt.in_use);
   out["published"] = OrderedJson::array();
   for (int step = 1; step < kRoundSteps; ++step) {
-    const Published published = published_from(learnt.checked, round_quality(step));
-    out["published"].push_back({{"from", round_quality(step)},
-                                {"poses", published.poses},
-                                {"right", published.right},
-                                {"right_share", finite_or_null(published.right_share())}});
+    OrderedJson row = {{"from", static_cast<double>(step) / kRoundSteps}};
+    row.update(to_json(published_from(learnt.checked, round_quality(step))));
+    out["published"].push_back(row);
   }
   return out;
 }

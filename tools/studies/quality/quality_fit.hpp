@@ -20,11 +20,14 @@ struct Example {
 /// and some are wrong.
 QualitySettings fit_quality(const std::vector<Example>& examples);
 
-/// A pose with the quality that a fit which has not seen its scene gives it.
+/// A pose with the quality that a fit gives it.
 struct CheckedPose {
   float quality = 0.0F;
   bool is_right = false;
 };
+
+/// The examples as these settings judge them, in their order.
+std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples);
 
 /// Every `parts`-th scene, in the order in which the examples bring them, is judged by a fit of the others, until all
 /// are. Throws InputError where there are fewer scenes than parts, and as fit_quality().
@@ -47,7 +50,8 @@ struct Learnt {
   int examples = 0;
   int right = 0;
   QualitySettings settings;
-  std::vector<CheckedPose> checked;
+  std::vector<CheckedPose> checked;  ///< each by a fit that has not seen its scene
+  Published in_use;                  ///< by the numbers that hs-pose uses today, from their `least` on
 };
 
 /// fit_quality(), and its `least` by four parts of the scenes. Throws InputError as those, and where no quality is
@@ -57,8 +61,9 @@ Learnt learn_quality(const std::vector<Example>& examples);
 /// The initialisers of QualitySettings' members in C++.
 std::string to_initialisers(const QualitySettings& settings);
 
-/// {"scenes", "examples", "right", "bias", "weights": {TERM: }, "typical": {TERM: }, "least", "published": [{"from",
-/// "poses", "right", "right_share"}]}; the last of scenes that the fit has not seen.
+/// {"scenes", "examples", "right", "bias", "weights": {TERM: }, "typical": {TERM: }, "least", "in_use": {"poses",
+/// "right", "right_share"}, "published": [{"from", "poses", "right", "right_share"}]}; the last in scenes that the fit
+/// has not seen.
 OrderedJson to_json(const Learnt& learnt);
 
 }  // namespace houghstream::quality

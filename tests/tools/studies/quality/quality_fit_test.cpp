@@ -14,11 +14,11 @@ namespace {
 const QualityTerms kWeights = {1.5, 0.5, 1.0, -0.5, 2.0, 1.0};
 constexpr double kBias = -1.0;
 
-/// Right as often as kWeights and kBias say; `scenes` of equal size.
-std::vector<Example> drawn(int count, int scenes) {
+/// Right as often as kWeights and kBias say, times `certainty`; `scenes` of equal size.
+std::vector<Example> drawn(int count, int scenes, double certainty = 1.0) {
   QualitySettings truth;
-  truth.weights = kWeights;
-  truth.bias = kBias;
+  truth.bias = certainty * kBias;
+  for (const auto term : kQualityTerms) truth.weights.*term = certainty * (kWeights.*term);
   Random random(7);
   std::vector<Example> examples(count);
   for (int i = 0; i < count; ++i) {
@@ -92,8 +92,24 @@ TEST(QualityFit, TheLeastQualityIsTheFirstRoundOneFromWhichEnoughAreRight) {
   EXPECT_EQ(least_quality({{0.9F, false}}, 0.98), std::nullopt);
 }
 
+TEST(QualityFit, ExamplesAreJudgedByTheSettingsGiven) {
+  std::vector<Example> examples(2);
+  examples[1].terms.outline = 3.0;
+  examples[1].is_right = true;
+  QualitySettings settings;
+  settings.bias = 0.0;
+  settings.weights = {};
+  settings.weights.outline = 1.0;
+  const std::vector<CheckedPose> checked = check_by(settings, examples);
+  EXPECT_EQ(checked[0].quality, 0.5F);
+  EXPECT_NEAR(checked[1].quality, 0.9526F, 1e-4F);
+  EXPECT_TRUE(checked[1].is_right);
+  EXPECT_FALSE(checked[0].is_right);
+}
+
 TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
-  Learnt learnt = learn_quality(drawn(8000, 4));
+  EXPECT_THROW(learn_quality(drawn(8000, 4)), InputError) << "from no quality are 98 % right";
+  Learnt learnt = learn_quality(drawn(8000, 4, 10.0));
   EXPECT_EQ(std::tuple(learnt.scenes, learnt.examples), std::tuple(4, 8000));
   learnt.settings.weights = kWeights;
   learnt.settings.bias = -3.711;
@@ -108,7 +124,8 @@ TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
   EXPECT_EQ(json["weights"]["chroma_shift"], 2.0);
   EXPECT_EQ(json["weights"]["outline"], -0.5);
   EXPECT_EQ(json["published"].size(), 19U);
-  EXPECT_EQ(json["published"][0]["from"], 0.05F);
+  EXPECT_EQ(json["published"][0]["from"], 0.05);
+  EXPECT_EQ(json["least"], 0.6);
 }
 
 }  // namespace
