@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <fstream>
+
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "pipeline/base/checks.hpp"
@@ -90,8 +93,8 @@ TEST(OniSource, EndsSoonWhenAskedThoughTheNextImageNeverComes) {
   const Recording recording = record(camera, 20, false);
   {
     std::fstream file(recording.file, std::ios::in | std::ios::out | std::ios::binary);
-    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(recording.file) / 2));
-    file << std::string(std::filesystem::file_size(recording.file) / 4, '\0');
+    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(recording.file) / 8));
+    file << std::string(std::filesystem::file_size(recording.file) / 10, '\0');
   }
   using Clock = std::chrono::steady_clock;
   Clock::time_point stop_at = Clock::time_point::max();
