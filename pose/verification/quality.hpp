@@ -38,9 +38,10 @@ inline constexpr std::array<double QualityTerms::*, 6> kQualityTerms = {
     &QualityTerms::chroma_shift,       &QualityTerms::contrast};
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
-/// (tools/studies/quality) learns these numbers; the present ones are of 1482 poses of detections from score 0.1 on in
-/// the scenes development_world_0 to 17, of which 773 were right. `least` is the round number from which 98 % of the
-/// poses are right in scenes that the fit has not seen (a quarter in turn).
+/// (tools/studies/quality) learns these numbers, `least` as the round number from which 98 % of the poses are right in
+/// scenes that the fit has not seen (a quarter in turn), and tells how those below do. They are of 1482 poses of
+/// detections from score 0.1 on in the scenes development_world_0 to 17, of which 773 were right, and hold for the
+/// detector's scores as they were then.
 struct QualitySettings {
   double bias = -3.71;
   QualityTerms weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16};
