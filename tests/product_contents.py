@@ -10,7 +10,8 @@ import sys
 
 ON_THE_ROBOT = ("hs-capture", "hs-detect", "hs-pose", "hs-view", "hs-stream", "hs-log", "hs-doctor")
 TEACHING = ("hs-train", "hs-evaluate", "hs-fuse")
-STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl|reference_engine")
+STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl|reference_engine"
+                     r"|make_named_scene|light_world")
 PCL = re.compile(r"\blibpcl_\w+|\blibvtk\w*")
 
 
