@@ -80,8 +80,8 @@ void run(const EvaluateOptions& options) {
   const std::vector<std::string> classes = listed_classes(options, forest, frames);
   const std::map<std::string, Mesh> meshes =
       options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
-  const PublishedResults results =
-      options.log.empty() ? search_in_process(options, scene, *forest, meshes) : read_result_log(options.log, options.channel);
+  const PublishedResults results = options.log.empty() ? search_in_process(options, scene, *forest, meshes)
+                                                       : read_result_log(options.log, options.channel);
   const std::string source = options.log.empty() ? options.scene : options.log;
   frames = every_nth(std::move(frames), options.every);
   add_results(frames, results, source);
