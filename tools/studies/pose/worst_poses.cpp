@@ -42,7 +42,7 @@ cv::Mat draw_trial(const PoseTrial& trial, const RgbdFrame& frame, const Mesh& m
   constexpr int kHeight = 270;
   constexpr int kLine = 17;
   cv::Mat image = frame.colour.clone();
-  draw_outline(image, mesh, *trial.T_camera_object, frame.camera, class_colour(trial.class_id));
+  draw_outline(image, mesh, *trial.T_camera_object, frame.camera, view::class_colour(trial.class_id));
   cv::Mat tile(kHeight + 2 * kLine + 4, kWidth, CV_8UC3, cv::Scalar::all(0));
   cv::Mat picture = tile.rowRange(0, kHeight);
   cv::resize(image(surroundings(trial.box_px, image.size())), picture, picture.size(), 0, 0, cv::INTER_LINEAR);

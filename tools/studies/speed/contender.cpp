@@ -105,7 +105,7 @@ Contender parse_contender(const std::string& text) {
 RgbdFrame resized_frame(const RgbdFrame& frame, double scale) {
   if (scale == 1.0) return frame;
   RgbdFrame out;
-  out.frame = frame.id;
+  out.id = frame.id;
   out.camera = frame.camera.scaled(scale);
   const cv::Size size(out.camera.width, out.camera.height);
   cv::resize(frame.colour, out.colour, size, 0.0, 0.0, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
