@@ -96,14 +96,9 @@ void run(const EvaluateOptions& options) {
   if (!options.forest.empty()) forest = load_forest(options.forest);
   const std::map<std::string, Mesh> meshes =
       options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
-<<<<<<< HEAD
   const NamedSide truth{"the scene " + options.scene, true_names(frames)};
   const std::vector<std::string> classes = listed_classes(options, forest, truth, meshes);
   const PublishedResults results = read_results(options, scene, forest, meshes);
-=======
-  const PublishedResults results = options.log.empty() ? search_in_process(options, scene, *forest, meshes)
-                                                       : read_result_log(options.log, options.channel);
->>>>>>> frames
   const std::string source = options.log.empty() ? options.scene : options.log;
   const std::set<std::string> detected = detected_names(results.detections);
   if (!forest && !detected.empty() && !truth.names.empty()) require_shared_name({"the log " + source, detected}, truth);
