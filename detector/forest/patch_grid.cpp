@@ -143,16 +143,15 @@ void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level
   });
 }
 
-std::vector<PatchRun> patch_runs(const PatchGrid& patches) {
+void list_runs(const PatchGrid& patches, std::vector<PatchRun>& runs) {
   constexpr std::size_t kPatches = 512;
-  std::vector<PatchRun> runs;
+  runs.clear();
   for (std::size_t begin = 0; begin < patches.size();) {
     std::size_t end = begin;
     while (end < patches.size() && end - begin < kPatches && patches.level[end] == patches.level[begin]) ++end;
     runs.push_back({begin, end - begin});
     begin = end;
   }
-  return runs;
 }
 
 }  // namespace houghstream

@@ -54,6 +54,6 @@ void add_patches_everywhere(const WorkingFrame& frame, const FeatureLevel& level
                             int stride, PatchGrid& grid);
 
 /// The grid in runs small enough for their pixels to stay in the cache from tree to tree.
-std::vector<PatchRun> patch_runs(const PatchGrid& patches);
+void list_runs(const PatchGrid& patches, std::vector<PatchRun>& runs);
 
 }  // namespace houghstream

@@ -93,7 +93,8 @@ void PatchPosteriors::note(const RunLeaves& seen) {
 
 void find_posteriors(const PosteriorInput& input, const Engine& engine, LeafMemory& memory,
                      PatchPosteriors& posteriors) {
-  const std::vector<PatchRun> runs = patch_runs(input.patches);
+  std::vector<PatchRun>& runs = memory.runs;
+  list_runs(input.patches, runs);
   const EarlyEnd early_end{input.settings.first_trees, input.settings.min_first_share};
   posteriors.reset(input.forest, runs.size(), input.settings.min_class_share, input.threads);
   engine.leaves({input.forest, input.features, input.patches, runs, early_end}, input.threads, memory,

@@ -51,6 +51,7 @@ struct LeafMemory {
     std::vector<std::int16_t> y;
     std::vector<std::int32_t> scale;
   };
+  std::vector<PatchRun> runs;  ///< see find_posteriors
   PerWorker<Worker> workers;
 };
 

@@ -20,7 +20,8 @@ namespace {
 std::vector<std::int32_t> leaves_of(const Forest& forest, const std::vector<FeatureImage>& features,
                                     const PatchGrid& patches, int threads, const EarlyEnd& early_end = {}) {
   const std::size_t trees = forest.roots.size();
-  const std::vector<PatchRun> runs = patch_runs(patches);
+  std::vector<PatchRun> runs;
+  list_runs(patches, runs);
   std::vector<std::int32_t> leaves(patches.size() * trees, -1);
   const auto visit = [&](const RunLeaves& seen) {
     for (std::size_t i = 0; i < seen.count; ++i) {
