@@ -62,7 +62,7 @@ TEST(RegisterPcl, IsAnEngineOfTheEstimator) {
   for (int i = 0; i < 3; ++i) {
     const RegistrationScene scene(cereal_box(), -0.13, standing(70.0 * i + 20.0, 30.0, 0.8 + 0.2 * i));
     Detections detections;
-    detections.utime = scene.frame.utime;
+    detections.frame = scene.frame.id;
     detections.detections = {detection_of("box", scene.object, scene.truth, 200 + i)};
     const ObjectPose found = estimator.estimate(scene.frame, detections).poses.at(0);
     ASSERT_EQ(found.status, PoseStatus::kValid) << to_string(found.status);
