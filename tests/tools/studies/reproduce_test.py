@@ -165,23 +165,23 @@ class Resuming(Case):
         only = ("--quick", "--only", "evaluate_every_3/paper/desk_1")
         self.run_it(*only)
         before = len(self.calls())
-        with open(self.folder / "bin" / "hs-study-train", "a") as program:
+        with open(self.folder / "bin" / "hs-train", "a") as program:
             program.write("# another build\n")
         self.run_it(*only, **environment)
         return [call.split()[0] for call in self.calls()[before:]]
 
     def test_another_build_that_makes_something_else_makes_everything_after_it_again(self):
         calls = self.calls_after_another_build(REPRODUCE_FAKE_DIFFERS="1")
-        self.assertEqual(calls, ["hs-study-train", "hs-study-evaluate"])
+        self.assertEqual(calls, ["hs-train", "hs-evaluate"])
 
     def test_another_build_that_makes_the_same_makes_nothing_after_it_again(self):
-        self.assertEqual(self.calls_after_another_build(), ["hs-study-train"])
+        self.assertEqual(self.calls_after_another_build(), ["hs-train"])
 
 
 class Choosing(Case):
     def test_only_runs_what_is_needed_and_the_rest_is_named_as_missing(self):
         self.assertEqual(self.run_it("--quick", "--only", "evaluate_every_3/paper/desk_1").returncode, 0)
-        self.assertEqual([call.split()[0] for call in self.calls()].count("hs-study-evaluate"), 1)
+        self.assertEqual([call.split()[0] for call in self.calls()].count("hs-evaluate"), 1)
         summary = self.summary()
         self.assertIsNotNone(summary["auc"]["paper"]["desk_1"])
         self.assertIsNone(summary["auc"]["gall"]["desk_1"])
