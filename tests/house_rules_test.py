@@ -1,10 +1,9 @@
 """Plants faults in a small copy of the house and expects each to be found."""
 
-import pathlib
-import tempfile
 import unittest
 
 import house_rules
+import planted
 
 GOOD = {
     "README.md": "A house.\n",
@@ -24,14 +23,8 @@ WRONG = {
 
 
 def faults_with(extra, left_out=()):
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in {**GOOD, **extra}.items():
-            if name in left_out:
-                continue
-            file = pathlib.Path(folder, name)
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text)
-        return house_rules.find_faults(pathlib.Path(folder))
+    files = {name: text for name, text in {**GOOD, **extra}.items() if name not in left_out}
+    return planted.faults_of(files, house_rules.find_faults)
 
 
 class HouseRules(unittest.TestCase):

@@ -1,10 +1,9 @@
 """Plants wrong includes in a small copy of the house and expects each to be found."""
 
-import pathlib
-import tempfile
 import unittest
 
 import include_direction
+import planted
 
 GOOD = {
     "pipeline/CMakeLists.txt": "houghstream_library(pipeline SOURCES types/frame.cpp LINK x)\n"
@@ -40,12 +39,7 @@ WRONG = {
 
 
 def faults_with(extra):
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in {**GOOD, **extra}.items():
-            file = pathlib.Path(folder, name)
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text)
-        return include_direction.find_faults(pathlib.Path(folder))
+    return planted.faults_of({**GOOD, **extra}, include_direction.find_faults)
 
 
 class IncludeDirection(unittest.TestCase):

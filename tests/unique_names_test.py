@@ -1,10 +1,9 @@
 """Plants names that are defined twice in a small copy of the house and expects each to be found, and no other."""
 
-import pathlib
-import tempfile
 import unittest
 
 import unique_names
+import planted
 
 GOOD = {
     "pipeline/frame.hpp": "namespace houghstream {\nclass Later;\nstruct Frame {\n  struct Pair { int a; };\n};\n"
@@ -32,12 +31,7 @@ TWICE = {
 
 
 def faults_with(extra):
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in {**GOOD, **extra}.items():
-            file = pathlib.Path(folder, name)
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text)
-        return unique_names.find_faults(pathlib.Path(folder))
+    return planted.faults_of({**GOOD, **extra}, unique_names.find_faults)
 
 
 class UniqueNames(unittest.TestCase):
