@@ -49,8 +49,8 @@ def cpu_name():
 
 @functools.cache
 def commit_name():
-    """The commit that was checked out when this was first asked for, short; with "-dirty" where files differ from it."""
-    words = ["git", "-C", str(REPOSITORY), "describe", "--always", "--dirty", "--exclude", "*"]
+    """The commit that was checked out when this was first asked for, twelve digits; with "-dirty" where files differ from it."""
+    words = ["git", "-C", str(REPOSITORY), "describe", "--always", "--abbrev=12", "--dirty", "--exclude", "*"]
     told = subprocess.run(words, capture_output=True, text=True, check=False)
     return told.stdout.strip() if told.returncode == 0 else "unknown"
 
