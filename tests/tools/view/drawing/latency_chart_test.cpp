@@ -42,12 +42,11 @@ TEST(LatencyChart, NothingLeavesItsArea) {
   draw_latency_chart(image, kArea, {});
 }
 
-TEST(LatencyChart, StagesAreListedAsFarAsThereIsRoom) {
+TEST(LatencyChart, EveryStageIsListedCloserTogetherWhereTheyAreMany) {
+  constexpr std::size_t kStages = 9;
   cv::Mat image(60, 320, CV_8UC3, cv::Scalar::all(0));
-  const std::vector<StageTime> stages(9, {"a", 1000});
-  draw_stage_list(image, cv::Rect(0, 0, 304, 60), stages, 3);
-  EXPECT_GT(count(image, stage_colour(5)), 50);  // the second column's last
-  EXPECT_EQ(count(image, stage_colour(6)), 0);
+  draw_stage_list(image, cv::Rect(0, 0, 304, 60), std::vector<StageTime>(kStages, {"a", 1000}), 3);
+  for (std::size_t i = 0; i < kStages; ++i) EXPECT_GT(count(image, stage_colour(i)), 50) << i;
 }
 
 }  // namespace
