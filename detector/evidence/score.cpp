@@ -1,33 +1,19 @@
 #include "detector/evidence/score.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "pipeline/base/logistic_regression.hpp"
 
 namespace houghstream {
 namespace {
 
 using Vector = Eigen::Matrix<double, kScoreTerms, 1>;
-using Matrix = Eigen::Matrix<double, kScoreTerms, kScoreTerms>;
-
-double logistic(double x) {
-  return 1.0 / (1.0 + std::exp(-x));
-}
 
 Vector to_vector(const ScoreTerms& terms) {
   Vector out;
   for (std::size_t i = 0; i < kScoreTerms; ++i) out(static_cast<Eigen::Index>(i)) = terms.*kScoreTermList[i];
   return out;
-}
-
-/// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
-double loss_of(const std::vector<ScoreExample>& examples, const Vector& weights, const Vector& prior) {
-  double loss = 0.5 * (weights - prior).squaredNorm();
-  for (const ScoreExample& example : examples) {
-    const double x = weights.dot(to_vector(example.terms)) * (example.is_object ? 1.0 : -1.0);
-    loss += x > 0.0 ? std::log1p(std::exp(-x)) : -x + std::log1p(std::exp(x));
-  }
-  return loss;
 }
 
 }  // namespace
@@ -70,25 +56,10 @@ float score(const ScoreModel& model, const Evidence& evidence) {
 }
 
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
-  constexpr int kSteps = 30;  // of Newton's method, which needs about eight
-  const Vector expected = to_vector(prior.weights);
-  Vector weights = expected;
-  double loss = loss_of(examples, weights, expected);
-  for (int step = 0; step < kSteps; ++step) {
-    Vector gradient = expected - weights;
-    Matrix curvature = Matrix::Identity();
-    for (const ScoreExample& example : examples) {
-      const Vector x = to_vector(example.terms);
-      const double p = logistic(weights.dot(x));
-      gradient += ((example.is_object ? 1.0 : 0.0) - p) * x;
-      curvature += p * (1.0 - p) * x * x.transpose();
-    }
-    Vector change = curvature.ldlt().solve(gradient);
-    // Far from the minimum a whole step may lead away from it.
-    while (loss_of(examples, weights + change, expected) > loss && change.norm() > 1e-9) change *= 0.5;
-    weights += change;
-    loss = loss_of(examples, weights, expected);
-  }
+  std::vector<LogisticExample<kScoreTerms>> judged;
+  judged.reserve(examples.size());
+  for (const ScoreExample& example : examples) judged.push_back({to_vector(example.terms), example.is_object});
+  const Vector weights = fit_logistic<kScoreTerms>(judged, {to_vector(prior.weights), 1.0});
   ScoreModel model;
   for (std::size_t i = 0; i < kScoreTerms; ++i) {
     model.weights.*kScoreTermList[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));
