@@ -21,8 +21,8 @@ using LatencyHistory = std::deque<FrameLatency>;
 /// The colour (BGR) of the so-manieth stage of a frame, from 0.
 cv::Scalar stage_colour(std::size_t index);
 
-/// A row per stage in columns of `rows` rows, or of more and lower ones where `area` is not wide enough for all columns:
-/// its colour, name and milliseconds.
+/// A row per stage in columns of `rows` rows, or of more and lower ones where `area` is not wide enough for all
+/// columns: its colour, name and milliseconds.
 void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<StageTime>& stages, int rows);
 
 /// A column per frame, newest to the right: its stages on top of each other, and a white mark at the frame's whole
