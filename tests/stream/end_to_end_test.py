@@ -159,6 +159,19 @@ def check_poses(truth, folder, heard):
     assert near >= 5 and near >= 0.7 * len(errors), sorted(errors)
 
 
+def check_min_quality(tools, folder):
+    """hs-pose withholds what is less sure than it was asked for: nothing is as sure as this."""
+    strict = folder / "strict.log"
+    run(tools / "hs-pose", "--models", folder / "views" / "models", "--min-quality", 1, "-l",
+        f"file://{folder / 'recorded.log'}", "--output-log", strict)
+    statuses = [status for _, channel, data in read_log(strict) if channel == "HOUGHSTREAM_POSES"
+                for _, _, status, _ in poses_of(data)]  # fmt: skip
+    assert statuses and VALID not in statuses, statuses
+    result = subprocess.run([str(tools / "hs-pose"), "--min-quality", "1.5"], capture_output=True, text=True, check=False,
+                            timeout=20)
+    assert result.returncode != 0 and "--min-quality" in result.stderr, result
+
+
 def check_bad_input(tools, folder):
     """A cut log: one clear line, and a failure."""
     cut = folder / "cut.log"
@@ -208,6 +221,7 @@ def main():
     check_poses(truth, folder, heard)
     capture_live(tools, folder)
     check_live_stream(tools, folder, start_stream, offline)
+    check_min_quality(tools, folder)
     check_bad_input(tools, folder)
     check_strange_names(tools, folder)
     print("end to end: everything accounted for")
