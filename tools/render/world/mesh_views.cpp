@@ -38,16 +38,6 @@ Eigen::Matrix3d tilt(double angle_rad, Random& random) {
   return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
 }
 
-/// Evenly distributed over all rotations (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
-Eigen::Matrix3d random_rotation(Random& random) {
-  const double u = random.uniform();
-  const double a = random.uniform(0.0, 2.0 * M_PI);
-  const double b = random.uniform(0.0, 2.0 * M_PI);
-  return Eigen::Quaterniond(std::sqrt(u) * std::cos(b), std::sqrt(1.0 - u) * std::sin(a),
-                            std::sqrt(1.0 - u) * std::cos(a), std::sqrt(u) * std::sin(b))
-      .toRotationMatrix();
-}
-
 /// What stands firmest comes first; what differs by less than kSameAttitudeDeg is left out.
 std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
   std::vector<RestingAttitude> all;
@@ -97,6 +87,30 @@ MeshAttitudes parse_mesh_attitudes(const std::string& name) {
   fail("attitudes '{}', expected resting, upright or any", name);
 }
 
+std::vector<Eigen::Vector3d> up_directions(const Mesh& mesh, MeshAttitudes attitudes) {
+  if (attitudes == MeshAttitudes::kAny) return {};
+  if (attitudes == MeshAttitudes::kUpright) return {Eigen::Vector3d::UnitZ()};
+  try {
+    return resting_ups(mesh);
+  } catch (const InputError&) {  // without a volume
+    std::vector<Eigen::Vector3d> sides;
+    for (int axis = 0; axis < 3; ++axis) {
+      sides.emplace_back(Eigen::Vector3d::Unit(axis));
+      sides.emplace_back(-Eigen::Vector3d::Unit(axis));
+    }
+    return sides;
+  }
+}
+
+Eigen::Matrix3d random_rotation(Random& random) {
+  const double u = random.uniform();
+  const double a = random.uniform(0.0, 2.0 * M_PI);
+  const double b = random.uniform(0.0, 2.0 * M_PI);
+  return Eigen::Quaterniond(std::sqrt(u) * std::cos(b), std::sqrt(1.0 - u) * std::sin(a),
+                            std::sqrt(1.0 - u) * std::cos(a), std::sqrt(u) * std::sin(b))
+      .toRotationMatrix();
+}
+
 MeshViews::MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t seed)
     : settings_(settings), seed_(world_seed(WorldUse::kTraining, seed)) {
   const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
@@ -110,30 +124,16 @@ MeshViews::MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t 
   if (settings.attitudes == MeshAttitudes::kAny) {
     add_any_views();
   } else {
-    add_level_views(up_directions());
+    ups_ = up_directions(thing_->mesh, settings.attitudes);
+    add_level_views();
   }
 }
 
-std::vector<Eigen::Vector3d> MeshViews::up_directions() const {
-  if (settings_.attitudes == MeshAttitudes::kUpright) return {Eigen::Vector3d::UnitZ()};
-  try {
-    return resting_ups(thing_->mesh);
-  } catch (const InputError&) {  // an open surface encloses nothing that could weigh
-    std::vector<Eigen::Vector3d> sides;
-    for (int axis = 0; axis < 3; ++axis) {
-      sides.emplace_back(Eigen::Vector3d::Unit(axis));
-      sides.emplace_back(-Eigen::Vector3d::Unit(axis));
-    }
-    return sides;
-  }
-}
-
-void MeshViews::add_level_views(const std::vector<Eigen::Vector3d>& ups) {
-  resting_attitudes_ = settings_.attitudes == MeshAttitudes::kResting ? static_cast<int>(ups.size()) : 0;
-  const int each = std::min(settings_.views_per_attitude, settings_.most_views / static_cast<int>(ups.size()));
-  for (std::size_t attitude = 0; attitude < ups.size(); ++attitude) {
+void MeshViews::add_level_views() {
+  const int each = std::min(settings_.views_per_attitude, settings_.most_views / static_cast<int>(ups_.size()));
+  for (std::size_t attitude = 0; attitude < ups_.size(); ++attitude) {
     const Eigen::Matrix3d R_level_object =
-        Eigen::Quaterniond::FromTwoVectors(ups[attitude], Eigen::Vector3d::UnitZ()).toRotationMatrix();
+        Eigen::Quaterniond::FromTwoVectors(ups_[attitude], Eigen::Vector3d::UnitZ()).toRotationMatrix();
     for (int i = 0; i < each; ++i) {
       Random random(aspect_seed(seed_, 1000000U * (attitude + 1U) + static_cast<std::uint64_t>(i)));
       // Evenly over the part of the sphere between the two pitches: Fibonacci's spiral.

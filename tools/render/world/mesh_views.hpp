@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 #include "tools/render/world/rooms/thing.hpp"
 
@@ -18,6 +19,14 @@ enum class MeshAttitudes : std::uint8_t {
 
 /// "resting", "upright" or "any". Throws InputError naming them for another.
 MeshAttitudes parse_mesh_attitudes(const std::string& name);
+
+/// Which directions of the object (unit length, object frame) point up in these attitudes: what stands firmest first,
+/// such as differ clearly. The sides of the bounding box for an open mesh, which encloses nothing that could weigh;
+/// none for kAny.
+std::vector<Eigen::Vector3d> up_directions(const Mesh& mesh, MeshAttitudes attitudes);
+
+/// Evenly distributed over all rotations (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
+Eigen::Matrix3d random_rotation(Random& random);
 
 struct MeshViewSettings {
   MeshAttitudes attitudes = MeshAttitudes::kResting;
@@ -38,8 +47,9 @@ class MeshViews {
   MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t seed);
 
   int count() const { return static_cast<int>(poses_.size()); }
-  /// In how many ways it was found to rest; 0 where that was not asked for or could not be told (no volume).
-  int resting_attitudes() const { return resting_attitudes_; }
+  /// See up_directions().
+  const std::vector<Eigen::Vector3d>& ups() const { return ups_; }
+  const ThingPtr& thing() const { return thing_; }
 
   /// View `index`, cropped around the object; names, ids and source are left empty.
   TrainingView render(int index) const;
@@ -52,8 +62,7 @@ class MeshViews {
     bool on_table = false;
   };
 
-  std::vector<Eigen::Vector3d> up_directions() const;
-  void add_level_views(const std::vector<Eigen::Vector3d>& ups);
+  void add_level_views();
   void add_any_views();
   ThingPtr painted(std::uint64_t seed_of_view) const;
 
@@ -62,7 +71,7 @@ class MeshViews {
   ThingPtr thing_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  ///< of the bounding box
   double radius_ = 0.0;                               ///< of the sphere about it, metres
-  int resting_attitudes_ = 0;
+  std::vector<Eigen::Vector3d> ups_;
   std::vector<ViewPose> poses_;
 };
 
