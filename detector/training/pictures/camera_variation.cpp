@@ -95,4 +95,11 @@ CameraVariation draw_camera(double strength, Random& random) {
   return camera;
 }
 
+void look_through_another(double share, double strength, RgbdFrame& frame, Random& random) {
+  if (strength <= 0.0 || random.uniform() >= share) return;
+  const CameraVariation camera = draw_camera(strength, random);
+  apply_depth(camera, frame.camera, frame.depth, random, frame.colour);
+  apply_colour(camera, frame.colour, random);
+}
+
 }  // namespace houghstream::training

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "pipeline/base/random.hpp"
-#include "pipeline/types/camera.hpp"
+#include "pipeline/types/frame.hpp"
 
 // What widely varied RGB-D cameras would have recorded of a picture that is put together or rendered. A score that is
 // learnt from one camera's pictures believes in what only that camera does.
@@ -87,6 +87,9 @@ struct CameraVariation {
 
 /// A camera. `strength` 0 = one that changes nothing, 1 = as widely as real ones differ; more is allowed.
 CameraVariation draw_camera(double strength, Random& random);
+
+/// Another camera looks, in a share of all pictures.
+void look_through_another(double share, double strength, RgbdFrame& frame, Random& random);
 
 /// What the camera makes of a picture, in place: CV_8UC3 BGR. Random gives the noise.
 void apply_colour(const CameraVariation& camera, cv::Mat& colour, Random& random);
