@@ -132,6 +132,18 @@ TEST(MeasurePoses, HardlyVisibleObjectsAndThoseWithoutTruePoseAreNoTargets) {
   EXPECT_EQ(average_recall(errors.at("mug")).mean, 1.0);
 }
 
+TEST(MeasurePoses, WhereAListSaysWhatIsATargetItCounts) {
+  const MeasuredScene measured = measured_scene();
+  EvaluatedFrame frame;
+  frame.objects = {mug_at(0.0, 0.05), mug_at(0.1, 1.0)};
+  frame.objects[0].is_target = true;
+  frame.objects[1].is_target = false;
+  frame.poses = ObjectPoses{{}, {pose_at(0.0, 0.4F)}, {}};
+  const ClassErrors errors = measure_poses({frame}, measured.scene, measured.models, 1);
+  EXPECT_EQ(errors.at("mug")[0].targets, 1);
+  EXPECT_EQ(average_recall(errors.at("mug")).mean, 1.0);
+}
+
 TEST(MeasurePoses, FramesWithoutPosesHaveTargets) {
   const MeasuredScene measured = measured_scene();
   EvaluatedFrame skipped;

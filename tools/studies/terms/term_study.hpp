@@ -1,0 +1,76 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "detector/detection_settings.hpp"
+#include "detector/evidence/candidates.hpp"
+#include "drivers/files/json_file.hpp"
+#include "tools/evaluate/evaluated_frame.hpp"
+
+// Which terms of the score push the scores of true objects down, and which those of others up: groups of scenes side by
+// side, for instance of rendered rooms, in whose like the weights were learnt, and of a camera.
+
+namespace houghstream::terms {
+
+struct StudyRules {
+  double min_visible = 0.5;  ///< less visible objects are passed over
+  float score = 0.75F;       ///< from which an object counts as reported
+  float false_score = 0.3F;  ///< from which a false candidate is looked at
+  SuppressionSettings suppression;
+};
+
+/// A candidate, as its class weighs it.
+struct Sample {
+  std::string class_name;
+  float score = 0.0F;
+  ScoreTerms terms{};
+  ScoreTerms contributions{};  ///< term times weight; their sum is the score's log odds
+};
+
+/// What was found in a group of scenes.
+struct Group {
+  std::string name;
+  int frames = 0;
+  int objects = 0;                 ///< true ones that are visible enough, of classes that the forest knows
+  int with_candidate = 0;          ///< of which a candidate overlaps the visible box by half or more
+  std::vector<Sample> true_ones;   ///< the strongest such candidate of each object
+  std::vector<Sample> false_ones;  ///< what is left after suppression, false, from StudyRules::false_score on
+};
+
+using ModelsByClass = std::map<std::string, ScoreModel>;
+
+/// Adds a frame: its true objects and all candidates in it. Those that are false are so as hs-evaluate judges.
+void add_frame(EvaluatedFrame truth, const std::vector<Candidate>& candidates, const ModelsByClass& models,
+               const StudyRules& rules, Group& group);
+
+/// One term over many candidates; NaN where there are none.
+struct TermFigures {
+  std::string term;
+  double median = 0.0;
+  double mean = 0.0;
+  double contribution = 0.0;         ///< mean
+  double contribution_median = 0.0;  ///< median
+};
+
+/// In the order of kScoreTermList.
+std::vector<TermFigures> term_figures(const std::vector<Sample>& samples);
+
+/// Terms of the true ones, whose mean contributions lie furthest below those of the first group, lowest first; not the
+/// constant.
+struct TermShift {
+  std::string term;
+  double shift = 0.0;
+};
+std::vector<TermShift> shifts_between(const std::vector<Sample>& first, const std::vector<Sample>& other);
+
+/// For people: a row for each term, for each group the median of the term and the mean of what it contributes, for true
+/// and for false ones, and below what pushes each group's true ones down in comparison with the first group's.
+std::string table(const std::vector<Group>& groups, const StudyRules& rules);
+
+/// {GROUP: {"frames", "objects", "with_candidate", "reported", "score_median", "true": {"count", TERM: {"median",
+/// "mean", "contribution", "contribution_median"}}, "false": {...}}}.
+OrderedJson to_json(const std::vector<Group>& groups, const StudyRules& rules);
+
+}  // namespace houghstream::terms
