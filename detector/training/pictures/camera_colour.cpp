@@ -86,9 +86,13 @@ double exposure(const ColourVariation& camera, const cv::Mat& colour) {
 cv::Mat sensed(const ColourVariation& camera, const cv::Mat& colour, Random& random) {
   const double gain = exposure(camera, colour);
   std::array<std::array<float, 256>, 3> light{};
+  std::array<std::array<float, 256>, 3> sigma{};
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t v = 0; v < 256; ++v) {
-      light[c][v] = static_cast<float>(camera.flare + gain * linear_table()[v] * camera.white_balance_bgr[c]);
+      const double level = camera.flare + gain * linear_table()[v] * camera.white_balance_bgr[c];
+      light[c][v] = static_cast<float>(level);
+      sigma[c][v] = static_cast<float>(
+          std::sqrt(camera.shot_noise * camera.shot_noise * level + camera.read_noise * camera.read_noise));
     }
   }
   const double centre_x = camera.vignette_centre[0] * colour.cols;
@@ -96,9 +100,7 @@ cv::Mat sensed(const ColourVariation& camera, const cv::Mat& colour, Random& ran
   const double farthest_x = std::max(centre_x, colour.cols - centre_x);
   const double farthest_y = std::max(centre_y, colour.rows - centre_y);
   const auto falloff = static_cast<float>(camera.vignetting / (farthest_x * farthest_x + farthest_y * farthest_y));
-  const auto shot_sq = static_cast<float>(camera.shot_noise * camera.shot_noise);
-  const auto read_sq = static_cast<float>(camera.read_noise * camera.read_noise);
-  const bool noisy = shot_sq + read_sq > 0.0F;
+  const bool noisy = camera.shot_noise > 0.0 || camera.read_noise > 0.0;
   cv::Mat out(colour.size(), CV_16UC3);
   for (int y = 0; y < colour.rows; ++y) {
     const auto* in_row = colour.ptr<cv::Vec3b>(y);
@@ -109,8 +111,8 @@ cv::Mat sensed(const ColourVariation& camera, const cv::Mat& colour, Random& ran
       const float kept = 1.0F - falloff * (dx * dx + dy * dy);
       const std::array<float, 3> noise = noisy ? normals(random) : std::array<float, 3>{};
       for (std::size_t c = 0; c < 3; ++c) {
-        const float level = kept * light[c][in_row[x][static_cast<int>(c)]];
-        const float value = level + std::sqrt(shot_sq * level + read_sq) * noise[c];
+        const std::uint8_t coded = in_row[x][static_cast<int>(c)];
+        const float value = kept * (light[c][coded] + sigma[c][coded] * noise[c]);
         out_row[x][static_cast<int>(c)] =
             static_cast<std::uint16_t>(std::clamp(value, 0.0F, 1.0F) * (kLevels - 1) + 0.5F);
       }

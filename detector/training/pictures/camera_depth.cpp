@@ -37,25 +37,34 @@ cv::Mat known(const cv::Mat& depth) {
   return depth == depth;
 }
 
-/// The nearest and the farthest known depth within so many pixels; nothing is kFar or 0.
-struct Range {
-  cv::Mat nearest;
-  cv::Mat farthest;
-};
-
-Range around(const cv::Mat& depth, cv::Size reach_px) {
-  const cv::Mat window = cv::getStructuringElement(cv::MORPH_RECT, {2 * reach_px.width + 1, 2 * reach_px.height + 1});
-  Range range;
-  cv::Mat filled = depth.clone();
-  cv::patchNaNs(filled, kFar);
-  cv::erode(filled, range.nearest, window);
-  filled.setTo(0.0F, filled == kFar);
-  cv::dilate(filled, range.farthest, window);
-  return range;
+/// The nearest known depth within so many pixels; kFar where there is none.
+cv::Mat nearest_around(const cv::Mat& depth, int right_px, int down_px) {
+  cv::Mat nearest = depth.clone();
+  cv::patchNaNs(nearest, kFar);
+  cv::erode(nearest, nearest, cv::getStructuringElement(cv::MORPH_RECT, {2 * right_px + 1, 2 * down_px + 1}));
+  return nearest;
 }
 
-cv::Mat edges_of(const Range& range) {
-  return range.farthest > (1.0 + kEdgeStep) * range.nearest;
+cv::Mat farthest_around(const cv::Mat& depth) {
+  cv::Mat farthest = depth.clone();
+  cv::patchNaNs(farthest, 0.0);
+  cv::dilate(farthest, farthest, cv::Mat());  // 3x3
+  return farthest;
+}
+
+/// Where a surface ends before another one; the depths of both.
+struct Edges {
+  cv::Mat nearest;   ///< CV_32FC1
+  cv::Mat farthest;  ///< CV_32FC1
+  cv::Mat mask;      ///< CV_8UC1
+};
+
+Edges find_edges(const cv::Mat& depth) {
+  Edges edges;
+  edges.nearest = nearest_around(depth, 1, 1);
+  edges.farthest = farthest_around(depth);
+  edges.mask = edges.farthest > (1.0 + kEdgeStep) * edges.nearest;
+  return edges;
 }
 
 void shift(const std::array<int, 2>& by_px, cv::Mat& depth) {
@@ -69,94 +78,109 @@ void shift(const std::array<int, 2>& by_px, cv::Mat& depth) {
 void grow(const std::array<int, 2>& by_px, cv::Mat& depth) {
   if (by_px[0] == 0 && by_px[1] == 0) return;
   const cv::Mat holes = ~known(depth);
-  depth = around(depth, {by_px[0], by_px[1]}).nearest;
+  depth = nearest_around(depth, by_px[0], by_px[1]);
   depth.setTo(kNone, holes);
 }
 
 /// Outlines that waver, and pixels that see both surfaces of an edge.
-void blur_edges(const DepthVariation& camera, cv::Mat& depth, Random& random) {
+void blur_edges(const DepthVariation& camera, const Edges& edges, cv::Mat& depth, Random& random) {
   if (camera.jitter_px <= 0.0 && camera.flying_share <= 0.0) return;
-  const Range near_range = around(depth, {1, 1});
-  const cv::Mat edges = edges_of(near_range);
   const cv::Mat before = depth.clone();
   const int reach_px = static_cast<int>(std::ceil(2.0 * camera.jitter_px));
-  cv::Mat wavering = edges;
-  if (reach_px > 1) cv::dilate(edges, wavering, cv::Mat::ones(2 * reach_px - 1, 2 * reach_px - 1, CV_8UC1));
+  cv::Mat wavering = edges.mask;
+  if (reach_px > 1) cv::dilate(edges.mask, wavering, cv::Mat::ones(2 * reach_px - 1, 2 * reach_px - 1, CV_8UC1));
   for (int y = 0; y < depth.rows; ++y) {
+    auto* row = depth.ptr<float>(y);
+    const auto* wavers = wavering.ptr<std::uint8_t>(y);
+    const auto* is_edge = edges.mask.ptr<std::uint8_t>(y);
     for (int x = 0; x < depth.cols; ++x) {
-      float& z = depth.at<float>(y, x);
-      if (wavering.at<std::uint8_t>(y, x) == 0 || std::isnan(z)) continue;
+      if (wavers[x] == 0 || std::isnan(row[x])) continue;
       const auto right = static_cast<int>(std::lround(camera.jitter_px * quick_normal(random)));
       const auto down = static_cast<int>(std::lround(camera.jitter_px * quick_normal(random)));
       const int from_x = std::clamp(x + std::clamp(right, -reach_px, reach_px), 0, depth.cols - 1);
       const int from_y = std::clamp(y + std::clamp(down, -reach_px, reach_px), 0, depth.rows - 1);
       const float other = before.at<float>(from_y, from_x);
-      if (!std::isnan(other)) z = other;
-      if (edges.at<std::uint8_t>(y, x) == 0 || random.uniform() >= camera.flying_share) continue;
+      if (!std::isnan(other)) row[x] = other;
+      if (is_edge[x] == 0 || random.uniform() >= camera.flying_share) continue;
       const auto share = static_cast<float>(random.uniform());
-      const float nearest = near_range.nearest.at<float>(y, x);
-      z = nearest + share * (near_range.farthest.at<float>(y, x) - nearest);
+      const float nearest = edges.nearest.at<float>(y, x);
+      row[x] = nearest + share * (edges.farthest.at<float>(y, x) - nearest);
     }
   }
 }
 
-/// How much light comes back and how slanting a surface is; what the noise and the holes go by.
-class Surfaces {
- public:
-  Surfaces(const cv::Mat& depth, const cv::Mat& colour, const Camera& view)
-      : depth_(depth.clone()), focal_px_(static_cast<float>(view.fx)) {
-    if (colour.empty()) return;
-    cv::cvtColor(colour, grey_, cv::COLOR_BGR2GRAY);
-  }
-
-  /// Tangent of the incidence; 0 where it is not known. Over some pixels: recorded depth is noisy.
-  float slant(int x, int y) const {
-    constexpr int kReach = 2;
-    const float z = depth_.at<float>(y, x);
-    const int left = std::max(0, x - kReach);
-    const int right = std::min(depth_.cols - 1, x + kReach);
-    const int up = std::max(0, y - kReach);
-    const int down = std::min(depth_.rows - 1, y + kReach);
-    const float across = (depth_.at<float>(y, right) - depth_.at<float>(y, left)) / static_cast<float>(right - left);
-    const float along = (depth_.at<float>(down, x) - depth_.at<float>(up, x)) / static_cast<float>(down - up);
-    const float slant = std::sqrt(across * across + along * along) * focal_px_ / z;
-    return std::isnan(slant) ? 0.0F : slant;
-  }
-
-  float reflectance(int x, int y) const {
-    if (grey_.empty()) return 0.3F;
-    const float value = static_cast<float>(grey_.at<std::uint8_t>(y, x)) * (1.0F / 255.0F);
-    return std::max(0.01F, value * value);  // about that of linear light
-  }
-
- private:
-  cv::Mat depth_;
-  cv::Mat grey_;
-  float focal_px_;
+/// What the noise and the holes go by.
+struct Surfaces {
+  cv::Mat slant_sq;     ///< CV_32FC1: tangent of the incidence, squared; 0 where it is not known
+  cv::Mat reflectance;  ///< CV_32FC1: about that of linear light
 };
 
-void add_structured_noise(const DepthVariation& camera, const Surfaces& surfaces, cv::Mat& depth, Random& random) {
-  constexpr float kMostSlant = 4.0F;  // Nguyen et al.'s term grows without bound
-  if (camera.noise > 0.0) {
-    const cv::Mat noise = window_noise(depth.size(), random);
-    const auto gain = static_cast<float>(camera.noise);
-    for (int y = 0; y < depth.rows; ++y) {
-      for (int x = 0; x < depth.cols; ++x) {
-        float& z = depth.at<float>(y, x);
-        if (std::isnan(z)) continue;
-        float sigma = static_cast<float>(axial_noise(z));
-        const float slant = std::min(kMostSlant, surfaces.slant(x, y));
-        if (slant > 1.73F) {  // 60 degrees
-          const float angle = std::atan(slant);
-          const float ratio = angle / (static_cast<float>(M_PI_2) - angle);
-          sigma += 0.0001F / std::sqrt(z) * ratio * ratio;
-        }
-        z += gain * sigma * noise.at<float>(y, x);
-      }
+/// From depth as it was given, over some pixels: recorded depth is noisy.
+cv::Mat slants(const cv::Mat& depth, double focal_px) {
+  constexpr int kReach = 2;
+  cv::Mat out(depth.size(), CV_32FC1, cv::Scalar(0));
+  const auto focal = static_cast<float>(focal_px / (2 * kReach));
+  for (int y = kReach; y < depth.rows - kReach; ++y) {
+    const auto* up = depth.ptr<float>(y - kReach);
+    const auto* row = depth.ptr<float>(y);
+    const auto* down = depth.ptr<float>(y + kReach);
+    auto* out_row = out.ptr<float>(y);
+    for (int x = kReach; x < depth.cols - kReach; ++x) {
+      const float across = row[x + kReach] - row[x - kReach];
+      const float along = down[x] - up[x];
+      const float scale = focal / row[x];
+      const float slant_sq = (across * across + along * along) * scale * scale;
+      out_row[x] = slant_sq >= 0.0F ? slant_sq : 0.0F;  // false for NaN
     }
   }
-  if (camera.disparity_step_px <= 0.0) return;
-  const auto scale = static_cast<float>(580.0 * 0.075 / camera.disparity_step_px);
+  return out;
+}
+
+Surfaces find_surfaces(const cv::Mat& depth, const cv::Mat& colour, double focal_px) {
+  constexpr double kGrey = 0.3;
+  constexpr double kBlack = 0.01;
+  Surfaces surfaces;
+  surfaces.slant_sq = slants(depth, focal_px);
+  if (colour.empty()) {
+    surfaces.reflectance = cv::Mat(depth.size(), CV_32FC1, cv::Scalar(kGrey));
+  } else {
+    cv::Mat grey;
+    cv::cvtColor(colour, grey, cv::COLOR_BGR2GRAY);
+    grey.convertTo(surfaces.reflectance, CV_32F, 1.0 / 255.0);
+    surfaces.reflectance = cv::max(surfaces.reflectance.mul(surfaces.reflectance), kBlack);
+  }
+  return surfaces;
+}
+
+/// What axial noise grows by on surfaces seen at more than 60 degrees (Nguyen et al.).
+float oblique_noise(float slant_sq, float z) {
+  constexpr float kMostSlant = 4.0F;  // the term grows without bound
+  const float angle = std::atan(std::min(kMostSlant, std::sqrt(slant_sq)));
+  const float ratio = angle / (static_cast<float>(M_PI_2) - angle);
+  return 0.0001F / std::sqrt(z) * ratio * ratio;
+}
+
+void add_structured_noise(const DepthVariation& camera, const Surfaces& surfaces, cv::Mat& depth, Random& random) {
+  constexpr float kOblique = 3.0F;  // the tangent of 60 degrees, squared
+  if (camera.noise <= 0.0) return;
+  const cv::Mat noise = window_noise(depth.size(), random);
+  const auto gain = static_cast<float>(camera.noise);
+  for (int y = 0; y < depth.rows; ++y) {
+    auto* row = depth.ptr<float>(y);
+    const auto* noise_row = noise.ptr<float>(y);
+    const auto* slant_sq = surfaces.slant_sq.ptr<float>(y);
+    for (int x = 0; x < depth.cols; ++x) {
+      if (std::isnan(row[x])) continue;
+      auto sigma = static_cast<float>(axial_noise(row[x]));
+      if (slant_sq[x] > kOblique) sigma += oblique_noise(slant_sq[x], row[x]);
+      row[x] += gain * sigma * noise_row[x];
+    }
+  }
+}
+
+void quantise_disparity(double step_px, cv::Mat& depth) {
+  if (step_px <= 0.0) return;
+  const auto scale = static_cast<float>(580.0 * 0.075 / step_px);
   for (int y = 0; y < depth.rows; ++y) {
     auto* row = depth.ptr<float>(y);
     for (int x = 0; x < depth.cols; ++x) {
@@ -173,16 +197,18 @@ void add_time_of_flight_noise(const DepthVariation& camera, const Surfaces& surf
   const auto phase = static_cast<float>(camera.wiggle_phase);
   const auto dark_bias = static_cast<float>(camera.dark_bias);
   constexpr float kMostSigma = 0.03F;  // more is not reported
+  constexpr float kGrey = 0.3F;        // from here on nothing is too dark
   for (int y = 0; y < depth.rows; ++y) {
+    auto* row = depth.ptr<float>(y);
+    const auto* slant_sq = surfaces.slant_sq.ptr<float>(y);
+    const auto* reflectance = surfaces.reflectance.ptr<float>(y);
     for (int x = 0; x < depth.cols; ++x) {
-      float& z = depth.at<float>(y, x);
+      const float z = row[x];
       if (std::isnan(z)) continue;
-      const float reflectance = surfaces.reflectance(x, y);
-      const float slant = surfaces.slant(x, y);
-      const float amplitude_sq = reflectance * reflectance / ((1.0F + slant * slant) * z * z * z * z);
+      const float amplitude_sq = reflectance[x] * reflectance[x] / ((1.0F + slant_sq[x]) * z * z * z * z);
       const float sigma = std::min(kMostSigma, std::sqrt(floor_sq + light_sq / amplitude_sq));
-      const float dark = std::max(0.0F, 1.0F - reflectance / 0.3F);
-      z += wiggle * std::sin(turns * z + phase) + dark_bias * dark + sigma * quick_normal(random);
+      const float dark = std::max(0.0F, 1.0F - reflectance[x] / kGrey);
+      row[x] += wiggle * std::sin(turns * z + phase) + dark_bias * dark + sigma * quick_normal(random);
     }
   }
 }
@@ -221,33 +247,41 @@ void cast_shadow(double baseline_m, double focal_px, cv::Mat& depth) {
   }
 }
 
-void make_holes(const DepthVariation& camera, const Surfaces& surfaces, cv::Mat& depth, Random& random) {
+void make_holes(const DepthVariation& camera, const Edges& edges, const Surfaces& surfaces, cv::Mat& depth,
+                Random& random) {
   if (camera.edge_loss <= 0.0 && camera.least_cosine <= 0.0 && camera.least_signal <= 0.0) return;
-  const cv::Mat edges = edges_of(around(depth, {1, 1}));
   cv::Mat near_edges;
-  cv::dilate(edges, near_edges, cv::Mat::ones(3, 3, CV_8UC1));  // where slant() looks across the edge
+  cv::dilate(edges.mask, near_edges, cv::Mat());  // where a slant is one across the edge
   const cv::Mat noise = window_noise(depth.size(), random);
   const auto edge_loss = static_cast<float>(camera.edge_loss);
-  const auto least_cosine = static_cast<float>(camera.least_cosine);
-  const auto least_signal = static_cast<float>(camera.least_signal);
+  const auto cosine_sq = static_cast<float>(camera.least_cosine * camera.least_cosine);
+  const auto signal_sq = static_cast<float>(camera.least_signal * camera.least_signal);
   for (int y = 0; y < depth.rows; ++y) {
+    auto* row = depth.ptr<float>(y);
+    const auto* noise_row = noise.ptr<float>(y);
+    const auto* is_edge = edges.mask.ptr<std::uint8_t>(y);
+    const auto* is_near_edge = near_edges.ptr<std::uint8_t>(y);
+    const auto* slant_sq = surfaces.slant_sq.ptr<float>(y);
+    const auto* reflectance = surfaces.reflectance.ptr<float>(y);
     for (int x = 0; x < depth.cols; ++x) {
-      float& z = depth.at<float>(y, x);
-      if (std::isnan(z)) continue;
-      const float level = noise.at<float>(y, x);
-      if (edges.at<std::uint8_t>(y, x) != 0) {
-        const float rank = 1.0F / (1.0F + std::exp(1.702F * level));  // the normal distribution's, nearly
-        if (rank < edge_loss) z = kNone;
-        continue;
+      if (is_edge[x] != 0) {
+        const float rank = 1.0F / (1.0F + std::exp(1.702F * noise_row[x]));  // the normal distribution's, nearly
+        if (rank < edge_loss) row[x] = kNone;
+      } else if (is_near_edge[x] == 0) {
+        const float z_sq = row[x] * row[x];
+        const float wobble = std::max(0.2F, 1.0F + 0.25F * noise_row[x]);
+        const float limit = wobble * wobble * (1.0F + slant_sq[x]);
+        const bool flat = cosine_sq * limit > 1.0F;
+        const bool dark = reflectance[x] * reflectance[x] < signal_sq * limit * z_sq * z_sq;
+        if (flat || dark) row[x] = kNone;
       }
-      if (near_edges.at<std::uint8_t>(y, x) != 0) continue;
-      const float slant = surfaces.slant(x, y);
-      const float cosine = 1.0F / std::sqrt(1.0F + slant * slant);
-      const float wobble = std::max(0.2F, 1.0F + 0.25F * level);
-      const bool dark = surfaces.reflectance(x, y) * cosine < least_signal * wobble * z * z;
-      if (cosine < least_cosine * wobble || dark) z = kNone;
     }
   }
+}
+
+bool needs_edges(const DepthVariation& camera) {
+  return camera.jitter_px > 0.0 || camera.flying_share > 0.0 || camera.edge_loss > 0.0 || camera.least_cosine > 0.0 ||
+         camera.least_signal > 0.0;
 }
 
 }  // namespace
@@ -255,17 +289,19 @@ void make_holes(const DepthVariation& camera, const Surfaces& surfaces, cv::Mat&
 void apply_depth(const CameraVariation& camera, const Camera& view, cv::Mat& depth, Random& random,
                  const cv::Mat& colour) {
   const DepthVariation& made = camera.depth;
-  const Surfaces surfaces(depth, colour, view);
+  const Surfaces surfaces = find_surfaces(depth, colour, view.fx);
   grow(made.grown_px, depth);
-  blur_edges(made, depth, random);
+  const Edges edges = needs_edges(made) ? find_edges(depth) : Edges{};
+  blur_edges(made, edges, depth, random);
   if (made.kind == DepthKind::kStructuredLight) {
     cast_shadow(made.shadow_m, view.fx, depth);
     add_structured_noise(made, surfaces, depth, random);
+    quantise_disparity(made.disparity_step_px, depth);
   } else {
     add_time_of_flight_noise(made, surfaces, depth, random);
   }
   smooth(made, depth);
-  make_holes(made, surfaces, depth, random);
+  make_holes(made, edges, surfaces, depth, random);
   if (made.scale != 1.0) depth *= made.scale;
   shift(made.offset_px, depth);
 }
