@@ -6,6 +6,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 
@@ -59,6 +60,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
 
   TeachOptions more = quick_options(folder, "grey.ply");
   more.add = true;
+  start_log("teach_tests", LogLevel::kInfo);
   testing::internal::CaptureStderr();
   teach_meshes(more);
   const std::string said = testing::internal::GetCapturedStderr();
