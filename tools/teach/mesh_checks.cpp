@@ -138,10 +138,11 @@ void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
     log_warning("{}: the surface faces inwards (volume {:.4g} cm3), expected outwards: turned around", where,
                 found.volume_m3 * 1e6);
   }
+  constexpr double kAgreeing = 0.9;
   const double agreeing = agreement(mesh);
-  if (agreeing < 0.5) {
-    for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
-    log_warning("{}: {:.0f} % of the normals face inwards, expected none: turned around", where,
+  if (agreeing < kAgreeing) {
+    compute_normals(mesh);
+    log_warning("{}: {:.0f} % of the normals face inwards, expected none: made anew from the faces", where,
                 100.0 * (1.0 - agreeing));
   }
   constexpr double kOpen = 0.25;  // of the diameter: less are cracks
