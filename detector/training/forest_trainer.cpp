@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <set>
 
 #include "detector/extensions.hpp"
 #include "detector/forest/packed_trees.hpp"
@@ -101,6 +102,15 @@ std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, c
   return trees;
 }
 
+/// The objects' views are the last of the forest's.
+void learn_scores(const Rooms& rooms, const Profile& profile, Forest& forest) {
+  std::set<int> class_ids;
+  for (const TrainingView* view : rooms.objects) class_ids.insert(view->class_id);
+  const auto first_view = static_cast<std::uint32_t>(forest.views.size() - rooms.objects.size());
+  train_score_model(composed_frames(rooms.objects, rooms.for_score, profile.training), class_ids, first_view, profile,
+                    forest);
+}
+
 /// Gives the views class numbers that the forest has not used yet. Throws InputError for a name that it knows.
 void number_after(const Forest& old, std::vector<TrainingView>& views) {
   int largest = 0;
@@ -136,7 +146,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
   if (settings.scoring == Scoring::kVotes) return forest;
-  train_score_model(rooms.objects, rooms.for_score, profile, forest);
+  learn_scores(rooms, profile, forest);
   progress(
       fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
   return forest;
@@ -167,8 +177,18 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   note_leaf_heads(forest);
   pack_trees(forest);
   calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
-  if (forest.scoring == Scoring::kEvidence) train_score_model(rooms.objects, rooms.for_score, profile, forest);
+  if (forest.scoring == Scoring::kEvidence) learn_scores(rooms, profile, forest);
   return forest;
+}
+
+Profile profile_of(const Forest& forest) {
+  Profile profile = make_profile(forest.profile);
+  profile.features = forest.features;
+  profile.patch = forest.patch;
+  profile.detection = detection_settings(forest);
+  profile.training.scoring = forest.scoring;
+  profile.training.trees = static_cast<int>(forest.roots.size());
+  return profile;
 }
 
 }  // namespace houghstream::training

@@ -74,21 +74,29 @@ std::vector<Candidate> search_frame(const Search& search, const RgbdFrame& frame
 
 }  // namespace
 
-void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
+ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
+                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
+  return {settings.validation_frames, [&](int index) {
+            Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(index));
+            const TrainingView& room = *rooms[static_cast<std::size_t>(index) % rooms.size()];
+            return compose(objects, room.frame, settings, random);
+          }};
+}
+
+void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
                        const Profile& profile, Forest& forest) {
   const TrainingSettings& settings = profile.training;
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
-  const auto first_view = static_cast<std::uint32_t>(forest.views.size() - objects.size());
-  std::vector<Examples> by_frame(static_cast<std::size_t>(settings.validation_frames));
+  std::vector<Examples> by_frame(static_cast<std::size_t>(source.count));
   PerWorker<DetectorWorkspace> workspaces;
   workspaces.make_room(settings.threads);
-  parallel_for_workers(settings.threads, settings.validation_frames, [&](int worker, int f) {
-    Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(f));
-    const TrainingView& room = *rooms[static_cast<std::size_t>(f) % rooms.size()];
-    const ValidationFrame validation = compose(objects, room.frame, settings, random);
+  parallel_for_workers(settings.threads, source.count, [&](int worker, int f) {
+    const ValidationFrame validation = source.frame(f);
     std::vector<std::uint32_t> shown = validation.look_alikes;
-    for (const ValidationFrame::Object& object : validation.objects) shown.push_back(object.view);
+    for (const ValidationFrame::Object& object : validation.objects) {
+      if (object.view) shown.push_back(*object.view);
+    }
     for (std::uint32_t& view : shown) view += first_view;
     const Search search{forest, detection, fast_engine(), shown};
     by_frame[static_cast<std::size_t>(f)] =
@@ -105,8 +113,7 @@ void train_score_model(const std::vector<const TrainingView*>& objects, const st
   }
   const ScoreModel common = fit_score_model(all, ScoreModel{});
   for (ObjectClass& object : forest.classes) {
-    const auto shows = [&](const TrainingView* view) { return view->class_id == object.class_id; };
-    if (std::none_of(objects.begin(), objects.end(), shows)) continue;  // an older object, judged before
+    if (class_ids.count(object.class_id) == 0) continue;  // an older object, judged before
     object.score_model = fit_score_model(by_class[object.class_id], common);
   }
 }

@@ -1,15 +1,33 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <vector>
+
 #include "detector/forest/forest.hpp"
 #include "detector/profiles.hpp"
+#include "detector/training/pictures/validation_frames.hpp"
 #include "pipeline/types/training_view.hpp"
 
 namespace houghstream::training {
 
-/// Learns the weights of the score (evidence/score_model.hpp) of each class in `objects`, whose views are the last of
-/// the forest's, beginning from those of all of them together: objects are put into rooms that the trees have not seen,
-/// the forest looks for them, and what it finds is compared with what is there. Same result for any number of threads.
-void train_score_model(const std::vector<const TrainingView*>& objects, const std::vector<const TrainingView*>& rooms,
+/// What scores are learnt from: frame `index`, from 0 to count - 1, with the truth. Called from several threads.
+struct ValidationSource {
+  int count = 0;
+  std::function<ValidationFrame(int index)> frame;
+};
+
+/// Rooms into which views are put that trees have not seen there, see TrainingSettings::validation_frames. The views
+/// and the settings must outlive it.
+ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
+                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings);
+
+/// Learns the weights of the score (evidence/score_model.hpp) of each class in `class_ids`, beginning from those of all
+/// of them together: the forest looks for the objects in the frames, and what it finds is compared with what is there.
+/// The first of the views that ValidationFrame names is the forest's number `first_view`. Same result for any number of
+/// threads.
+void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
                        const Profile& profile, Forest& forest);
 
 }  // namespace houghstream::training

@@ -40,9 +40,12 @@ struct TrainingSettings {
   int max_leaf_views = 12;       ///< remembered training views per leaf and class
   float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres
   Scoring scoring = Scoring::kEvidence;
-  int validation_frames = 300;  ///< composed pictures on which the score learns what it is worth
-  double dazzled_share = 0.5;   ///< of these, in which what is near has lost most of its depth, see lose_near_depth
-  double depth_error = 1.0;     ///< in all of these: strength of the errors of depth, see sensor_errors.hpp
+  int validation_frames = 300;     ///< composed pictures on which the score learns what it is worth
+  double dazzled_share = 0.5;      ///< of these, in which what is near has lost most of its depth, see lose_near_depth
+  double depth_error = 1.0;        ///< in all of these: strength of the errors of depth, see sensor_errors.hpp
+  double surface_variation = 1.0;  ///< in all of these: strength of the changes of objects' colours, see vary_surface
+  double camera_share = 0.7;       ///< of these, in which another camera looks, see camera_variation.hpp
+  double camera_variation = 1.0;   ///< how widely these cameras vary
   std::uint64_t seed = 1;
   int threads = 2;
 };

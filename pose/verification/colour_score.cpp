@@ -52,6 +52,18 @@ double lightness_left_over(const ColourProducts& products) {
   return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
 }
 
+float chroma_conflict(const ColourProducts& products) {
+  constexpr double kPlain = 100.0;  // variance that plain surfaces have in changing light
+  constexpr double kPalest = 0.5;   // strengths over the remembered one
+  constexpr double kStrongest = 2.5;
+  constexpr double kMost = 4.0;
+  const Eigen::Vector2d own(products(kA, kOne), products(kB, kOne));
+  const Eigen::Vector2d seen(products(kSeenA, kOne), products(kSeenB, kOne));
+  const double strength = std::clamp(own.dot(seen) / std::max(own.squaredNorm(), 1.0), kPalest, kStrongest);
+  const double spread_sq = kPlain + seen_variance(products, kSeenA) + seen_variance(products, kSeenB);
+  return static_cast<float>(std::min(kMost, (seen - strength * own).norm() / std::sqrt(spread_sq)));
+}
+
 ColourComparison compare(const ColourProducts& products, int count) {
   constexpr double kNoise = 15.0;           // variance of the three channels on a plain surface in even light
   constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
@@ -59,9 +71,7 @@ ColourComparison compare(const ColourProducts& products, int count) {
                       seen_variance(products, kSeenA) + seen_variance(products, kSeenB);
   const double left = kLightnessWeight * lightness_left_over(products) + chroma_left_over(products, kA, kSeenA) +
                       chroma_left_over(products, kB, kSeenB);
-  const double shift =
-      std::hypot(products(kSeenA, kOne) - products(kA, kOne), products(kSeenB, kOne) - products(kB, kOne));
-  return {count, static_cast<float>(1.0 - left / seen), static_cast<float>(std::sqrt(left)), static_cast<float>(shift)};
+  return {count, static_cast<float>(1.0 - left / seen), static_cast<float>(std::sqrt(left)), chroma_conflict(products)};
 }
 
 }  // namespace

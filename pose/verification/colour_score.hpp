@@ -18,7 +18,9 @@ struct ColourComparison {
   /// shading does. Near 0, or below, for unrelated prints.
   float agreement = 0.0F;
   float left_over = 0.0F;     ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
-  float chroma_shift = 0.0F;  ///< length of the mean difference between seen and remembered a* and b*
+  /// How far the mean a* and b* that are seen are from the remembered ones, at any strength (within limits) that haze
+  /// or a camera gives these: over the spread of those seen, at most 4.
+  float chroma_conflict = 0.0F;
 };
 
 /// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.

@@ -27,8 +27,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   constexpr double kShare = 0.01;
   constexpr double kFraction = 0.05;
   constexpr double kCount = 3.0;
-  constexpr double kColourUnits = 10.0;
-  constexpr double kUsualContrast = 18.0;
+  constexpr double kLeastAgreement = -0.5;
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
   QualityTerms terms = settings.typical;
@@ -36,9 +35,10 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   terms.seen_through = -std::log(depth.violating / judged + kShare);
   terms.visible = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
   terms.outline = std::log((depth.outline_ends + kCount) / (depth.outline_continues + kCount));
+  terms.extent = std::log(depth.agreeing + kCount);
   if (evidence.colour) {
-    terms.chroma_shift = -static_cast<double>(evidence.colour->chroma_shift) / kColourUnits;
-    terms.contrast = -std::max(0.0, static_cast<double>(evidence.colour->left_over) - kUsualContrast) / kColourUnits;
+    terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
+    terms.agreement = std::max(kLeastAgreement, static_cast<double>(evidence.colour->agreement));
   }
   return terms;
 }
@@ -52,7 +52,8 @@ float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
 PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings) {
   constexpr std::array<PoseStatus, kQualityTerms.size()> kReasons = {
       PoseStatus::kLowScore,          PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByDepth,
-      PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour};
+      PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour,
+      PoseStatus::kTooFewPoints};
   const auto against = [&](std::size_t i) {
     const auto term = kQualityTerms[i];
     return settings.weights.*term * (settings.typical.*term - terms.*term);

@@ -27,15 +27,17 @@ struct QualityTerms {
   double seen_through = 0.0;  ///< log of the share that was seen through, of what agrees or was seen through (negated)
   double visible = 0.0;       ///< log of the visible fraction
   double outline = 0.0;       ///< log of outline ends over outline that goes on
-  double chroma_shift = 0.0;  ///< tens of CIE L*a*b* units (negated)
-  double contrast = 0.0;  ///< that the model's colours leave unexplained, beyond the 18 units that right poses have,
-                          ///< tens of units (negated)
+  double chroma_conflict = 0.0;  ///< see ColourComparison (negated)
+  double agreement = 0.0;        ///< see ColourComparison, at least -0.5
+  double extent = 0.0;           ///< log of the pixels that agree: what little is seen of may be many things
 };
 
-/// The terms in the order in which they are summed.
-inline constexpr std::array<double QualityTerms::*, 6> kQualityTerms = {
+/// The terms in the order in which they are summed, and their names.
+inline constexpr std::array<double QualityTerms::*, 7> kQualityTerms = {
     &QualityTerms::detection_log_odds, &QualityTerms::seen_through, &QualityTerms::visible, &QualityTerms::outline,
-    &QualityTerms::chroma_shift,       &QualityTerms::contrast};
+    &QualityTerms::chroma_conflict,    &QualityTerms::agreement,    &QualityTerms::extent};
+inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
+    "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "agreement", "extent"};
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
 /// (tools/studies/quality) learns these numbers, `least` as the round number from which 98 % of the poses are right in
@@ -44,10 +46,10 @@ inline constexpr std::array<double QualityTerms::*, 6> kQualityTerms = {
 /// detector's scores as they were then.
 struct QualitySettings {
   double bias = -3.71;
-  QualityTerms weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16};
+  QualityTerms weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16, 0.0};
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {1.63, 3.55, -0.16, 1.48, -0.70, -0.02};
+  QualityTerms typical = {1.63, 3.55, -0.16, 1.48, -0.70, 0.6, 7.0};
   float least = 0.6F;  ///< poses of lower quality are not published
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/training/pictures/camera_variation.hpp"
 #include "detector/training/pictures/composites.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 
@@ -106,7 +107,8 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     const TrainingView& view = *objects[index];
     const double distance = draw_distance(settings, random);
-    const TrainingView bent_view = bent(view, settings.depth_error, random);
+    const TrainingView bent_view =
+        bent(resurfaced(view, settings.surface_variation, random), settings.depth_error, random);
     const std::optional<Composite> composite = make_composite(bent_view, out.frame, distance, even_light, random);
     out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
     whole_px.push_back(composite ? composite->whole_px : 1);
@@ -123,6 +125,7 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   out.objects.erase(std::remove_if(out.objects.begin(), out.objects.end(), unseen), out.objects.end());
   misregister(settings.depth_error, out.frame.depth, random);
   vary_exposure(out.frame.colour, kOtherLight * settings.light_variation, random);
+  look_through_another(settings.camera_share, settings.camera_variation, out.frame, random);
   return out;
 }
 

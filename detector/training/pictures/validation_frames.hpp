@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "detector/training/training_settings.hpp"
@@ -12,7 +13,7 @@ namespace houghstream::training {
 struct ValidationFrame {
   struct Object {
     int class_id = 0;
-    std::uint32_t view = 0;  ///< which of the training views it is
+    std::optional<std::uint32_t> view;  ///< which of the training views it is, if one of them
     cv::Rect box_visible_px;
     double visible_fraction = 0.0;
   };

@@ -6,6 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/objects.hpp"
+#include "tools/render/world/optics/pixel_noise.hpp"
 #include "tools/render/world/rooms/table_setter.hpp"
 
 namespace houghstream::world {
@@ -25,7 +26,8 @@ void add_other_instances(TableSetter& setter, const Clutter& clutter, std::uint6
   for (int i = 0; i < clutter.other_instances; ++i) {
     const ThingPtr thing = make_other_instance(1 + (first + i) % kClassCount,
                                                aspect_seed(seed, kFirstInstance + static_cast<std::uint64_t>(i)));
-    if (clutter.lying)
+    const bool lies = clutter.handling == Handling::kLying || (clutter.handling == Handling::kTilted && i % 2 == 1);
+    if (lies)
       setter.put(put_lying(thing, 0, setter.random()), where);
     else
       setter.stand(thing, where, M_PI, 0);
@@ -62,20 +64,65 @@ void add_lying_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
   }
 }
 
-void add_objects(TableSetter& setter, const Clutter& clutter) {
-  const Eigen::AlignedBox2d where =
-      clutter.lying ? setter.region(-0.75, 0.75, -0.7, 0.75) : setter.region(-0.62, 0.62, -0.75, 0.6);
+// Each class leaning, lying and standing; first what needs most room.
+void add_tilted_objects(TableSetter& setter, const Eigen::AlignedBox2d& where) {
+  for (int id = 1; id <= kClassCount; ++id) setter.lean_object(id, where);
+  for (int id = 1; id <= kClassCount; ++id) setter.lay_object(id, where);
+  for (int id = 1; id <= kClassCount; ++id) setter.stand_object(id, where);
+}
+
+// Each class in a hand, two from the sides and two from behind, and once more on the table.
+void add_held_objects(TableSetter& setter, const Trajectory& trajectory) {
+  Random& random = setter.random();
+  HeldPlace place;
+  for (const double time : {0.1, 0.3, 0.5, 0.7, 0.9}) place.views.push_back(camera_at(trajectory, time));
+  const int first = random.below(kClassCount);
+  for (int i = 0; i < kClassCount; ++i) {
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const bool behind = i >= 2;
+    const double x = side * (behind ? 0.35 : 0.65) + random.uniform(-0.08, 0.08);
+    const double y = (behind ? 0.45 : -0.45) + random.uniform(-0.1, 0.1);
+    place.over = setter.region(x, x, y, y).min();
+    const double turn = random.uniform(0.0, 0.5);  // from +x or -x, or from +y, and then outwards
+    const double azimuth = behind ? M_PI / 2 - turn : turn;
+    place.arm_azimuth_rad = side > 0.0 ? azimuth : M_PI - azimuth;
+    setter.hold_object(1 + (first + i) % kClassCount, place);
+  }
+  const Eigen::AlignedBox2d where = setter.region(-0.8, 0.8, -0.85, 0.8);
+  for (int id = 1; id <= kClassCount; ++id) {
+    if (chance(random, 0.5))
+      setter.lay_object(id, where);
+    else
+      setter.stand_object(id, where);
+  }
+}
+
+Eigen::AlignedBox2d place_of_objects(const TableSetter& setter, Handling handling) {
+  switch (handling) {
+    case Handling::kLying: return setter.region(-0.75, 0.75, -0.7, 0.75);
+    case Handling::kTilted:
+    case Handling::kHeld: return setter.region(-0.85, 0.85, -0.85, 0.85);
+    default: return setter.region(-0.62, 0.62, -0.75, 0.6);
+  }
+}
+
+void add_objects(TableSetter& setter, const Clutter& clutter, const Trajectory& trajectory) {
+  const Eigen::AlignedBox2d where = place_of_objects(setter, clutter.handling);
   if (clutter.further != FurtherClasses::kNone) {
     add_many_objects(setter, clutter.further);
-  } else if (clutter.lying) {
+  } else if (clutter.handling == Handling::kLying) {
     add_lying_objects(setter, where);
+  } else if (clutter.handling == Handling::kTilted) {
+    add_tilted_objects(setter, where);
+  } else if (clutter.handling == Handling::kHeld) {
+    add_held_objects(setter, trajectory);
   } else {
     for (int id = 1; clutter.taught_objects && id <= kClassCount; ++id) setter.stand_object(id, where);
   }
   const int first = setter.random().below(kClassCount);
   for (int i = 0; i < clutter.look_alikes; ++i) {
     const int id = kClassCount + 1 + (first + i) % kClassCount;
-    if (clutter.lying)
+    if (clutter.handling == Handling::kLying)
       setter.lay_object(id, where);
     else
       setter.stand_object(id, where);
@@ -93,7 +140,7 @@ Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutte
   if (style == RoomStyle::kDesk)
     setter.stand(make_distractor(kMonitor, aspect_seed(seed, kFirstDistractor + 500)),
                  setter.region(-0.4, 0.4, 0.4, 0.9), 0.3, 0);
-  add_objects(setter, clutter);
+  add_objects(setter, clutter, scene.trajectory);
   add_other_instances(setter, clutter, seed);
   add_distractors(setter, style, clutter, seed);
   return scene;
@@ -122,7 +169,7 @@ constexpr FurtherClasses kEven = FurtherClasses::kEvenIds;
 // Tables on which most things have the taught objects' colours: only shape tells them apart.
 constexpr double kAlike = 0.85;
 
-constexpr std::array<Plan, 20> kPlans = {
+constexpr std::array<Plan, 25> kPlans = {
     {{kTestScenes[0], kTest, 0, RoomStyle::kTable, kDay, {true, 1, 3, 14, kNone, kAlike}},
      {kTestScenes[1], kTest, 1, RoomStyle::kTable, kEvening, {true, 2, 8, 10, kNone, kAlike}},
      {kTestScenes[2], kTest, 2, RoomStyle::kDesk, kDay, {true, 1, 8, 8, kNone, kAlike}},
@@ -145,14 +192,34 @@ constexpr std::array<Plan, 20> kPlans = {
       kDay,
       {true, 1, 0, 14, kOdd}},
      {kTwentyClassDevelopmentScenes[1], kTraining, kDevelopment + 21, RoomStyle::kTable, kDay, {true, 1, 0, 12, kEven}},
-     {kLyingScenes[0], kTest, 30, RoomStyle::kTable, kDay, {true, 1, 4, 12, kNone, 0.0, true}},
-     {kLyingScenes[1], kTest, 31, RoomStyle::kMeeting, kEvening, {true, 1, 4, 12, kNone, 0.0, true}},
+     {kLyingScenes[0], kTest, 30, RoomStyle::kTable, kDay, {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
+     {kLyingScenes[1], kTest, 31, RoomStyle::kMeeting, kEvening, {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
      {kLyingDevelopmentScenes[0],
       kTraining,
       kDevelopment + 30,
       RoomStyle::kTable,
       kDay,
-      {true, 1, 4, 12, kNone, 0.0, true}}}};
+      {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
+     {kLyingDevelopmentScenes[1],
+      kTraining,
+      kDevelopment + 31,
+      RoomStyle::kMeeting,
+      kEvening,
+      {true, 1, 4, 12, kNone, 0.0, Handling::kLying}},
+     {kHandledScenes[0], kTest, 40, RoomStyle::kTable, kDay, {true, 1, 4, 10, kNone, 0.0, Handling::kTilted}},
+     {kHandledScenes[1], kTest, 41, RoomStyle::kMeeting, kDay, {true, 1, 4, 10, kNone, 0.0, Handling::kHeld}},
+     {kHandledDevelopmentScenes[0],
+      kTraining,
+      kDevelopment + 40,
+      RoomStyle::kTable,
+      kEvening,
+      {true, 1, 4, 10, kNone, 0.0, Handling::kTilted}},
+     {kHandledDevelopmentScenes[1],
+      kTraining,
+      kDevelopment + 41,
+      RoomStyle::kMeeting,
+      kDay,
+      {true, 1, 4, 10, kNone, 0.0, Handling::kHeld}}}};
 
 /// The number N of "development_world_N", 0 to 999.
 std::optional<int> development_number(const std::string& name) {
@@ -178,10 +245,11 @@ Scene planned_scene(const std::string& name, const Plan& plan) {
 }  // namespace
 
 std::string scene_names() {
-  return fmt::format("{}, {}, {}, or for choosing settings {}, {}, {}, {}0 to {}999", fmt::join(kTestScenes, ", "),
-                     fmt::join(kTwentyClassScenes, ", "), fmt::join(kLyingScenes, ", "),
-                     fmt::join(kDevelopmentScenes, ", "), fmt::join(kTwentyClassDevelopmentScenes, ", "),
-                     fmt::join(kLyingDevelopmentScenes, ", "), kDevelopmentWorld, kDevelopmentWorld);
+  return fmt::format("{}, {}, {}, {}, or for choosing settings {}, {}, {}, {}, {}0 to {}999",
+                     fmt::join(kTestScenes, ", "), fmt::join(kTwentyClassScenes, ", "), fmt::join(kLyingScenes, ", "),
+                     fmt::join(kHandledScenes, ", "), fmt::join(kDevelopmentScenes, ", "),
+                     fmt::join(kTwentyClassDevelopmentScenes, ", "), fmt::join(kLyingDevelopmentScenes, ", "),
+                     fmt::join(kHandledDevelopmentScenes, ", "), kDevelopmentWorld, kDevelopmentWorld);
 }
 
 Scene make_named_scene(const std::string& name) {

@@ -21,6 +21,14 @@ struct Scene {
 /// Which of the sixteen further classes (ids 101-116) stand beside the four.
 enum class FurtherClasses : std::uint8_t { kNone, kOddIds, kEvenIds };
 
+/// How the taught objects are put down.
+enum class Handling : std::uint8_t {
+  kStanding,  ///< once each
+  kLying,     ///< twice: once lying and once on a wedge; their like lie too
+  kTilted,    ///< three times: standing, lying, and leaning on a block at 10 to 60 degrees; their like stand or lie
+  kHeld       ///< twice: in somebody's hand in any attitude, and standing or lying
+};
+
 /// What stands on the table.
 struct Clutter {
   bool taught_objects = false;                     ///< the four classes, once each
@@ -29,7 +37,7 @@ struct Clutter {
   int distractors = 10;                            ///< how many things are tried; those that find no place are left out
   FurtherClasses further = FurtherClasses::kNone;  ///< eight of them, once each
   double taught_colours = 0.0;                     ///< share of the distractors' surfaces that have the four's colours
-  bool lying = false;  ///< the four classes twice, once lying and once on a wedge; their like lie too
+  Handling handling = Handling::kStanding;
 };
 
 Scene make_scene(const std::string& name, RoomStyle style, const Clutter& clutter, TimeOfDay time, std::uint64_t seed);
@@ -59,7 +67,13 @@ inline constexpr std::array<const char*, 2> kTwentyClassDevelopmentScenes = {"de
 inline constexpr std::array<const char*, 2> kLyingScenes = {"table_lying", "meeting_lying"};
 
 /// Their like to choose settings on.
-inline constexpr std::array<const char*, 1> kLyingDevelopmentScenes = {"development_lying"};
+inline constexpr std::array<const char*, 2> kLyingDevelopmentScenes = {"development_lying", "development_lying_2"};
+
+/// Test scenes in which the four classes stand, lie and lean on things, and are held in hands.
+inline constexpr std::array<const char*, 2> kHandledScenes = {"table_tilted", "meeting_held"};
+
+/// Their like to choose settings on.
+inline constexpr std::array<const char*, 2> kHandledDevelopmentScenes = {"development_tilted", "development_held"};
 
 /// All of them, for people to read.
 std::string scene_names();

@@ -19,10 +19,6 @@ constexpr double kRightShare = 0.98;
 constexpr int kParts = 4;
 constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
 
-/// As QualityTerms names them, in the order of kQualityTerms.
-constexpr std::array<const char*, kQualityTerms.size()> kNames = {
-    "detection_log_odds", "seen_through", "visible", "outline", "chroma_shift", "contrast"};
-
 LogisticExample<kWeights> to_logistic(const Example& example) {
   LogisticExample<kWeights> out;
   out.is_true = example.is_right;
@@ -71,7 +67,7 @@ OrderedJson to_json(const Published& published) {
 
 OrderedJson to_json(const QualityTerms& terms) {
   OrderedJson out = OrderedJson::object();
-  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) out[kNames[i]] = terms.*kQualityTerms[i];
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) out[kQualityTermNames[i]] = terms.*kQualityTerms[i];
   return out;
 }
 

@@ -32,6 +32,9 @@ class TableLayout {
   std::optional<Footprint> claim(const Eigen::Vector2d& half, const Eigen::AlignedBox2d& region, double turn_rad,
                                  Random& random);
 
+  /// Keeps a place free of what comes after.
+  void take(const Footprint& footprint) { taken_.push_back(footprint); }
+
   const std::vector<Footprint>& footprints() const { return taken_; }
 
  private:

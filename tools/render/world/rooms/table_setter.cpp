@@ -4,6 +4,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/objects.hpp"
+#include "tools/render/world/rooms/leaning.hpp"
 
 namespace houghstream::world {
 namespace {
@@ -47,6 +48,28 @@ void TableSetter::lay_object(int id, const Eigen::AlignedBox2d& where) {
 void TableSetter::tilt_object(int id, const Eigen::AlignedBox2d& where) {
   const TaughtObject object = make_taught_object(id);
   require(put(put_on_wedge(object.thing, true_id(id), random_), where), "scene: no place left for {}", object.name);
+}
+
+void TableSetter::lean_object(int id, const Eigen::AlignedBox2d& where) {
+  const TaughtObject object = make_taught_object(id);
+  require(put(put_leaning(object.thing, true_id(id), random_), where), "scene: no place left for {}", object.name);
+}
+
+void TableSetter::hold_object(int id, const HeldPlace& place) {
+  for (const Placed& placed : hold(make_taught_object(id).thing, true_id(id), place, random_)) {
+    const Eigen::Vector3d towards = placed.T_world_object.linear().col(0);
+    Footprint footprint;
+    footprint.yaw_rad = std::atan2(towards.y(), towards.x());
+    const Eigen::Rotation2Dd back(-footprint.yaw_rad);
+    Eigen::AlignedBox2d extent;
+    for (const Eigen::Vector3f& vertex : placed.thing->mesh.vertices) {
+      extent.extend((back * (placed.T_world_object * vertex.cast<double>()).head<2>()).eval());
+    }
+    footprint.half = 0.5 * extent.sizes();
+    footprint.centre = Eigen::Rotation2Dd(footprint.yaw_rad) * extent.center();
+    layout_.take(footprint);
+    world_.items.push_back(placed);
+  }
 }
 
 }  // namespace houghstream::world

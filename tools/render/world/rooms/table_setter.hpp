@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tools/render/world/rooms/held.hpp"
 #include "tools/render/world/rooms/put_down.hpp"
 #include "tools/render/world/rooms/table_layout.hpp"
 
@@ -22,6 +23,10 @@ class TableSetter {
   void stand_object(int id, const Eigen::AlignedBox2d& where);
   void lay_object(int id, const Eigen::AlignedBox2d& where);
   void tilt_object(int id, const Eigen::AlignedBox2d& where);
+  void lean_object(int id, const Eigen::AlignedBox2d& where);
+
+  /// A taught object in a hand; nothing else comes below the object or the arm.
+  void hold_object(int id, const HeldPlace& place);
 
   /// Part of the surface, in shares of its half extent.
   Eigen::AlignedBox2d region(double x_low, double x_high, double y_low, double y_high) const {

@@ -1,0 +1,134 @@
+#include "tools/render/world/practice_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "tools/render/world/objects/objects.hpp"
+#include "tools/render/world/optics/light.hpp"
+#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/rooms/attitudes.hpp"
+#include "tools/render/world/rooms/room.hpp"
+#include "tools/render/world/rooms/table_setter.hpp"
+#include "tools/render/world/seeds.hpp"
+
+namespace houghstream::world {
+namespace {
+
+constexpr std::uint64_t kFirstRoom = 1ULL << 44U;  // number of training worlds, far beyond those of other uses
+constexpr int kMostObjects = 7;
+constexpr int kMostDistractors = 12;
+constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
+
+/// Turned hues, darker or brighter.
+cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
+  cv::Mat hsv_image;
+  cv::cvtColor(bgr, hsv_image, cv::COLOR_BGR2HSV);
+  const int turn = random.between(40, 140);
+  const double lightness = random.uniform(0.5, 1.2);
+  for (int y = 0; y < hsv_image.rows; ++y) {
+    for (int x = 0; x < hsv_image.cols; ++x) {
+      cv::Vec3b& pixel = hsv_image.at<cv::Vec3b>(y, x);
+      pixel[0] = static_cast<std::uint8_t>((pixel[0] + turn) % 180);
+      pixel[1] = std::max<std::uint8_t>(pixel[1], 60);  // what is grey takes on a colour
+      pixel[2] = cv::saturate_cast<std::uint8_t>(lightness * pixel[2]);
+    }
+  }
+  cv::Mat out;
+  cv::cvtColor(hsv_image, out, cv::COLOR_HSV2BGR);
+  return out;
+}
+
+/// Nearly the object: of other colours, or clearly smaller or larger.
+ThingPtr look_alike(const Thing& thing, Random& random) {
+  Mesh mesh = thing.mesh;
+  if (chance(random, 0.5)) {
+    const auto size = static_cast<float>(chance(random, 0.5) ? random.uniform(0.55, 0.75) : random.uniform(1.33, 1.7));
+    for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= size;
+  } else if (!mesh.texture.empty()) {
+    mesh.texture = recoloured(mesh.texture, random);
+  } else {
+    const cv::Mat colours(1, static_cast<int>(mesh.colours.size()), CV_8UC3, mesh.colours.data());
+    const cv::Mat other = recoloured(colours, random);
+    std::copy_n(other.ptr<cv::Vec3b>(), mesh.colours.size(), mesh.colours.begin());
+  }
+  return make_thing(thing.name, std::move(mesh), thing.gloss);
+}
+
+/// On the table in one of its attitudes, sometimes leaning.
+Group put_down(const PracticeObject& object, const ThingPtr& thing, int id, Random& random) {
+  constexpr double kLeaning = 0.2;
+  Eigen::Matrix3d R = random_rotation(random);
+  if (!object.ups.empty()) {
+    R = Eigen::Quaterniond::FromTwoVectors(pick(random, object.ups), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    if (object.ups.size() > 1 && chance(random, kLeaning)) {
+      const double towards = random.uniform(0.0, 2.0 * M_PI);
+      const Eigen::Vector3d axis(std::cos(towards), std::sin(towards), 0.0);
+      R = Eigen::AngleAxisd(random.uniform(0.15, 0.7), axis) * R;
+    }
+  }
+  Placed placed{thing, Eigen::Isometry3d::Identity(), id, true};
+  placed.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, height_above_table(thing->mesh, R)));
+  placed.T_world_object.rotate(R);
+  return {placed};
+}
+
+/// Looks at one of the objects, from anywhere above the table.
+Eigen::Isometry3d draw_camera(const World& world, Random& random) {
+  std::vector<Eigen::Vector3d> places;
+  for (const Placed& item : world.items) {
+    if (item.object_id != 0) places.push_back(item.T_world_object.translation());
+  }
+  Eigen::Vector3d target = places.empty() ? Eigen::Vector3d(0.0, 0.0, 0.05) : pick(random, places);
+  target += Eigen::Vector3d(random.uniform(-0.2, 0.2), random.uniform(-0.15, 0.15), random.uniform(-0.05, 0.1));
+  const double distance = std::exp(random.uniform(std::log(0.5), std::log(1.8)));
+  const double elevation = random.uniform(0.22, 1.25);
+  const double azimuth = random.uniform(-0.9, 0.9);
+  const Eigen::Vector3d eye =
+      target + distance * Eigen::Vector3d(std::sin(azimuth) * std::cos(elevation),
+                                          -std::cos(azimuth) * std::cos(elevation), std::sin(elevation));
+  const double roll = 0.08 * random.normal();
+  return Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()) * look_at(eye, target);
+}
+
+}  // namespace
+
+World PracticeScenes::furnished(int room) const {
+  const std::uint64_t own =
+      aspect_seed(world_seed(WorldUse::kTraining, kFirstRoom + static_cast<std::uint64_t>(room)), seed_);
+  World world;
+  Room walls = make_room(static_cast<RoomStyle>(room % kRoomStyles), aspect_seed(own, 1));
+  world.items = std::move(walls.items);
+  set_light_and_photo(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 2));
+  TableSetter setter(world, walls.table_half, aspect_seed(own, 3));
+  Random& random = setter.random();
+  const Eigen::AlignedBox2d middle = setter.region(-0.7, 0.7, -0.8, 0.6);
+  const Eigen::AlignedBox2d all = setter.region(-0.95, 0.95, -0.95, 0.95);
+  const int first = random.below(static_cast<int>(objects_.size()));
+  const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMostObjects));
+  for (int i = 0; i < count; ++i) {
+    const PracticeObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
+    setter.put(put_down(object, object.thing, object.id, random), middle);
+  }
+  for (int i = random.between(1, 3); i > 0; --i) {
+    const PracticeObject& object = pick(random, objects_);
+    setter.put(put_down(object, look_alike(*object.thing, random), 0, random), all);
+  }
+  for (int i = random.between(3, kMostDistractors); i > 0; --i) {
+    const int kind = random.below(kDistractorKinds);
+    setter.stand(make_distractor(kind, aspect_seed(own, 100U + static_cast<std::uint64_t>(i)), kTaughtColours), all,
+                 M_PI, 0);
+  }
+  return world;
+}
+
+SceneFrame PracticeScenes::render(int index) const {
+  const int room = index / kFramesPerRoom;
+  const LitWorld lit_world = light_world(furnished(room));
+  const std::uint64_t own =
+      aspect_seed(world_seed(WorldUse::kTraining, seed_), kFirstRoom + static_cast<std::uint64_t>(index));
+  Random random(own);
+  return render_frame(lit_world, draw_camera(lit_world.world, random), aspect_seed(own, 1));
+}
+
+}  // namespace houghstream::world

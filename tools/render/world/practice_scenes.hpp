@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tools/render/world/mesh_views.hpp"
+#include "tools/render/world/scene_frames.hpp"
+
+namespace houghstream::world {
+
+/// A mesh that stands about in practice scenes.
+struct PracticeObject {
+  int id = 0;
+  ThingPtr thing;
+  std::vector<Eigen::Vector3d> ups;  ///< object frame, see up_directions(); empty = any attitude
+};
+
+/// Pictures in which taught objects are looked for before they count as taught: furnished rooms with the objects, all
+/// round and in their attitudes, among things that are none of them; some of those have an object's shape in other
+/// colours or its look in another size. Standing on something, beside and behind other things, as pictures put together
+/// from views never are. Rooms of training seeds that neither views nor backgrounds use.
+class PracticeScenes {
+ public:
+  /// `objects` is not empty.
+  PracticeScenes(std::vector<PracticeObject> objects, std::uint64_t seed) : objects_(std::move(objects)), seed_(seed) {}
+
+  /// Frame `index`, from 0: kFramesPerRoom of them look at one room, from different sides and distances. The truth
+  /// names objects by PracticeObject::id. Same arguments, same frame; thread-safe.
+  SceneFrame render(int index) const;
+
+  static constexpr int kFramesPerRoom = 2;
+
+ private:
+  World furnished(int room) const;
+
+  std::vector<PracticeObject> objects_;
+  std::uint64_t seed_;
+};
+
+}  // namespace houghstream::world

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "tools/render/world/rooms/put_down.hpp"
+
+namespace houghstream::world {
+
+/// Where somebody holds something.
+struct HeldPlace {
+  Eigen::Vector2d over = Eigen::Vector2d::Zero();  ///< the point of the table below it, metres
+  double arm_azimuth_rad = 0.0;                    ///< where the arm comes from, about z; 0 = from +x
+  std::vector<Eigen::Isometry3d> views;            ///< T_camera_world from which it will be looked at
+};
+
+/// How high things are held, from the table to their lowest point, metres.
+inline constexpr double kLeastHeldM = 0.05;
+inline constexpr double kMostHeldM = 0.30;
+
+/// How much of a held thing the hand hides, over the views.
+inline constexpr double kLeastGripped = 0.10;
+inline constexpr double kMostGripped = 0.35;
+
+/// A rotation, uniform over all (Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992).
+Eigen::Matrix3d any_attitude(Random& random);
+
+/// Held over the table in any attitude by a hand at the end of an arm; the group's first member is the hand. The group
+/// frame is the world's. Throws InputError where no grip is found that hides 10 to 35 % of it.
+Group hold(const ThingPtr& thing, int object_id, const HeldPlace& place, Random& random);
+
+}  // namespace houghstream::world
