@@ -114,7 +114,7 @@ cv::Mat sensed(const ColourVariation& camera, const cv::Mat& colour, Random& ran
         const std::uint8_t coded = in_row[x][static_cast<int>(c)];
         const float value = kept * (light[c][coded] + sigma[c][coded] * noise[c]);
         out_row[x][static_cast<int>(c)] =
-            static_cast<std::uint16_t>(std::clamp(value, 0.0F, 1.0F) * (kLevels - 1) + 0.5F);
+            cv::saturate_cast<std::uint16_t>(std::clamp(value, 0.0F, 1.0F) * (kLevels - 1));
       }
     }
   }

@@ -80,6 +80,7 @@ ThingPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
   }
   const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Part> parts;
+  parts.reserve(8);
   for (int i = 0; i < 4; ++i) {
     parts.push_back(at(finger(points, 1.0, palm, (i - 1.5) * kFingerStepM, grip, skin), origin));
   }
