@@ -92,12 +92,14 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
 void verify_one(const PoseSettings& settings, Estimation& it) {
   const PoseEvidence evidence =
       gather_evidence(*it.seen, it.chosen.T_camera_object, it.detection.score, settings.verification);
-  const QualityTerms terms = quality_terms(evidence, settings.quality);
+  const auto learnt = settings.class_quality.find(it.pose.class_name);
+  const QualitySettings& quality = learnt != settings.class_quality.end() ? learnt->second : settings.quality;
+  const QualityTerms terms = quality_terms(evidence, quality);
   it.pose.visible_fraction = evidence.depth.visible_fraction();
   it.pose.free_space_violation = evidence.depth.free_space_violation();
-  it.pose.quality = pose_quality(terms, settings.quality);
-  if (it.pose.quality < settings.quality.least) {
-    it.pose.status = reason_against(terms, settings.quality);
+  it.pose.quality = pose_quality(terms, quality);
+  if (it.pose.quality < quality.least) {
+    it.pose.status = reason_against(terms, quality);
   } else {
     it.pose.status = PoseStatus::kValid;
     it.pose.T_camera_object = it.chosen.T_camera_object;

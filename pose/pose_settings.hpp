@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "pose/model/object_model.hpp"
 #include "pose/region.hpp"
 #include "pose/registration/candidates.hpp"
@@ -22,8 +25,9 @@ struct PoseSettings {
   TurnSettings turn;
   VerificationSettings verification;
   QualitySettings quality;
-  float min_score = 0.1F;  ///< of a detection whose pose is looked for
-  int threads = 1;         ///< any number gives the same poses
+  std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
+  float min_score = 0.1F;                                ///< of a detection whose pose is looked for
+  int threads = 1;                                       ///< any number gives the same poses
 };
 
 }  // namespace houghstream

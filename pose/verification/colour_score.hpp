@@ -17,7 +17,7 @@ struct ColourComparison {
   /// as exposure and the light's colour decide them, and lightness also free to follow the surface's normals, as
   /// shading does. Near 0, or below, for unrelated prints.
   float agreement = 0.0F;
-  float left_over = 0.0F;     ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
+  float left_over = 0.0F;  ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
   /// How far the mean a* and b* that are seen are from the remembered ones, at any strength (within limits) that haze
   /// or a camera gives these: over the spread of those seen, at most 4.
   float chroma_conflict = 0.0F;

@@ -10,6 +10,7 @@
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
+#include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/bop_results.hpp"
 #include "tools/evaluate/bop_targets.hpp"
@@ -26,6 +27,7 @@ struct EvaluateOptions {
   std::string log;
   std::string channel = ".*";
   std::string objects;
+  std::map<std::string, QualitySettings> class_quality;  // the store's
   std::string forest;
   std::string models;
   std::string latency;
@@ -176,6 +178,7 @@ void search_in_process(const EvaluateOptions& options, Forest forest, const std:
   PublishingRules rules;
   rules.score = options.rules.operating_score;
   rules.quality = options.min_quality;
+  rules.class_quality = options.class_quality;
   const DetectionSettings settings = options.search.settings_for(forest);
   InProcess process(std::move(forest), settings, options.search.engine(), meshes, rules);
   for (OpenScene& it : scenes) process.run(it.scene, it.frames);
@@ -278,6 +281,7 @@ static EvaluateOptions with_store(EvaluateOptions options) {
   const store::ObjectStore objects = store::read_store(options.objects);
   options.forest = objects.forest_file().string();
   options.models = objects.models_folder().string();
+  options.class_quality = stored_quality(objects, QualitySettings{});
   return options;
 }
 

@@ -16,6 +16,8 @@ PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, const Pu
   settings.threads = threads;
   settings.min_score = rules.pose_score;
   settings.quality.least = quality;
+  settings.class_quality = rules.class_quality;
+  for (auto& [name, learnt] : settings.class_quality) learnt.least = quality;
   return {models, settings};
 }
 

@@ -18,6 +18,7 @@ struct PublishingRules {
   float score = 0.0F;                           ///< least of a detection
   float quality = QualitySettings{}.least;      ///< least of a pose
   float pose_score = PoseSettings{}.min_score;  ///< least of a detection whose pose is looked for
+  std::map<std::string, QualitySettings> class_quality = {};  ///< see PoseSettings; `least` is that above
 };
 
 /// Detects, and estimates poses where there are models, without LCM.

@@ -5,6 +5,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/process/pose_process.hpp"
 #include "pose/pose_estimator.hpp"
+#include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 
 namespace {
@@ -52,6 +53,7 @@ int main(int argc, char** argv) {
     catch_stop_signals();
     if (!camera.empty()) options.camera = parse_camera(camera);
     std::map<std::string, Mesh> meshes = load_models(objects, models, model_unit_m);
+    if (!objects.empty()) settings.class_quality = stored_quality(store::read_store(objects), settings.quality);
     for (const auto& [name, mesh] : meshes) options.models.insert(name);
     const PoseEstimator estimator(std::move(meshes), settings);
     LcmBus bus(url, output_log);

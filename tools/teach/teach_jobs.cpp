@@ -8,6 +8,7 @@
 #include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <set>
 
 #include "detector/forest/forest_file.hpp"
 #include "detector/training/forest_trainer.hpp"
@@ -20,6 +21,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "tools/common/stored_quality.hpp"
 #include "tools/teach/contact_sheet.hpp"
 #include "tools/teach/lookalikes.hpp"
 
@@ -155,6 +157,30 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
   return all;
 }
 
+/// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into forest and store.
+void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids, const TeachOptions& options,
+                  Forest& forest, ObjectStore& made) {
+  std::vector<PractisedObject> objects(models.size());
+  parallel_for(options.threads, static_cast<int>(models.size()), [&](int i) {
+    const NamedModel& model = models[static_cast<std::size_t>(i)];
+    const auto of_model = [&](const StoredObject& object) { return object.id == model.object_id; };
+    const StoredObject& stored = *std::find_if(made.objects.begin(), made.objects.end(), of_model);
+    PractisedObject& object = objects[static_cast<std::size_t>(i)];
+    object.name = model.name;
+    object.mesh = model.mesh;
+    object.in_room = {model.object_id, world::make_taught_thing(model.mesh, stored.coloured),
+                      world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured};
+  });
+  PracticeSettings practice = options.practice;
+  practice.seed = options.seed;
+  practice.threads = options.threads;
+  const std::map<std::string, QualitySettings> learnt = practise(objects, new_ids, practice, forest);
+  for (StoredObject& object : made.objects) {
+    if (const auto found = learnt.find(object.name); found != learnt.end())
+      object.quality = quality_to_json(found->second);
+  }
+}
+
 /// The forest's classes get the ids of the store.
 void take_ids(const ObjectStore& list, Forest& forest) {
   for (ObjectClass& known : forest.classes) {
@@ -175,6 +201,7 @@ Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>
     profile.training.trees = trees;
     profile.training.scoring = scoring;
   }
+  profile.training.validation_frames = 0;  // practice tells more
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
   const auto report = [&](const std::string& line) { progress(line); };
@@ -242,7 +269,13 @@ void teach_meshes(const TeachOptions& options) {
   std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
   Forest forest = train(views, old.forest, options, progress);
   take_ids(made, forest);
-  for (NamedModel& model : models_of(meshes)) models.push_back(std::move(model));
+  std::set<int> new_ids;
+  for (NamedModel& model : models_of(meshes)) {
+    new_ids.insert(model.object_id);
+    models.push_back(std::move(model));
+  }
+  practise_all(models, new_ids, options, forest, made);
+  progress(fmt::format("scores and qualities learnt in {} pictures of rooms", options.practice.frames));
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
   write_store(made, models, forest);
   build.publish();

@@ -7,6 +7,7 @@
 #include "detector/profiles.hpp"
 #include "tools/render/world/mesh_views.hpp"
 #include "tools/teach/mesh_sources.hpp"
+#include "tools/teach/practice.hpp"
 #include "tools/teach/training_rooms.hpp"
 
 namespace houghstream::teach {
@@ -21,6 +22,7 @@ struct TeachOptions {
   std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
   world::MeshViewSettings views;               ///< attitudes and colour are those of the object
   Profile profile = make_profile("realtime");  ///< with `add` its training only, the rest is the forest's
+  PracticeSettings practice;                   ///< seed and threads are those below
   std::uint64_t seed = 1;
   int threads = 2;
 };

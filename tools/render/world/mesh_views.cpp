@@ -111,16 +111,28 @@ Eigen::Matrix3d random_rotation(Random& random) {
       .toRotationMatrix();
 }
 
+ThingPtr make_taught_thing(Mesh mesh, bool has_colour) {
+  if (!has_colour) mesh.texture.release();
+  if (mesh.texture.empty()) mesh.uvs.clear();
+  if (!has_colour) mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(128, 128, 128));
+  return make_thing("taught", std::move(mesh), 0.15F);
+}
+
+ThingPtr plainly_painted(const Thing& thing, Random& random) {
+  Thing painted = thing;
+  const cv::Scalar colour = hsv(random.uniform(0, 360), random.uniform(0.0, 0.8), random.uniform(0.15, 0.95));
+  painted.mesh.colours.assign(thing.mesh.vertices.size(), cv::Vec3b(colour[0], colour[1], colour[2]));
+  painted.gloss = static_cast<float>(random.uniform(0.0, 0.3));
+  return std::make_shared<const Thing>(std::move(painted));
+}
+
 MeshViews::MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t seed)
     : settings_(settings), seed_(world_seed(WorldUse::kTraining, seed)) {
   const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
   centre_ = bounds.center().cast<double>();
   for (const Eigen::Vector3f& vertex : mesh.vertices)
     radius_ = std::max(radius_, (vertex.cast<double>() - centre_).norm());
-  if (!settings.has_colour) mesh.texture.release();
-  if (mesh.texture.empty()) mesh.uvs.clear();
-  if (!settings.has_colour) mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(128, 128, 128));
-  thing_ = make_thing("taught", std::move(mesh), 0.15F);
+  thing_ = make_taught_thing(std::move(mesh), settings.has_colour);
   if (settings.attitudes == MeshAttitudes::kAny) {
     add_any_views();
   } else {
@@ -163,16 +175,6 @@ void MeshViews::add_any_views() {
   }
 }
 
-ThingPtr MeshViews::painted(std::uint64_t seed_of_view) const {
-  if (settings_.has_colour) return thing_;
-  Random random(aspect_seed(seed_of_view, 1));
-  Thing thing = *thing_;
-  const cv::Scalar colour = hsv(random.uniform(0, 360), random.uniform(0.0, 0.8), random.uniform(0.15, 0.95));
-  thing.mesh.colours.assign(thing.mesh.vertices.size(), cv::Vec3b(colour[0], colour[1], colour[2]));
-  thing.gloss = static_cast<float>(random.uniform(0.0, 0.3));
-  return std::make_shared<const Thing>(std::move(thing));
-}
-
 TrainingView MeshViews::render(int index) const {
   const ViewPose& pose = poses_.at(static_cast<std::size_t>(index));
   const std::uint64_t own = aspect_seed(seed_, 500U + static_cast<std::uint64_t>(index));
@@ -180,7 +182,8 @@ TrainingView MeshViews::render(int index) const {
   World world;
   set_light_and_photo(world, chance(random, 0.25) ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 3));
   world.focus_radius_m = std::max(0.3, 1.5 * radius_);
-  Placed object{painted(own), Eigen::Isometry3d::Identity(), 1, true};
+  Placed object{settings_.has_colour ? thing_ : plainly_painted(*thing_, random), Eigen::Isometry3d::Identity(), 1,
+                true};
   object.T_world_object.rotate(pose.R_level_object);
   object.T_world_object.translate(-centre_);
   world.items = {object};

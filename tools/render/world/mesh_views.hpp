@@ -39,6 +39,13 @@ struct MeshViewSettings {
   bool has_colour = true;      ///< false: another plain colour in every view
 };
 
+/// A mesh as it is rendered: with colour unknown, plain grey. Its symmetries do not matter. See MeshViews for what it
+/// must have.
+ThingPtr make_taught_thing(Mesh mesh, bool has_colour);
+
+/// The thing, whose vertices have colours, in one colour.
+ThingPtr plainly_painted(const Thing& thing, Random& random);
+
 /// Training views of a mesh: each in a light of its own, as a structured-light camera sees it. Neither axis nor origin
 /// of the mesh mean anything. Same arguments, same views; const calls are thread-safe.
 class MeshViews {
@@ -64,7 +71,6 @@ class MeshViews {
 
   void add_level_views();
   void add_any_views();
-  ThingPtr painted(std::uint64_t seed_of_view) const;
 
   MeshViewSettings settings_;
   std::uint64_t seed_;

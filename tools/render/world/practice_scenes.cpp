@@ -108,7 +108,8 @@ World PracticeScenes::furnished(int room) const {
   const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMostObjects));
   for (int i = 0; i < count; ++i) {
     const PracticeObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
-    setter.put(put_down(object, object.thing, object.id, random), middle);
+    const ThingPtr thing = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
+    setter.put(put_down(object, thing, object.id, random), middle);
   }
   for (int i = random.between(1, 3); i > 0; --i) {
     const PracticeObject& object = pick(random, objects_);

@@ -13,6 +13,7 @@ struct PracticeObject {
   int id = 0;
   ThingPtr thing;
   std::vector<Eigen::Vector3d> ups;  ///< object frame, see up_directions(); empty = any attitude
+  bool has_colour = true;            ///< false: another plain colour in every room
 };
 
 /// Pictures in which taught objects are looked for before they count as taught: furnished rooms with the objects, all

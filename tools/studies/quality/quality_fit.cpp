@@ -9,37 +9,15 @@
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/logistic_regression.hpp"
+#include "pose/verification/quality_training.hpp"
 
 namespace houghstream::quality {
 namespace {
 
-constexpr int kWeights = 1 + static_cast<int>(kQualityTerms.size());  // the bias first
+constexpr double kStiffness = 1e-3;  // of the prior: decides nothing but keeps the weights finite
 constexpr double kRightShare = 0.98;
 constexpr int kParts = 4;
 constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
-
-LogisticExample<kWeights> to_logistic(const Example& example) {
-  LogisticExample<kWeights> out;
-  out.is_true = example.is_right;
-  out.terms[0] = 1.0;
-  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) {
-    out.terms[static_cast<Eigen::Index>(i) + 1] = example.terms.*kQualityTerms[i];
-  }
-  return out;
-}
-
-QualityTerms mean_of_right(const std::vector<Example>& examples) {
-  QualityTerms sum;
-  int count = 0;
-  for (const Example& example : examples) {
-    if (!example.is_right) continue;
-    ++count;
-    for (const auto term : kQualityTerms) sum.*term += example.terms.*term;
-  }
-  for (const auto term : kQualityTerms) sum.*term /= count;
-  return sum;
-}
 
 std::vector<std::string> scenes_of(const std::vector<Example>& examples) {
   std::vector<std::string> scenes;
@@ -81,18 +59,12 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
   const int right = count_right(examples);
   require(right > 0 && right < static_cast<int>(examples.size()), "{} poses, {} of them right, expected both kinds",
           examples.size(), right);
-  std::vector<LogisticExample<kWeights>> logistic_examples;
-  for (const Example& example : examples) logistic_examples.push_back(to_logistic(example));
-  LogisticPrior<kWeights> prior;
-  prior.stiffness = 1e-3;  // decides nothing but keeps the weights finite
-  const Eigen::Matrix<double, kWeights, 1> weights = fit_logistic<kWeights>(logistic_examples, prior);
-  QualitySettings settings;
-  settings.bias = weights[0];
-  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) {
-    settings.weights.*kQualityTerms[i] = weights[static_cast<Eigen::Index>(i) + 1];
-  }
-  settings.typical = mean_of_right(examples);
-  return settings;
+  std::vector<QualityExample> judged;
+  for (const Example& example : examples) judged.push_back({example.terms, example.is_right});
+  QualitySettings nothing;
+  nothing.bias = 0.0;
+  nothing.weights = QualityTerms{};
+  return fit_quality_settings(judged, nothing, kStiffness);
 }
 
 std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples) {

@@ -6,15 +6,9 @@
 
 #include "drivers/files/json_file.hpp"
 #include "pose/verification/quality.hpp"
+#include "tools/teach/quality_examples.hpp"
 
 namespace houghstream::quality {
-
-/// A pose that was found in a scene, judged by the truth.
-struct Example {
-  std::string scene;
-  QualityTerms terms;
-  bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
-};
 
 /// Bias, weights and typical values of the examples; `least` is the default's. Throws InputError unless some are right
 /// and some are wrong.

@@ -9,9 +9,15 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pose/pose_estimator.hpp"
 #include "tools/evaluate/metrics/pose_metrics.hpp"
-#include "tools/studies/quality/quality_fit.hpp"
 
 namespace houghstream::quality {
+
+/// A pose that was found in a scene, judged by the truth.
+struct Example {
+  std::string scene;
+  QualityTerms terms;
+  bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
+};
 
 /// Frames of a scene with detections and poses, one pose for each detection in their order, and what each pose is
 /// judged by: by frame and detection, nothing where there is no pose.
@@ -33,6 +39,9 @@ class PoseFinder {
 
   /// Detects in frames 0, N, 2N, ... of a scene and finds the detections' poses.
   FoundPoses find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const;
+
+  /// The poses of `found.detections`, into `found.poses`; returns what each is judged by. Thread-safe.
+  std::vector<std::optional<QualityTerms>> find_in(const RgbdFrame& frame, EvaluatedFrame& found) const;
 
  private:
   std::vector<std::optional<QualityTerms>> terms_of(const RgbdFrame& frame, const Detections& detections,

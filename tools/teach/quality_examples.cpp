@@ -1,4 +1,4 @@
-#include "tools/studies/quality/quality_examples.hpp"
+#include "tools/teach/quality_examples.hpp"
 
 #include <fmt/format.h>
 
@@ -48,10 +48,14 @@ FoundPoses PoseFinder::find(const std::string& name, const BopScene& scene, cons
   for (EvaluatedFrame& truth : found.frames) {
     const RgbdFrame frame = scene.read_frame(truth.image);
     truth.detections = detector.detect(frame);
-    truth.poses = estimator_.estimate(frame, *truth.detections);
-    found.terms.push_back(terms_of(frame, *truth.detections, *truth.poses));
+    found.terms.push_back(find_in(frame, truth));
   }
   return found;
+}
+
+std::vector<std::optional<QualityTerms>> PoseFinder::find_in(const RgbdFrame& frame, EvaluatedFrame& found) const {
+  found.poses = estimator_.estimate(frame, *found.detections);
+  return terms_of(frame, *found.detections, *found.poses);
 }
 
 std::vector<std::optional<QualityTerms>> PoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,

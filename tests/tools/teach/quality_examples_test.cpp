@@ -1,4 +1,4 @@
-#include "tools/studies/quality/quality_examples.hpp"
+#include "tools/teach/quality_examples.hpp"
 
 #include <gtest/gtest.h>
 

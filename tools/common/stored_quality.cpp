@@ -1,0 +1,43 @@
+#include "tools/common/stored_quality.hpp"
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+nlohmann::json to_json(const QualityTerms& terms) {
+  nlohmann::json out = nlohmann::json::object();
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) out[kQualityTermNames[i]] = terms.*kQualityTerms[i];
+  return out;
+}
+
+QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, const std::string& where) {
+  require(entry.contains(name) && entry[name].is_object() && entry[name].size() == kQualityTerms.size(),
+          "{}: '{}' of the quality expected, with {} terms", where, name, kQualityTerms.size());
+  QualityTerms terms;
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i)
+    terms.*kQualityTerms[i] = json_number(entry[name], kQualityTermNames[i], where);
+  return terms;
+}
+
+}  // namespace
+
+nlohmann::json quality_to_json(const QualitySettings& settings) {
+  return {{"bias", settings.bias}, {"weights", to_json(settings.weights)}, {"typical", to_json(settings.typical)}};
+}
+
+std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects,
+                                                      const QualitySettings& others) {
+  std::map<std::string, QualitySettings> learnt;
+  for (const auto& [name, entry] : objects.quality()) {
+    const std::string where = fmt::format("{} object '{}'", (objects.folder / "store.json").string(), name);
+    QualitySettings settings = others;
+    settings.bias = json_number(entry, "bias", where);
+    settings.weights = terms_from(entry, "weights", where);
+    settings.typical = terms_from(entry, "typical", where);
+    learnt[name] = settings;
+  }
+  return learnt;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,103 @@
+#include "tools/teach/practice.hpp"
+
+#include "detector/detector.hpp"
+#include "detector/stages.hpp"
+#include "detector/training/forest_trainer.hpp"
+#include "detector/training/pictures/camera_variation.hpp"
+#include "detector/training/score_training.hpp"
+#include "pipeline/base/parallel.hpp"
+#include "pose/verification/quality_training.hpp"
+#include "tools/teach/quality_examples.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+constexpr std::uint64_t kCameras = 0x63616D657261ULL;
+
+/// Rendered once, looked at twice.
+std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>& objects,
+                                             const PracticeSettings& settings) {
+  std::vector<world::PracticeObject> in_room;
+  for (const PractisedObject& object : objects) in_room.push_back(object.in_room);
+  const world::PracticeScenes scenes(std::move(in_room), settings.seed);
+  std::vector<world::SceneFrame> frames(static_cast<std::size_t>(settings.frames));
+  parallel_for(settings.threads, settings.frames, [&](int i) {
+    world::SceneFrame& frame = frames[static_cast<std::size_t>(i)];
+    frame = scenes.render(i);
+    frame.visible_masks.clear();
+    Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(i));
+    training::look_through_another(settings.camera_share, settings.camera_variation, frame.frame, random);
+  });
+  return frames;
+}
+
+training::ValidationSource validation_source(const std::vector<world::SceneFrame>& frames) {
+  return {static_cast<int>(frames.size()), [&frames](int index) {
+            const world::SceneFrame& from = frames[static_cast<std::size_t>(index)];
+            training::ValidationFrame frame;
+            frame.frame = from.frame;
+            for (const TrueObject& object : from.objects)
+              frame.objects.push_back({object.object_id, {}, object.box_visible_px, object.visible_fraction});
+            return frame;
+          }};
+}
+
+quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, const Forest& forest,
+                               const std::map<std::string, Mesh>& models, int threads) {
+  std::map<int, std::string> names;
+  for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
+  DetectionSettings detection = detection_settings(forest);
+  detection.threads = 1;
+  detection.evidence.threshold = PoseSettings{}.min_score;
+  const Detector detector(forest, detection);
+  const quality::PoseFinder finder(models, 1);
+  quality::FoundPoses found;
+  found.frames.resize(frames.size());
+  found.terms.resize(frames.size());
+  PerWorker<DetectorWorkspace> workspaces;
+  workspaces.make_room(threads);
+  parallel_for_workers(threads, static_cast<int>(frames.size()), [&](int worker, int f) {
+    const auto index = static_cast<std::size_t>(f);
+    EvaluatedFrame& frame = found.frames[index];
+    for (const TrueObject& object : frames[index].objects)
+      frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
+    frame.detections = detector.detect(frames[index].frame, workspaces[worker]);
+    found.terms[index] = finder.find_in(frames[index].frame, frame);
+  });
+  return found;
+}
+
+}  // namespace
+
+std::map<std::string, QualitySettings> practise(const std::vector<PractisedObject>& objects,
+                                                const std::set<int>& new_ids, const PracticeSettings& settings,
+                                                Forest& forest) {
+  const std::vector<world::SceneFrame> frames = render_frames(objects, settings);
+  Profile profile = training::profile_of(forest);
+  profile.training.threads = settings.threads;
+  training::train_score_model(validation_source(frames), new_ids, 0, profile, forest);
+
+  std::map<std::string, Mesh> models;
+  std::map<std::string, PoseModel> judged_by;
+  for (const PractisedObject& object : objects) {
+    models[object.name] = object.mesh;
+    judged_by[object.name] = make_pose_model(object.mesh, false);
+  }
+  const quality::FoundPoses found = find_poses(frames, forest, models, settings.threads);
+  std::map<std::string, std::vector<QualityExample>> by_class;
+  std::vector<QualityExample> all;
+  for (const auto& [name, model] : judged_by) {
+    for (const quality::Example& example : quality::judge_examples(found, {{name, model}}))
+      by_class[name].push_back({example.terms, example.is_right});
+    all.insert(all.end(), by_class[name].begin(), by_class[name].end());
+  }
+  const QualitySettings common = fit_quality_settings(all, QualitySettings{}, 1.0);
+  std::map<std::string, QualitySettings> learnt;
+  for (const PractisedObject& object : objects) {
+    if (new_ids.count(object.in_room.id) > 0)
+      learnt[object.name] = fit_quality_settings(by_class[object.name], common, 1.0);
+  }
+  return learnt;
+}
+
+}  // namespace houghstream::teach
