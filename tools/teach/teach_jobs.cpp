@@ -252,6 +252,7 @@ void name_lookalikes(const std::vector<NamedModel>& models) {
 void teach_meshes(const TeachOptions& options) {
   const Progress progress;
   world::parse_mesh_attitudes(options.attitudes);
+  store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on
   Contents old;
   if (options.add) old = read_contents(options.out);
   std::vector<TaughtMesh> meshes = read_meshes(options.meshes);
@@ -259,7 +260,6 @@ void teach_meshes(const TeachOptions& options) {
   give_ids(old.list, meshes);
   progress(fmt::format("{} meshes read", meshes.size()));
 
-  store::StoreBuild build(options.out);
   ObjectStore made = start_store(build.folder());
   std::vector<NamedModel> models;
   keep(old, "", made, models);
@@ -290,9 +290,10 @@ void list_store(const fs::path& folder) {
 }
 
 void remove_from_store(const fs::path& folder, const std::string& name) {
+  store::read_store(folder);  // nothing is made beside what is no store
+  store::StoreBuild build(folder);
   const Contents old = read_contents(folder);
   const Forest forest = training::remove_object(*old.forest, name);
-  store::StoreBuild build(folder);
   ObjectStore made = start_store(build.folder());
   made.settings = old.list.settings;
   std::vector<NamedModel> models;
