@@ -23,7 +23,8 @@ struct TrainingSettings {
   /// stands in no room that is learnt from: they would win nearly every node, and the object's colours go unlearnt.
   double histogram_share = 0.3;
   int node_samples = 1500;      ///< at most so many samples choose a node's test; all are then split by it
-  int patches_per_view = 250;   ///< per training view, and per background frame
+  int patches_per_view = 250;   ///< of a training view
+  int patches_per_room = 250;   ///< of a background frame
   int composites_per_view = 3;  ///< pictures made of one view: other background, distance and light
   int spare_background = 10;    ///< background patches looked through for each one drawn blindly, see hard_negatives
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object

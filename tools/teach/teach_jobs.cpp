@@ -190,8 +190,19 @@ void take_ids(const ObjectStore& list, Forest& forest) {
   }
 }
 
+int most_views(const std::vector<TrainingView>& views) {
+  std::map<int, int> counts;
+  for (const TrainingView& view : views) counts[view.class_id] += view.class_id > 0 ? 1 : 0;
+  int most = 1;
+  for (const auto& [class_id, count] : counts) most = std::max(most, count);
+  return most;
+}
+
 Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>& old, const TeachOptions& options,
              const Progress& progress) {
+  constexpr int kPatches = 32000;  // of an object: what trees are grown of, and how long that takes
+  constexpr int kFewestPatches = 40;
+  constexpr int kMostPatches = 250;
   Profile profile = options.profile;
   if (old) {
     profile = training::profile_of(*old);
@@ -201,7 +212,9 @@ Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>
     profile.training.trees = trees;
     profile.training.scoring = scoring;
   }
-  profile.training.validation_frames = 0;  // practice tells more
+  profile.training.validation_frames = 0;    // practice tells more
+  profile.training.composites_per_view = 1;  // another view tells more than another room
+  profile.training.patches_per_view = std::clamp(kPatches / most_views(views), kFewestPatches, kMostPatches);
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
   const auto report = [&](const std::string& line) { progress(line); };

@@ -213,7 +213,7 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
   const WorkingFrame frame = make_working_frame(part, level, profile.features);
   TrainingPicture picture;
   const auto known = [&](int x, int y) { return teaches(level, profile, frame.filled_depth.at<float>(y, x)); };
-  const auto count = static_cast<std::size_t>(settings.patches_per_view / kBackgroundPictures);
+  const auto count = static_cast<std::size_t>(settings.patches_per_room / kBackgroundPictures);
   const int drawn = static_cast<int>(count) * (1 + settings.spare_background);
   for (const cv::Point at : draw_pixels(frame.colour.size(), drawn, random, known)) {
     auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;

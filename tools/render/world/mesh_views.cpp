@@ -25,7 +25,7 @@ constexpr double kSameAttitudeDeg = 40.0;  // nearer ways of resting are one: vi
 constexpr double kTiltDeviationDeg = 4.0;  // no table is level, no camera upright
 constexpr double kLeastLeanDeg = 10.0;
 constexpr double kMostLeanDeg = 45.0;
-constexpr int kMargin_px = 40;
+constexpr int kMargin_px = 12;
 
 double radians(double degrees) {
   return degrees * M_PI / 180.0;
@@ -65,6 +65,17 @@ Placed table_top(double height, Random& random) {
                Eigen::Isometry3d::Identity(), 0, true};
   table.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, height - 0.5 * kThickness));  // its origin is its middle
   return table;
+}
+
+/// The camera, as far as it sees the mesh and a little beside it.
+Camera cropped_around(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object) {
+  const Camera whole = synthetic_camera();
+  Eigen::AlignedBox2d extent;
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    extent.extend(whole.project(T_camera_object * vertex.cast<double>()));
+  const Eigen::Vector2i low = extent.min().array().floor().cast<int>() - kMargin_px;
+  const Eigen::Vector2i high = extent.max().array().ceil().cast<int>() + kMargin_px;
+  return whole.cropped(low.x(), low.y(), high.x() - low.x() + 1, high.y() - low.y() + 1);
 }
 
 /// What is beside the object: nothing would make the camera's exposure rise and its depth end without an edge.
@@ -198,9 +209,7 @@ TrainingView MeshViews::render(int index) const {
   const Eigen::Vector3d eye = distance * Eigen::Vector3d(0.0, -std::cos(pose.pitch_rad), std::sin(pose.pitch_rad));
   const Eigen::Isometry3d T_camera_world =
       Eigen::AngleAxisd(pose.roll_rad, Eigen::Vector3d::UnitZ()) * look_at(eye, Eigen::Vector3d::Zero());
-  const Camera whole = synthetic_camera();
-  const int half = std::min(whole.height / 2, static_cast<int>(whole.fx * radius_ / (distance - radius_)) + kMargin_px);
-  const Camera camera = whole.cropped(whole.width / 2 - half, whole.height / 2 - half, 2 * half, 2 * half);
+  const Camera camera = cropped_around(thing_->mesh, T_camera_world * object.T_world_object);
   ShadedView seen = shade_view(light_world(world), camera, T_camera_world);
   put_wall_behind(distance + random.uniform(2.0, 4.0) * radius_, random, seen);
 
