@@ -12,6 +12,7 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/bop_results.hpp"
 #include "tools/evaluate/class_names.hpp"
+#include "tools/evaluate/frame_times.hpp"
 #include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/report.hpp"
 
@@ -110,6 +111,7 @@ void run(const EvaluateOptions& options) {
   fmt::print("{}", summary_table(evaluation, options.rules));
   if (options.out.empty()) return;
   write_report(evaluation, summary_json(evaluation, options.rules, latencies), options.out);
+  write_frame_times(frames, scene, std::filesystem::path(options.out) / kFrameTimesFile);
   if (!results.poses.empty())
     write_bop_results(bop_estimates(frames, scene, names), std::filesystem::path(options.out) / kBopResultsFile);
 }
@@ -126,8 +128,9 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")
       .delimiter(',');
   app.add_option("--latency", options.latency, "hs-observe's CSV");
-  app.add_option("--out", options.out,
-                 "folder for summary.json, curves.csv, poses.csv, and bop_results.csv where there are poses");
+  app.add_option(
+      "--out", options.out,
+      "folder for summary.json, curves.csv, poses.csv, frames.csv, and bop_results.csv where there are poses");
   EvaluationRules& rules = options.rules;
   rules.operating_score = EvidenceSettings{}.threshold;  // what hs-detect publishes unless told otherwise
   app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection").capture_default_str();
