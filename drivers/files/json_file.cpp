@@ -23,6 +23,12 @@ int index_of(const std::string& key, const std::string& file) {
   return index;
 }
 
+nlohmann::json read_json(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  require(in.good(), "{}: missing or unreadable, expected a JSON file", file.string());
+  return nlohmann::json::parse(in, nullptr, false);
+}
+
 }  // namespace
 
 OrderedJson finite_or_null(double value) {
@@ -30,10 +36,14 @@ OrderedJson finite_or_null(double value) {
 }
 
 nlohmann::json read_json_object(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  require(in.good(), "{}: missing or unreadable, expected a JSON file", file.string());
-  nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  nlohmann::json json = read_json(file);
   require(json.is_object(), "{}: not a JSON object, or cut short", file.string());
+  return json;
+}
+
+nlohmann::json read_json_list(const std::filesystem::path& file) {
+  nlohmann::json json = read_json(file);
+  require(json.is_array(), "{}: not a JSON list, or cut short", file.string());
   return json;
 }
 

@@ -17,6 +17,9 @@ OrderedJson finite_or_null(double value);
 /// Throws InputError when the file is missing or no JSON object.
 nlohmann::json read_json_object(const std::filesystem::path& file);
 
+/// Throws InputError when the file is missing or no JSON list.
+nlohmann::json read_json_list(const std::filesystem::path& file);
+
 /// The entries of an object whose keys are numbers, by number: as text, "10" comes before "9". Throws InputError as
 /// above, and where a key is no non-negative integer.
 std::map<int, nlohmann::json> read_json_by_id(const std::filesystem::path& file);

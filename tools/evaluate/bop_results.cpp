@@ -70,13 +70,6 @@ BopEstimate parse_line(const std::string& line, const std::string& where) {
   return estimate;
 }
 
-int scene_id(const BopScene& scene) {
-  const std::string name = fs::absolute(scene.folder() / "").lexically_normal().parent_path().filename().string();
-  int id = 0;
-  const auto result = std::from_chars(name.data(), name.data() + name.size(), id);
-  return result.ec == std::errc() && result.ptr == name.data() + name.size() && id >= 0 ? id : 0;
-}
-
 std::map<std::string, int> ids_by_name(const std::vector<EvaluatedFrame>& frames,
                                        const std::map<int, std::string>& names) {
   std::map<std::string, int> ids;
@@ -95,7 +88,7 @@ double seconds_of(const std::vector<StageTime>& stages) {
 
 }  // namespace
 
-std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames, const BopScene& scene,
+std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames,
                                        const std::map<int, std::string>& names) {
   const std::map<std::string, int> ids = ids_by_name(frames, names);
   std::set<std::string> unknown;
@@ -109,7 +102,7 @@ std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames
         unknown.insert(pose.class_name);
         continue;
       }
-      estimates.push_back({scene_id(scene), scene.images().at(frame.image).image_id, id->second,
+      estimates.push_back({scene_number(frame.scene), frame.image_id, id->second,
                            static_cast<double>(pose.detection_score), *pose.T_camera_object,
                            seconds_of(frame.poses->stages)});
     }

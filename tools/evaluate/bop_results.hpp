@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "drivers/datasets/bop_dataset.hpp"
 #include "tools/evaluate/evaluated_frame.hpp"
 
 namespace houghstream {
@@ -24,10 +23,10 @@ struct BopEstimate {
 /// hs-evaluate writes it beside its report. bop_toolkit wants it renamed to METHOD_DATASET-SPLIT.csv.
 inline constexpr const char* kBopResultsFile = "bop_results.csv";
 
-/// All poses that were published, in the order of the frames. The scene's id is the number that its folder is named by,
-/// 0 for another name; a class of which `names` (of the scene, by object id) and its truth know no id is left out with
-/// a warning. The time is the sum of the stages that the poses carry.
-std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames, const BopScene& scene,
+/// All poses that were published, in the order of the frames; the scene's id is scene_number(). A class of which
+/// `names` (of the scene, by object id) and its truth know no id is left out with a warning. The time is the sum of the
+/// stages that the poses carry.
+std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames,
                                        const std::map<int, std::string>& names);
 
 /// Writes and reads scene_id,im_id,obj_id,score,R,t,time below a header of these words: R row by row, t in millimetres,

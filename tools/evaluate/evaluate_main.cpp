@@ -1,6 +1,6 @@
 #include "tools/evaluate/evaluate_main.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -11,6 +11,7 @@
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/bop_results.hpp"
+#include "tools/evaluate/bop_targets.hpp"
 #include "tools/evaluate/class_names.hpp"
 #include "tools/evaluate/frame_times.hpp"
 #include "tools/evaluate/in_process.hpp"
@@ -20,7 +21,8 @@ namespace houghstream {
 namespace {
 
 struct EvaluateOptions {
-  std::string scene;
+  std::vector<std::string> scenes;
+  std::string targets;
   std::string log;
   std::string channel = ".*";
   std::string forest;
@@ -30,8 +32,46 @@ struct EvaluateOptions {
   std::vector<std::string> classes;
   EvaluationRules rules;
   SearchOptions search;
+  float min_quality = QualitySettings{}.least;
   int every = 1;
 };
+
+/// A scene with its truth, and beside it the results.
+struct OpenScene {
+  BopScene scene;
+  std::map<int, std::string> names;
+  std::vector<EvaluatedFrame> frames;
+};
+
+std::vector<OpenScene> open_scenes(const EvaluateOptions& options) {
+  std::vector<OpenScene> scenes;
+  std::set<std::string> folder_names;
+  for (const std::string& folder : options.scenes) {
+    const BopScene scene(folder);
+    require(folder_names.insert(scene_name(scene)).second, "--scene {}: two scenes of this folder name, expected one",
+            folder);
+    std::map<int, std::string> names = find_bop_names(folder);
+    std::vector<EvaluatedFrame> frames = read_truth(scene, names);
+    scenes.push_back({scene, std::move(names), std::move(frames)});
+  }
+  return scenes;
+}
+
+/// The frames that are asked for.
+void choose_frames(const EvaluateOptions& options, std::vector<OpenScene>& scenes) {
+  std::vector<BopTarget> targets;
+  if (!options.targets.empty()) targets = read_bop_targets(options.targets);
+  for (OpenScene& it : scenes) {
+    if (!targets.empty()) it.frames = targeted_frames(std::move(it.frames), targets, options.targets);
+    it.frames = every_nth(std::move(it.frames), options.every);
+  }
+}
+
+NamedSide truth_side(const EvaluateOptions& options, const std::vector<OpenScene>& scenes) {
+  NamedSide side{fmt::format("the scene{} {}", scenes.size() > 1 ? "s" : "", fmt::join(options.scenes, ", ")), {}};
+  for (const OpenScene& it : scenes) side.names.merge(true_names(it.frames));
+  return side;
+}
 
 /// Whose names are measured: those that were asked for, else the forest's, else the truth's.
 NamedSide listed_side(const EvaluateOptions& options, const std::optional<Forest>& forest, const NamedSide& truth) {
@@ -57,68 +97,146 @@ std::vector<std::string> listed_classes(const EvaluateOptions& options, const st
   return {listed.names.begin(), listed.names.end()};
 }
 
-/// Poses are measured for the listed classes that have a model.
-Evaluation measure(const EvaluateOptions& options, const BopScene& scene, const std::vector<EvaluatedFrame>& frames,
-                   const std::vector<std::string>& classes, const std::map<std::string, Mesh>& meshes) {
-  if (meshes.empty()) return evaluate(frames, classes, {}, options.rules);
-  std::map<std::string, PoseModel> models;
-  std::map<std::string, BopModel> listed;
+/// What the listed classes' poses are measured with.
+struct Models {
+  std::map<std::string, PoseModel> scored;
+  std::map<std::string, BopModel> bop;
+};
+
+Models make_models(const EvaluateOptions& options, const std::vector<std::string>& classes,
+                   const std::map<std::string, Mesh>& meshes) {
+  Models models;
+  if (meshes.empty()) return models;
   for (auto& [name, model] : make_bop_models(meshes, read_bop_models(options.models))) {
-    models[name] = make_pose_model(model.mesh, model.symmetries.size() > 1);
-    if (std::find(classes.begin(), classes.end(), name) != classes.end()) listed[name] = model;
+    models.scored[name] = make_pose_model(model.mesh, model.symmetries.size() > 1);
+    if (std::find(classes.begin(), classes.end(), name) != classes.end()) models.bop[name] = model;
   }
-  Evaluation evaluation = evaluate(frames, classes, models, options.rules);
-  if (evaluation.frames_with_poses > 0) {
-    const std::vector<EvaluatedFrame> counted = counted_frames(frames, options.rules);
-    evaluation.localisation = localisation_scores(measure_poses(counted, scene, listed, options.search.threads));
-  }
+  return models;
+}
+
+/// The errors of a scene's poses, as published and with nothing withheld.
+struct SceneErrors {
+  ClassErrors published;
+  ClassErrors nothing_withheld;
+};
+
+void join(const ClassErrors& errors, ClassErrors& all) {
+  for (const auto& [name, frames] : errors) all[name].insert(all[name].end(), frames.begin(), frames.end());
+}
+
+bool anything_withheld_is_known(const std::vector<EvaluatedFrame>& frames) {
+  return std::any_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.poses_nothing_withheld; });
+}
+
+SceneErrors measure_scene(const EvaluateOptions& options, const OpenScene& it, const Models& models) {
+  const std::vector<EvaluatedFrame> counted = counted_frames(it.frames, options.rules);
+  const int threads = options.search.threads;
+  SceneErrors errors;
+  errors.published = measure_poses(counted, it.scene, models.bop, threads);
+  if (anything_withheld_is_known(counted))
+    errors.nothing_withheld = measure_poses(with_nothing_withheld(counted), it.scene, models.bop, threads);
+  return errors;
+}
+
+Evaluation evaluate_frames(const EvaluateOptions& options, const std::vector<EvaluatedFrame>& frames,
+                           const std::vector<std::string>& classes, const Models& models, const SceneErrors& errors) {
+  Evaluation evaluation = evaluate(frames, classes, models.scored, options.rules);
+  if (models.scored.empty() || evaluation.frames_with_poses == 0) return evaluation;
+  evaluation.localisation = localisation_scores(errors.published);
+  if (anything_withheld_is_known(frames))
+    evaluation.localisation_nothing_withheld = localisation_scores(errors.nothing_withheld);
   return evaluation;
 }
 
-PublishedResults search_in_process(const EvaluateOptions& options, const BopScene& scene, const Forest& forest,
-                                   const std::map<std::string, Mesh>& models) {
-  const Detector detector(forest, options.search.settings_for(forest), options.search.engine());
-  return run_in_process(scene, detector, options.every, models);
+/// The figures of all scenes together, and of each.
+struct Figures {
+  Evaluation all;
+  std::vector<SceneEvaluation> scenes;
+};
+
+Figures measure(const EvaluateOptions& options, const std::vector<OpenScene>& scenes,
+                const std::vector<std::string>& classes, const Models& models) {
+  Figures figures;
+  std::vector<EvaluatedFrame> frames;
+  SceneErrors errors;
+  for (const OpenScene& it : scenes) {
+    const SceneErrors here = measure_scene(options, it, models);
+    figures.scenes.push_back({scene_name(it.scene), evaluate_frames(options, it.frames, classes, models, here)});
+    frames.insert(frames.end(), it.frames.begin(), it.frames.end());
+    join(here.published, errors.published);
+    join(here.nothing_withheld, errors.nothing_withheld);
+  }
+  figures.all = evaluate_frames(options, frames, classes, models, errors);
+  return figures;
 }
 
-/// Published results, or those of the forest in this process.
-PublishedResults read_results(const EvaluateOptions& options, const BopScene& scene,
-                              const std::optional<Forest>& forest, const std::map<std::string, Mesh>& meshes) {
-  if (!options.log.empty()) return read_result_log(options.log, options.channel);
-  return search_in_process(options, scene, *forest, meshes);
+void search_in_process(const EvaluateOptions& options, Forest forest, const std::map<std::string, Mesh>& meshes,
+                       std::vector<OpenScene>& scenes) {
+  PublishingRules rules;
+  rules.score = options.rules.operating_score;
+  rules.quality = options.min_quality;
+  const DetectionSettings settings = options.search.settings_for(forest);
+  InProcess process(std::move(forest), settings, options.search.engine(), meshes, rules);
+  for (OpenScene& it : scenes) process.run(it.scene, it.frames);
 }
 
-void run(const EvaluateOptions& options) {
+void add_log(const EvaluateOptions& options, bool check_names, const NamedSide& truth, OpenScene& it) {
+  const PublishedResults results = read_result_log(options.log, options.channel);
+  const std::set<std::string> detected = detected_names(results.detections);
+  if (check_names && !detected.empty() && !truth.names.empty())
+    require_shared_name({"the log " + options.log, detected}, truth);
+  add_results(it.frames, results, options.log);
+}
+
+void write_files(const EvaluateOptions& options, const Figures& figures, const std::vector<OpenScene>& scenes) {
+  std::optional<Latencies> latencies;
+  if (!options.latency.empty()) latencies = read_latencies(options.latency);
+  write_report(figures.all,
+               scenes.size() > 1 ? summary_json(figures.all, figures.scenes, options.rules, latencies)
+                                 : summary_json(figures.all, options.rules, latencies),
+               options.out);
+  std::vector<EvaluatedFrame> frames;
+  for (const OpenScene& it : scenes) frames.insert(frames.end(), it.frames.begin(), it.frames.end());
+  write_frame_times(frames, std::filesystem::path(options.out) / kFrameTimesFile);
+  if (figures.all.frames_with_poses == 0) return;
+  std::vector<BopEstimate> estimates;
+  for (const OpenScene& it : scenes) {
+    const std::vector<BopEstimate> here = bop_estimates(it.frames, it.names);
+    estimates.insert(estimates.end(), here.begin(), here.end());
+  }
+  write_bop_results(estimates, std::filesystem::path(options.out) / kBopResultsFile);
+}
+
+void run(EvaluateOptions options) {
   require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
-  const BopScene scene(options.scene);
-  const std::map<int, std::string> names = find_bop_names(options.scene);
-  std::vector<EvaluatedFrame> frames = read_truth(scene, names);
+  require(options.log.empty() || options.scenes.size() == 1, "--log with {} scenes, expected the one that it is of",
+          options.scenes.size());
+  std::vector<OpenScene> scenes = open_scenes(options);
   std::optional<Forest> forest;
   if (!options.forest.empty()) forest = load_forest(options.forest);
   const std::map<std::string, Mesh> meshes =
       options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
-  const NamedSide truth{"the scene " + options.scene, true_names(frames)};
+  const NamedSide truth = truth_side(options, scenes);
   const std::vector<std::string> classes = listed_classes(options, forest, truth, meshes);
-  const PublishedResults results = read_results(options, scene, forest, meshes);
-  const std::string source = options.log.empty() ? options.scene : options.log;
-  const std::set<std::string> detected = detected_names(results.detections);
-  if (!forest && !detected.empty() && !truth.names.empty()) require_shared_name({"the log " + source, detected}, truth);
-  frames = every_nth(std::move(frames), options.every);
-  add_results(frames, results, source);
-  const Evaluation evaluation = measure(options, scene, frames, classes, meshes);
-  std::optional<Latencies> latencies;
-  if (!options.latency.empty()) latencies = read_latencies(options.latency);
-  fmt::print("{}", summary_table(evaluation, options.rules));
-  if (options.out.empty()) return;
-  write_report(evaluation, summary_json(evaluation, options.rules, latencies), options.out);
-  write_frame_times(frames, scene, std::filesystem::path(options.out) / kFrameTimesFile);
-  if (!results.poses.empty())
-    write_bop_results(bop_estimates(frames, scene, names), std::filesystem::path(options.out) / kBopResultsFile);
+  if (!options.log.empty()) add_log(options, !forest, truth, scenes.front());
+  choose_frames(options, scenes);
+  if (options.log.empty()) {
+    options.rules.published_score = options.rules.operating_score;
+    options.rules.min_quality = options.min_quality;
+    search_in_process(options, *std::move(forest), meshes, scenes);
+  }
+  const Figures figures = measure(options, scenes, classes, make_models(options, classes, meshes));
+  fmt::print("{}", summary_table(figures.all, options.rules));
+  if (!options.out.empty()) write_files(options, figures, scenes);
 }
 
 void add_options(CommandLine& app, EvaluateOptions& options) {
-  app.add_option("--scene", options.scene, "BOP scene folder with the truth; without objects, every detection is false")
+  app.add_option("--scene", options.scenes,
+                 "BOP scene folder with the truth; without objects, every detection is false; several, of one camera "
+                 "and the same models, are judged together and each by itself")
       .required();
+  app.add_option("--targets", options.targets,
+                 "BOP's list of targets (test_targets_bop19.json): only its images and objects are asked for");
   app.add_option("--log", options.log, "LCM log with published results");
   add_frame_channels_option(app, options.channel)
       .description(
@@ -128,9 +246,9 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")
       .delimiter(',');
   app.add_option("--latency", options.latency, "hs-observe's CSV");
-  app.add_option(
-      "--out", options.out,
-      "folder for summary.json, curves.csv, poses.csv, frames.csv, and bop_results.csv where there are poses");
+  app.add_option("--out", options.out,
+                 "folder for summary.json, curves.csv, poses.csv, reliability.png, and bop_results.csv where there are "
+                 "poses");
   EvaluationRules& rules = options.rules;
   rules.operating_score = EvidenceSettings{}.threshold;  // what hs-detect publishes unless told otherwise
   app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection").capture_default_str();
@@ -138,7 +256,11 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
       .capture_default_str();
   app.add_option("--pose-min-visible", rules.pose_min_visible, "less visible objects do not enter the pose recall")
       .capture_default_str();
-  app.add_option("--operating-score", rules.operating_score, "score from which precision and false detections count")
+  app.add_option("--operating-score", rules.operating_score,
+                 "score from which precision and false detections count; in-process, poses of weaker ones are withheld")
+      .capture_default_str();
+  app.add_option("--min-quality", options.min_quality, "in-process: poses of lower quality are withheld, as by hs-pose")
+      .range(0.0, 1.0)
       .capture_default_str();
   app.add_flag("--processed-only", rules.processed_only, "leave skipped frames out; default: they count as missed");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();

@@ -1,5 +1,6 @@
 #include "tools/evaluate/evaluated_frame.hpp"
 
+#include <charconv>
 #include <set>
 #include <utility>
 
@@ -39,16 +40,29 @@ std::map<std::int64_t, FrameResults> by_utime(const PublishedResults& published)
 
 }  // namespace
 
+std::string scene_name(const BopScene& scene) {
+  return std::filesystem::absolute(scene.folder() / "").lexically_normal().parent_path().filename().string();
+}
+
+int scene_number(const std::string& scene_name) {
+  int number = 0;
+  const char* end = scene_name.data() + scene_name.size();
+  const auto result = std::from_chars(scene_name.data(), end, number);
+  return result.ec == std::errc() && result.ptr == end && number >= 0 ? number : 0;
+}
+
 std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int, std::string>& names) {
   std::vector<EvaluatedFrame> frames;
   for (std::size_t i = 0; i < scene.images().size(); ++i) {
     EvaluatedFrame frame;
+    frame.scene = scene_name(scene);
+    frame.image_id = scene.images()[i].image_id;
     frame.utime = dataset_utime(i);
     frame.image = i;
     for (const TrueObject& object : scene.images()[i].objects) {
       const auto name = names.find(object.object_id);
       const std::string text = name != names.end() ? name->second : fmt::format("object_{}", object.object_id);
-      frame.objects.push_back({text, object});
+      frame.objects.push_back({text, object, {}});
     }
     frames.push_back(std::move(frame));
   }
@@ -78,6 +92,13 @@ std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int ev
   for (std::size_t i = 0; i < frames.size(); i += static_cast<std::size_t>(every))
     chosen.push_back(std::move(frames[i]));
   return chosen;
+}
+
+std::vector<EvaluatedFrame> with_nothing_withheld(std::vector<EvaluatedFrame> frames) {
+  for (EvaluatedFrame& frame : frames) {
+    if (frame.poses_nothing_withheld) frame.poses = frame.poses_nothing_withheld;
+  }
+  return frames;
 }
 
 std::vector<EvaluatedFrame> processed_frames(const std::vector<EvaluatedFrame>& frames) {

@@ -17,16 +17,30 @@ namespace houghstream {
 struct NamedObject {
   std::string class_name;
   TrueObject truth;
+  /// Whether it is to be found, where a list of targets says (bop_targets.hpp); else that is a matter of how much of it
+  /// is visible.
+  std::optional<bool> is_target = std::nullopt;
 };
 
 /// One frame of a scene: the truth beside what was published for it.
 struct EvaluatedFrame {
+  std::string scene;  ///< the name of its folder
   std::int64_t utime = 0;
   std::size_t image = 0;  ///< position in the scene's images
+  int image_id = 0;       ///< BOP's, in the scene
   std::vector<NamedObject> objects;
   std::optional<Detections> detections;  ///< all detectors'; nothing where the frame was skipped or lost
   std::optional<ObjectPoses> poses;      ///< likewise
+  /// With those that were not published since they are of low quality or of detections of low score; nothing unless
+  /// they were estimated in this process.
+  std::optional<ObjectPoses> poses_nothing_withheld;
 };
+
+/// The name of the scene's folder, by which scenes are told apart.
+std::string scene_name(const BopScene& scene);
+
+/// BOP's scene_id: the number that the folder is named by, 0 for another name.
+int scene_number(const std::string& scene_name);
 
 /// The truth of a scene, frame by frame, with the utimes of its frames. Objects without a name are "object_N".
 std::vector<EvaluatedFrame> read_truth(const BopScene& scene, const std::map<int, std::string>& names);
@@ -38,6 +52,9 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
 
 /// Frames 0, N, 2N ...
 std::vector<EvaluatedFrame> every_nth(std::vector<EvaluatedFrame> frames, int every);
+
+/// The frames as if nothing had been withheld, where that is known.
+std::vector<EvaluatedFrame> with_nothing_withheld(std::vector<EvaluatedFrame> frames);
 
 /// Only the frames that have detections.
 std::vector<EvaluatedFrame> processed_frames(const std::vector<EvaluatedFrame>& frames);

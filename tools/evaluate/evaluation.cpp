@@ -10,6 +10,11 @@
 namespace houghstream {
 namespace {
 
+int count_true(const std::vector<Statement>& statements) {
+  return static_cast<int>(
+      std::count_if(statements.begin(), statements.end(), [](const Statement& it) { return it.is_true; }));
+}
+
 std::set<std::string> detected_classes(const std::vector<EvaluatedFrame>& frames) {
   std::set<std::string> names;
   for (const EvaluatedFrame& frame : frames) {
@@ -34,12 +39,32 @@ std::map<std::string, double> stage_medians(const std::vector<EvaluatedFrame>& f
   return medians;
 }
 
-/// A frame that hs-pose passed over counts as the skipped frames do: its detections have no poses, or are left out.
+/// A frame that hs-pose passed over counts as the skipped frames do: its detections have no poses, or are left out. So
+/// are detections that would not have been published.
 std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std::vector<EvaluatedFrame>& frames,
                                       const EvaluationRules& rules) {
-  const auto passed_over = [&](const JudgedPose& pose) { return !frames[pose.frame].poses; };
-  if (rules.processed_only) judged.erase(std::remove_if(judged.begin(), judged.end(), passed_over), judged.end());
+  const auto left_out = [&](const JudgedPose& pose) {
+    return (rules.processed_only && !frames[pose.frame].poses) || pose.score < rules.published_score;
+  };
+  judged.erase(std::remove_if(judged.begin(), judged.end(), left_out), judged.end());
   return judged;
+}
+
+/// How far quality holds, and how many of the published poses are right.
+void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
+                     Evaluation& out) {
+  const std::vector<EvaluatedFrame> all = with_nothing_withheld(frames);
+  std::vector<Statement> statements;
+  for (const ClassResult& result : out.classes) {
+    const auto model = models.find(result.class_name);
+    if (model == models.end()) continue;
+    const std::vector<Statement> published = pose_statements(frames, result, model->second);
+    out.published.count += static_cast<int>(published.size());
+    out.published.right += count_true(published);
+    const std::vector<Statement> known = pose_statements(all, result, model->second);
+    statements.insert(statements.end(), known.begin(), known.end());
+  }
+  out.pose_calibration = calibrate(statements, count_true(statements));
 }
 
 void evaluate_poses(const std::vector<EvaluatedFrame>& frames, const std::map<std::string, PoseModel>& models,
@@ -71,16 +96,20 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
   out.frames = static_cast<int>(all_frames.size());
   out.frames_processed = static_cast<int>(processed.size());
   for (const EvaluatedFrame& frame : processed) out.frames_with_poses += frame.poses ? 1 : 0;
+  int required = 0;
   for (const std::string& name : class_names) {
     out.classes.push_back(evaluate_class(frames, name, rules.detection));
     out.operating[name] = {count_verdicts(out.classes.back(), Verdict::kTrue, rules.operating_score),
                            count_verdicts(out.classes.back(), Verdict::kFalse, rules.operating_score)};
+    required += out.classes.back().required;
   }
+  out.detection_calibration = calibrate(score_statements(out.classes), required);
   for (const std::string& name : detected_classes(frames)) {
     const ClassResult result = evaluate_class(frames, name, rules.detection);
     out.false_detections += count_verdicts(result, Verdict::kFalse, rules.operating_score);
   }
   evaluate_poses(frames, models, rules, out);
+  judge_qualities(frames, models, out);
   out.stage_ms = stage_medians(frames);
   return out;
 }

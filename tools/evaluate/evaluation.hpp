@@ -15,8 +15,11 @@ struct EvaluationRules {
   DetectionRules detection;
   double pose_min_visible = 0.5;  ///< poses of less visible objects do not enter the recall
   float operating_score = 0.0F;   ///< precision, recall and false detections count detections from this score on
+  /// The recall of poses counts those of detections from this score on: others would not have been published.
+  float published_score = 0.0F;
   /// Leave skipped frames out instead of counting their objects, and the poses of what was found there, as missed.
   bool processed_only = false;
+  std::optional<float> min_quality;  ///< poses of lower quality were withheld; nothing where others decided that
 };
 
 /// How the detections of one class fared from the operating score on.
@@ -25,19 +28,33 @@ struct OperatingPoint {
   int false_count = 0;
 };
 
-/// A scene's figures. NaN where there is nothing to measure.
+/// The poses that were published of listed classes with a model, but those of ignored detections.
+struct PublishedPoses {
+  int count = 0;
+  int right = 0;  ///< of true detections, ADD-S below 10 % of the diameter
+};
+
+/// The figures of one scene, or of several ones together. NaN where there is nothing to measure.
 struct Evaluation {
-  int frames = 0;            ///< of the scene
+  int frames = 0;            ///< of the scenes
   int frames_processed = 0;  ///< with detections
   int frames_with_poses = 0;
   std::vector<ClassResult> classes;  ///< as listed
   std::map<std::string, OperatingPoint> operating;
-  int false_detections = 0;       ///< of all classes, listed or not, from the operating score on
+  int false_detections = 0;  ///< of all classes, listed or not, from the operating score on
+  /// Of the scores of all detections of listed classes that there are, however low, but ignored ones; its recall is
+  /// over all required objects. Below the threshold with which they were found nothing is known.
+  Calibration detection_calibration;
+  /// Of the quality of the poses of these detections (pose_statements()), those that were withheld among them where
+  /// they are known; its recall is over all that are right.
+  Calibration pose_calibration;
+  PublishedPoses published;
   std::vector<JudgedPose> poses;  ///< of true detections of listed classes that have a model
   std::map<std::string, double> add_s_recall;
   std::map<std::string, double> add_or_add_s_recall;
   std::optional<LocalisationScores> localisation;  ///< nothing unless poses were measured against depth too
-  std::map<std::string, double> stage_ms;          ///< median by stage
+  std::optional<LocalisationScores> localisation_nothing_withheld;  ///< nothing unless withheld poses are known
+  std::map<std::string, double> stage_ms;                           ///< median by stage
 };
 
 /// The frames that count under the rules.

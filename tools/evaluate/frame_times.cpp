@@ -24,10 +24,9 @@ std::string milliseconds(const std::vector<StageTime>& stages, const std::string
 
 }  // namespace
 
-void write_frame_times(const std::vector<EvaluatedFrame>& frames, const BopScene& scene,
-                       const std::filesystem::path& file) {
+void write_frame_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file) {
   std::ofstream out(file);
-  out << "image_id,detect_ms,pose_ms,detections,poses\n";
+  out << "scene,image_id,detect_ms,pose_ms,detections,poses\n";
   for (const EvaluatedFrame& frame : frames) {
     if (!frame.detections) continue;
     std::size_t poses = 0;
@@ -35,7 +34,7 @@ void write_frame_times(const std::vector<EvaluatedFrame>& frames, const BopScene
       for (const ObjectPose& pose : frame.poses->poses) poses += pose.T_camera_object ? 1 : 0;
     }
     const std::vector<StageTime>& stages = frame.poses ? frame.poses->stages : frame.detections->stages;
-    out << fmt::format("{},{},{},{},{}\n", scene.images().at(frame.image).image_id, milliseconds(stages, "detect."),
+    out << fmt::format("{},{},{},{},{},{}\n", frame.scene, frame.image_id, milliseconds(stages, "detect."),
                        milliseconds(stages, "pose."), frame.detections->detections.size(), poses);
   }
   out.close();

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "drivers/datasets/bop_dataset.hpp"
 #include "tools/evaluate/evaluated_frame.hpp"
 
 namespace houghstream {
@@ -11,9 +10,8 @@ namespace houghstream {
 /// hs-evaluate writes it beside its report.
 inline constexpr const char* kFrameTimesFile = "frames.csv";
 
-/// image_id,detect_ms,pose_ms,detections,poses of each frame with detections: the sums of the stages whose names begin
-/// with "detect." and "pose.", empty where there are none. Throws InputError where it cannot be written.
-void write_frame_times(const std::vector<EvaluatedFrame>& frames, const BopScene& scene,
-                       const std::filesystem::path& file);
+/// scene,image_id,detect_ms,pose_ms,detections,poses of each frame with detections: the sums of the stages whose names
+/// begin with "detect." and "pose.", empty where there are none. Throws InputError where it cannot be written.
+void write_frame_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file);
 
 }  // namespace houghstream

@@ -1,17 +1,42 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "detector/detector.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/geometry/mesh.hpp"
-#include "tools/evaluate/result_log.hpp"
+#include "pose/pose_settings.hpp"
+#include "tools/evaluate/evaluated_frame.hpp"
 
 namespace houghstream {
 
-/// Detects in every Nth frame of the scene, and estimates poses where there are models (by class name), without LCM.
-PublishedResults run_in_process(const BopScene& scene, const Detector& detector, int every,
-                                const std::map<std::string, Mesh>& models);
+/// What would be published of what is found.
+struct PublishingRules {
+  float score = 0.0F;                           ///< least of a detection
+  float quality = QualitySettings{}.least;      ///< least of a pose
+  float pose_score = PoseSettings{}.min_score;  ///< least of a detection whose pose is looked for
+};
+
+/// Detects, and estimates poses where there are models, without LCM.
+class InProcess {
+ public:
+  /// `settings` may find detections of lower score than those that would be published, to rank and judge them too.
+  /// Models by class name.
+  InProcess(Forest forest, const DetectionSettings& settings, const Engine& engine,
+            const std::map<std::string, Mesh>& models, const PublishingRules& rules);
+  ~InProcess();
+
+  /// Fills in the results of these frames of the scene: all detections, without their rotations; the poses that would
+  /// be published, those of other detections being kLowScore; the poses of all from PublishingRules::pose_score on.
+  /// Where there are models, the stages' times are those of a search for what would be published.
+  void run(const BopScene& scene, std::vector<EvaluatedFrame>& frames);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace houghstream

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <fstream>
 
+#include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/percentiles.hpp"
 #include "tools/common/rounded.hpp"
+#include "tools/evaluate/reliability_picture.hpp"
 
 namespace houghstream {
 namespace {
@@ -31,6 +33,7 @@ OrderedJson rules_json(const EvaluationRules& rules) {
           {"max_per_class", rules.detection.max_per_class},
           {"operating_score", number(static_cast<double>(rules.operating_score))},
           {"pose_min_visible", rules.pose_min_visible},
+          {"min_quality", rules.min_quality ? number(static_cast<double>(*rules.min_quality)) : OrderedJson(nullptr)},
           {"skipped_frames", rules.processed_only ? "left out" : "missed"}};
 }
 
@@ -44,6 +47,42 @@ void add_detection_figures(const Evaluation& evaluation, OrderedJson& json) {
   }
   json["auc"]["mean"] = number(mean_auc(evaluation.classes));
   json["auc"]["weighted"] = number(weighted_auc(evaluation.classes));
+}
+
+OrderedJson operating_json(const Evaluation& evaluation) {
+  OperatingPoint all;
+  int required = 0;
+  for (const ClassResult& result : evaluation.classes) {
+    all.true_count += evaluation.operating.at(result.class_name).true_count;
+    all.false_count += evaluation.operating.at(result.class_name).false_count;
+    required += result.required;
+  }
+  return {{"precision", ratio(all.true_count, all.true_count + all.false_count)},
+          {"recall", ratio(all.true_count, required)},
+          {"true", all.true_count},
+          {"false", all.false_count},
+          {"required", required}};
+}
+
+OrderedJson calibration_json(const Calibration& calibration) {
+  OrderedJson json = {{"ece", number(calibration.ece)},
+                      {"count", calibration.count},
+                      {"bins", OrderedJson::array()},
+                      {"proposed", OrderedJson::array()}};
+  for (const ReliabilityBin& bin : calibration.bins) {
+    json["bins"].push_back({{"from", bin.from},
+                            {"to", bin.to},
+                            {"count", bin.count},
+                            {"mean_score", number(bin.mean_score)},
+                            {"true_fraction", number(bin.true_fraction)}});
+  }
+  for (const ProposedThreshold& proposed : calibration.proposed) {
+    // In full: a rounded score would leave out the very one that it is, or let in others.
+    json["proposed"].push_back({{"precision", proposed.precision},
+                                {"score", proposed.score ? OrderedJson(*proposed.score) : OrderedJson(nullptr)},
+                                {"recall", number(proposed.recall)}});
+  }
+  return json;
 }
 
 OrderedJson recall_json(const std::map<std::string, double>& recalls) {
@@ -91,10 +130,11 @@ std::string curves_csv(const Evaluation& evaluation) {
 
 std::string poses_csv(const Evaluation& evaluation) {
   const auto metres = [](double value) { return std::isfinite(value) ? fmt::format("{:.6f}", value) : std::string(); };
-  std::string text = "frame,object,add,add_s,visible,status\n";
+  std::string text = "frame,object,add,add_s,visible,status,score,quality,scene,image\n";
   for (const JudgedPose& pose : evaluation.poses) {
-    text += fmt::format("{},{},{},{},{:.3f},{}\n", pose.frame, pose.class_name, metres(pose.add), metres(pose.add_s),
-                        pose.visible_fraction, to_string(pose.status));
+    text += fmt::format("{},{},{},{},{:.3f},{},{:.4f},{:.4f},{},{}\n", pose.frame, pose.class_name, metres(pose.add),
+                        metres(pose.add_s), pose.visible_fraction, to_string(pose.status), pose.score, pose.quality,
+                        pose.scene, pose.image_id);
   }
   return text;
 }
@@ -109,13 +149,20 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   json["frames_processed"] = evaluation.frames_processed;
   json["frames_with_poses"] = evaluation.frames_with_poses;
   add_detection_figures(evaluation, json);
+  json["operating"] = operating_json(evaluation);
+  json["detection_calibration"] = calibration_json(evaluation.detection_calibration);
   json["false_detections"] = evaluation.false_detections;
   // Only a frame that was looked at can have a false detection.
   json["false_per_frame"] = ratio(evaluation.false_detections, evaluation.frames_processed);
   json["frames_counted"] = counted;
   json["pose_recall_add_s_10"] = recall_json(evaluation.add_s_recall);
   json["pose_recall_add_or_add_s_10"] = recall_json(evaluation.add_or_add_s_recall);
+  json["pose_calibration"] = calibration_json(evaluation.pose_calibration);
+  json["published"] = evaluation.published.count;
+  json["published_good_fraction"] = ratio(evaluation.published.right, evaluation.published.count);
   if (evaluation.localisation) json["bop19"] = localisation_json(*evaluation.localisation);
+  if (evaluation.localisation_nothing_withheld)
+    json["bop19_nothing_withheld"] = localisation_json(*evaluation.localisation_nothing_withheld);
   if (latencies) {
     json["latency_ms"] = {{"detect", to_json(latencies->detect_ms)},
                           {"pose", to_json(latencies->pose_ms)},
@@ -124,6 +171,18 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   json["stage_ms_median"] = OrderedJson::object();
   for (const auto& [stage, median] : evaluation.stage_ms) json["stage_ms_median"][stage] = number(median);
   json["rules"] = rules_json(rules);
+  return json;
+}
+
+OrderedJson summary_json(const Evaluation& evaluation, const std::vector<SceneEvaluation>& scenes,
+                         const EvaluationRules& rules, const std::optional<Latencies>& latencies) {
+  OrderedJson json = summary_json(evaluation, rules, latencies);
+  json["scenes"] = OrderedJson::object();
+  for (const SceneEvaluation& scene : scenes) {
+    OrderedJson figures = summary_json(scene.evaluation, rules, std::nullopt);
+    figures.erase("rules");
+    json["scenes"][scene.name] = std::move(figures);
+  }
   return json;
 }
 
@@ -147,6 +206,14 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
     text += fmt::format("{:<28}{:>8.3f} of {} targets (VSD {:.3f}, MSSD {:.3f}, MSPD {:.3f})\n", "AR (BOP 2019)",
                         all.mean, all.targets, all.vsd, all.mssd, all.mspd);
   }
+  if (evaluation.localisation_nothing_withheld) {
+    const AverageRecall& all = evaluation.localisation_nothing_withheld->all;
+    text += fmt::format("{:<28}{:>8.3f}\n", "AR, nothing withheld", all.mean);
+  }
+  text += fmt::format("{:<28}{:>8.3f} score, {:.3f} quality\n", "calibration error",
+                      evaluation.detection_calibration.ece, evaluation.pose_calibration.ece);
+  if (evaluation.frames_with_poses > 0)
+    text += fmt::format("poses published {}, right {}\n", evaluation.published.count, evaluation.published.right);
   text += fmt::format("false detections {} from score {} on\n", evaluation.false_detections, rules.operating_score);
   for (const auto& [stage, median] : evaluation.stage_ms) text += fmt::format("{:<28}{:>8.2f} ms\n", stage, median);
   return text;
@@ -159,6 +226,9 @@ void write_report(const Evaluation& evaluation, const OrderedJson& summary, cons
   write_json(summary, folder / "summary.json");
   write_text(folder / "curves.csv", curves_csv(evaluation));
   write_text(folder / "poses.csv", poses_csv(evaluation));
+  if (evaluation.detection_calibration.count == 0) return;
+  write_png(reliability_picture(evaluation.detection_calibration, evaluation.pose_calibration),
+            folder / "reliability.png");
 }
 
 }  // namespace houghstream

@@ -34,6 +34,10 @@ int main(int argc, char** argv) {
   app.add_option("--min-score", settings.min_score, "poses are looked for from this score of the detection on")
       .range(0.0, 1.0)
       .capture_default_str();
+  app.add_option("--min-quality", settings.quality.least,
+                 "poses that are right with a lower probability are withheld, and it is said why")
+      .range(0.0, 1.0)
+      .capture_default_str();
   add_frame_channels_option(app, options.frame_channels);
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, url);

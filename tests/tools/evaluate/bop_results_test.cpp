@@ -99,7 +99,7 @@ TEST(BopEstimates, CarryTheIdsOfTheScene) {
   frames[1].poses = ObjectPoses{{"", frames[1].utime},
                                 {refused, pose_of("mug"), pose_of("stranger")},
                                 {{"detect.leaves", 200000}, {"pose", 50000}}};
-  const std::vector<BopEstimate> estimates = bop_estimates(frames, scene, {{3, "mug"}});
+  const std::vector<BopEstimate> estimates = bop_estimates(frames, {{3, "mug"}});
   ASSERT_EQ(estimates.size(), 1U) << "no pose, and no id";
   EXPECT_EQ(estimates[0].scene_id, 48);
   EXPECT_EQ(estimates[0].image_id, 1);
@@ -116,7 +116,7 @@ TEST(BopEstimates, AnotherNameOfTheFolderIsSceneZeroAndNoStagesNoTime) {
   object.class_name = "object_9";
   object.truth.object_id = 9;
   frames[1].objects = {object};
-  const std::vector<BopEstimate> estimates = bop_estimates(frames, scene, {});
+  const std::vector<BopEstimate> estimates = bop_estimates(frames, {});
   ASSERT_EQ(estimates.size(), 1U);
   EXPECT_EQ(estimates[0].scene_id, 0);
   EXPECT_EQ(estimates[0].object_id, 9) << "as the truth has it";

@@ -29,6 +29,8 @@ Detection detect(const std::string& name, const cv::Rect& box, float score) {
 std::vector<EvaluatedFrame> two_frames() {
   std::vector<EvaluatedFrame> frames(2);
   for (std::size_t i = 0; i < 2; ++i) {
+    frames[i].scene = "desk";
+    frames[i].image_id = 7;
     frames[i].utime = static_cast<std::int64_t>(i);
     NamedObject mug;
     mug.class_name = "mug";
@@ -40,6 +42,7 @@ std::vector<EvaluatedFrame> two_frames() {
   ObjectPose pose;
   pose.detection_index = 0;
   pose.status = PoseStatus::kValid;
+  pose.quality = 0.8F;
   pose.T_camera_object = Eigen::Isometry3d::Identity();
   frames[0].poses = ObjectPoses{{}, {pose}, {{"detect.leaves", 4000}, {"pose.icp", 2000}}};
   return frames;
@@ -83,6 +86,43 @@ TEST(EvaluationReport, AverageRecallsStandInTheSummaryWhereTheyWereMeasured) {
   EXPECT_NE(summary_table(evaluation, rules).find("0.400 of 2 targets"), std::string::npos);
 }
 
+TEST(EvaluationReport, PrecisionAndRecallOfAllClassesAreThoseOfTheOperatingScore) {
+  EvaluationRules rules;
+  rules.operating_score = 0.5F;
+  std::vector<EvaluatedFrame> frames = two_frames();
+  frames[0].detections->detections.push_back(detect("mug", {200, 200, 50, 50}, 0.6F));
+  frames[0].detections->detections.push_back(detect("can", {200, 200, 50, 50}, 0.4F));
+  const OrderedJson operating = summary_json(evaluate(frames, {"mug", "can"}, {}, rules), rules, {})["operating"];
+  EXPECT_EQ(operating, (OrderedJson{{"precision", 0.5}, {"recall", 0.5}, {"true", 1}, {"false", 1}, {"required", 2}}));
+}
+
+TEST(EvaluationReport, CalibrationsHaveTheirErrorsBinsAndThresholds) {
+  const EvaluationRules rules;
+  const OrderedJson json = summary_json(evaluate(two_frames(), {"mug"}, kModels, rules), rules, {});
+  EXPECT_EQ(json["detection_calibration"]["ece"], 0.1);
+  EXPECT_EQ(json["detection_calibration"]["bins"].size(), 10U);
+  EXPECT_EQ(json["detection_calibration"]["bins"][8]["count"], 1) << "0.9F is a little less than 0.9";
+  EXPECT_EQ(json["detection_calibration"]["bins"][8]["mean_score"], 0.9);
+  EXPECT_TRUE(json["detection_calibration"]["bins"][0]["true_fraction"].is_null());
+  EXPECT_EQ(json["detection_calibration"]["proposed"][2]["precision"], 0.98);
+  EXPECT_EQ(json["detection_calibration"]["proposed"][2]["score"].get<float>(), 0.9F);
+  EXPECT_EQ(json["detection_calibration"]["proposed"][2]["recall"], 0.5) << "of what is required";
+  EXPECT_EQ(json["pose_calibration"]["ece"], 0.2);
+  EXPECT_EQ(json["pose_calibration"]["proposed"][0]["recall"], 1.0) << "of the right ones";
+  EXPECT_EQ(json["published"], 1);
+  EXPECT_EQ(json["published_good_fraction"], 1.0);
+}
+
+TEST(EvaluationReport, SeveralScenesHaveTheirOwnFigures) {
+  const EvaluationRules rules;
+  const Evaluation evaluation = evaluate(two_frames(), {"mug"}, {}, rules);
+  const OrderedJson json = summary_json(evaluation, {{"desk", evaluation}, {"shelf", {}}}, rules, {});
+  EXPECT_EQ(json["auc"]["mug"], 0.5);
+  EXPECT_EQ(json["scenes"]["desk"]["auc"]["mug"], 0.5);
+  EXPECT_EQ(json["scenes"]["shelf"]["frames"], 0);
+  EXPECT_FALSE(json["scenes"]["desk"].contains("rules"));
+}
+
 TEST(EvaluationReport, TheRulesAreFollowed) {
   EvaluationRules rules;
   rules.processed_only = true;
@@ -100,7 +140,9 @@ TEST(EvaluationReport, FilesAreWrittenAsStated) {
   write_report(evaluation, summary_json(evaluation, rules, std::nullopt), folder);
   EXPECT_EQ(read_text(folder / "curves.csv"), "object,score,precision,recall\nmug,0.9,1.000000,0.500000\n");
   EXPECT_EQ(read_text(folder / "poses.csv"),
-            "frame,object,add,add_s,visible,status\n0,mug,0.000000,0.000000,1.000,valid\n");
+            "frame,object,add,add_s,visible,status,score,quality,scene,image\n"
+            "0,mug,0.000000,0.000000,1.000,valid,0.9000,0.8000,desk,7\n");
+  EXPECT_TRUE(fs::exists(folder / "reliability.png"));
   EXPECT_EQ(read_json_object(folder / "summary.json")["auc"]["mug"], 0.5);
   write_text(folder / "file", "");
   EXPECT_THROW(write_report(evaluation, {}, folder / "file"), InputError);

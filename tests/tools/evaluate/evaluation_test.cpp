@@ -249,6 +249,43 @@ TEST(PoseMetrics, AFrameThatThePosesPassedOverCountsAsMissedUnlessProcessedFrame
   EXPECT_TRUE(evaluate(frames, {"mug"}, models, {}).add_s_recall.empty()) << "nobody looked for poses";
 }
 
+TEST(PoseMetrics, PublishedPosesOfFalseDetectionsAndThoseOffAreWrong) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);  // right, wrong, none
+  frames[0].detections->detections.push_back(detection("mug", kRight, 0.4F));
+  ObjectPose of_false = frames[0].poses->poses[0];
+  of_false.detection_index = 1;
+  frames[0].poses->poses.push_back(of_false);
+  const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
+  const Evaluation evaluation = evaluate(frames, {"mug"}, models, {});
+  EXPECT_EQ(evaluation.published.count, 3);
+  EXPECT_EQ(evaluation.published.right, 1);
+  EXPECT_EQ(evaluation.pose_calibration.count, 3);
+}
+
+TEST(PoseMetrics, QualityIsJudgedByWithheldPosesToo) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
+  frames[0].poses_nothing_withheld = frames[0].poses;
+  frames[0].poses_nothing_withheld->poses[0].quality = 0.3F;
+  frames[0].poses->poses[0].T_camera_object.reset();
+  const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
+  const Evaluation evaluation = evaluate(frames, {"mug"}, models, {});
+  EXPECT_EQ(evaluation.published.count, 1);
+  EXPECT_EQ(evaluation.published.right, 0);
+  EXPECT_EQ(evaluation.pose_calibration.count, 2);
+  EXPECT_EQ(evaluation.pose_calibration.bins[3].true_fraction, 1.0);
+  EXPECT_EQ(evaluation.add_s_recall.at("mug"), 0.0) << "as published";
+}
+
+TEST(PoseMetrics, DetectionsThatWereNotPublishedDoNotEnterTheRecall) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
+  frames[1].detections->detections[0].score = 0.2F;
+  frames[2].detections->detections[0].score = 0.2F;
+  EvaluationRules rules;
+  rules.published_score = 0.5F;
+  const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
+  EXPECT_EQ(evaluate(frames, {"mug"}, models, rules).add_s_recall.at("mug"), 1.0);
+}
+
 fs::path write_csv(const std::string& text) {
   fs::path file = fs::temp_directory_path() / "houghstream_latency_test.csv";
   std::ofstream(file) << text;

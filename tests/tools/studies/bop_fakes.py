@@ -45,8 +45,8 @@ def write_evaluation(folder, scene, least=0.0):
         true += is_true
         lines.append(f"object_2,{score},{true / rank:.6f},{true / facts['required']:.6f}")
     (folder / "curves.csv").write_text("\n".join(lines) + "\n")
-    times = [f"{i},{ms},,1,0" for i, ms in enumerate(facts["ms"])]
-    (folder / "frames.csv").write_text("\n".join(["image_id,detect_ms,pose_ms,detections,poses", *times]) + "\n")
+    times = [f"{scene},{i},{ms},,1,0" for i, ms in enumerate(facts["ms"])]
+    (folder / "frames.csv").write_text("\n".join(["scene,image_id,detect_ms,pose_ms,detections,poses", *times]) + "\n")
     row = f"{int(scene)},1,2,0.9,1 0 0 0 1 0 0 0 1,0 0 1000,0.02"
     (folder / "bop_results.csv").write_text(f"scene_id,im_id,obj_id,score,R,t,time\n{row}\n")
     write_json(folder / "summary.json", {

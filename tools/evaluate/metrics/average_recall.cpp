@@ -14,8 +14,8 @@ std::vector<const TrueObject*> targets_of(const EvaluatedFrame& frame, const std
   std::vector<const TrueObject*> targets;
   for (const NamedObject& object : frame.objects) {
     const TrueObject& truth = object.truth;
-    if (object.class_name == class_name && truth.has_pose && truth.visible_fraction >= kTargetVisibility)
-      targets.push_back(&truth);
+    const bool is_target = object.is_target.value_or(truth.visible_fraction >= kTargetVisibility);
+    if (object.class_name == class_name && truth.has_pose && is_target) targets.push_back(&truth);
   }
   return targets;
 }

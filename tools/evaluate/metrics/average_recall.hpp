@@ -14,7 +14,7 @@
 
 namespace houghstream {
 
-/// Less visible objects are no targets.
+/// Less visible objects are no targets, where nothing else says which are.
 constexpr double kTargetVisibility = 0.1;
 
 /// The meshes of a models folder by class name (load_class_models()) with what its models_info.json says of them.

@@ -11,7 +11,8 @@ namespace {
 using ObjectKey = std::pair<std::size_t, std::size_t>;  // frame, object
 
 bool is_required(const NamedObject& object, const DetectionRules& rules) {
-  return object.truth.visible_fraction >= rules.min_visible && !object.truth.box_visible_px.empty();
+  const bool is_target = object.is_target.value_or(object.truth.visible_fraction >= rules.min_visible);
+  return is_target && !object.truth.box_visible_px.empty();
 }
 
 /// The class's detections over all frames, strongest first.
@@ -111,6 +112,17 @@ ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std:
   result.auc = average_precision(result.judged, result.required);
   result.curve = precision_recall_curve(result.judged, result.required);
   return result;
+}
+
+std::vector<Statement> score_statements(const std::vector<ClassResult>& classes) {
+  std::vector<Statement> statements;
+  for (const ClassResult& result : classes) {
+    for (const JudgedDetection& detection : result.judged) {
+      if (detection.verdict == Verdict::kIgnored) continue;
+      statements.push_back({static_cast<double>(detection.score), detection.verdict == Verdict::kTrue});
+    }
+  }
+  return statements;
 }
 
 double mean_auc(const std::vector<ClassResult>& classes) {

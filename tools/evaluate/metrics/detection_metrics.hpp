@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "tools/evaluate/evaluated_frame.hpp"
+#include "tools/evaluate/metrics/calibration.hpp"
 
 namespace houghstream {
 
 /// What counts as found (Haensch et al. 2017, Section 4, after Everingham et al. 2010).
 struct DetectionRules {
   double min_iou = 0.5;      ///< overlap of the detected with the true visible box
-  double min_visible = 0.1;  ///< objects less visible than this are neither required nor false
+  double min_visible = 0.1;  ///< objects less visible than this are neither required nor false, unless they are targets
   int max_per_class = 250;   ///< strongest detections of a class in a frame that count
 };
 
@@ -27,11 +28,11 @@ struct JudgedDetection {
 
 /// Judges all detections of a class, strongest first over all frames (ties by frame, then index). A detection is true
 /// when it overlaps a required object that no stronger detection has taken (the one of largest overlap); repeated
-/// detections are false; one that overlaps only an object less visible than required is ignored.
+/// detections are false; one that overlaps only an object that is not required is ignored.
 std::vector<JudgedDetection> judge_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                               const DetectionRules& rules);
 
-/// Objects of the class that are visible enough to be required.
+/// Objects of the class that are visible enough to be required, or targets.
 int count_required(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                    const DetectionRules& rules);
 
@@ -59,6 +60,9 @@ struct ClassResult {
 };
 ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                            const DetectionRules& rules);
+
+/// What the scores of all detections say that are true or false.
+std::vector<Statement> score_statements(const std::vector<ClassResult>& classes);
 
 /// Mean AUC over the classes that appear, each counting once; NaN where none appears.
 double mean_auc(const std::vector<ClassResult>& classes);

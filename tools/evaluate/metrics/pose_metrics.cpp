@@ -70,9 +70,18 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
     if (detection.verdict != Verdict::kTrue) continue;
     const TrueObject& truth = frame.objects[detection.object].truth;
     if (!truth.has_pose) continue;
-    JudgedPose row{detection.frame, detections.class_name, truth.visible_fraction, PoseStatus::kInvalid, kNaN, kNaN};
+    JudgedPose row;
+    row.frame = detection.frame;
+    row.class_name = detections.class_name;
+    row.visible_fraction = truth.visible_fraction;
+    row.score = detection.score;
+    row.scene = frame.scene;
+    row.image_id = frame.image_id;
     const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection.index) : nullptr;
-    if (pose != nullptr) row.status = pose->status;
+    if (pose != nullptr) {
+      row.status = pose->status;
+      row.quality = pose->quality;
+    }
     if (pose != nullptr && pose->T_camera_object) {
       row.add = add_error(model.points, *pose->T_camera_object, truth.T_camera_object);
       row.add_s = add_s_error(model.points, *pose->T_camera_object, truth.T_camera_object);
@@ -82,6 +91,25 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
   std::stable_sort(judged.begin(), judged.end(),
                    [](const JudgedPose& a, const JudgedPose& b) { return a.frame < b.frame; });
   return judged;
+}
+
+std::vector<Statement> pose_statements(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+                                       const PoseModel& model) {
+  std::vector<Statement> statements;
+  for (const JudgedDetection& detection : detections.judged) {
+    const EvaluatedFrame& frame = frames[detection.frame];
+    const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection.index) : nullptr;
+    if (detection.verdict == Verdict::kIgnored || pose == nullptr || !pose->T_camera_object) continue;
+    bool is_right = false;
+    if (detection.verdict == Verdict::kTrue) {
+      const TrueObject& truth = frame.objects[detection.object].truth;
+      if (!truth.has_pose) continue;
+      is_right =
+          add_s_error(model.points, *pose->T_camera_object, truth.T_camera_object) < kRightBelow * model.diameter;
+    }
+    statements.push_back({static_cast<double>(pose->quality), is_right});
+  }
+  return statements;
 }
 
 double add_s_recall(const std::vector<JudgedPose>& poses, double diameter, double min_visible) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -37,14 +38,24 @@ struct JudgedPose {
   std::string class_name;
   double visible_fraction = 0.0;
   PoseStatus status = PoseStatus::kInvalid;
-  double add = 0.0;    ///< metres; NaN without a pose
-  double add_s = 0.0;  ///< metres; NaN without a pose
+  double add = std::numeric_limits<double>::quiet_NaN();    ///< metres; NaN without a pose
+  double add_s = std::numeric_limits<double>::quiet_NaN();  ///< metres; NaN without a pose
+  float score = 0.0F;                                       ///< of the detection
+  float quality = 0.0F;                                     ///< of the pose, also of one that was withheld
+  std::string scene;
+  int image_id = 0;
 };
 
 /// The poses of all true detections of a class; in a frame for which no poses were published, none has one. Objects
 /// whose truth has no pose are left out.
 std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
                                     const PoseModel& model);
+
+/// The poses of a class with their quality, those of true and of false detections: true where the detection is and
+/// ADD-S is below 10 % of the diameter. Those of ignored detections, and of objects whose truth has no pose, are left
+/// out.
+std::vector<Statement> pose_statements(const std::vector<EvaluatedFrame>& frames, const ClassResult& detections,
+                                       const PoseModel& model);
 
 /// Share of the true detections of objects at least `min_visible` visible whose ADD-S is below 10 % of the diameter; a
 /// detection without a pose has none. NaN where there is no such detection.

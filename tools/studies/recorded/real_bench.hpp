@@ -8,7 +8,7 @@
 #include "detector/detector.hpp"
 #include "drivers/files/json_file.hpp"
 #include "pose/pose_estimator.hpp"
-#include "tools/evaluate/drawn_boxes.hpp"
+#include "tools/evaluate/import/drawn_boxes.hpp"
 #include "tools/studies/recorded/pose_agreement.hpp"
 #include "tools/studies/recorded/scan_model.hpp"
 #include "tools/view/drawing/overlay.hpp"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "tools/common/tool_main.hpp"
-#include "tools/evaluate/import_scene.hpp"
+#include "tools/evaluate/import/import_scene.hpp"
 
 int main(int argc, char** argv) {
   using namespace houghstream;

@@ -1,4 +1,4 @@
-#include "tools/evaluate/import_scene.hpp"
+#include "tools/evaluate/import/import_scene.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/evaluate/import_scene.hpp"
+#include "tools/evaluate/import/import_scene.hpp"
 
 #include <map>
 #include <set>
@@ -9,7 +9,7 @@
 #include "drivers/datasets/uw_scenes.hpp"
 #include "drivers/files/frame_folder.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tools/evaluate/drawn_boxes.hpp"
+#include "tools/evaluate/import/drawn_boxes.hpp"
 
 namespace houghstream {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/evaluate/drawn_boxes.hpp"
+#include "tools/evaluate/import/drawn_boxes.hpp"
 
 #include <gtest/gtest.h>
 

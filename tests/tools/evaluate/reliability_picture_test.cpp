@@ -1,0 +1,34 @@
+#include "tools/evaluate/reliability_picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+namespace houghstream {
+namespace {
+
+int coloured_pixels(const cv::Mat& picture) {
+  std::vector<cv::Mat> channels;
+  cv::split(picture, channels);
+  return cv::countNonZero(channels[0] != channels[2]);
+}
+
+TEST(ReliabilityPicture, BarsAreAsHighAsWhatIsTrue) {
+  const Calibration nothing = calibrate({}, 0);
+  const cv::Mat empty = reliability_picture(nothing, nothing);
+  EXPECT_EQ(coloured_pixels(empty), 0);
+  const auto pixels = [&](double share) {
+    std::vector<Statement> statements;
+    for (int i = 0; i < 20; ++i) statements.push_back({0.95, i < 20 * share});
+    const cv::Mat picture = reliability_picture(nothing, calibrate(statements, 20));
+    const int half = picture.cols / 2;
+    EXPECT_EQ(coloured_pixels(picture.colRange(0, half)), 0) << "quality stands on the right";
+    return coloured_pixels(picture.colRange(half, picture.cols));
+  };
+  const int half = pixels(0.5);
+  EXPECT_GT(half, 1000);
+  EXPECT_NEAR(pixels(1.0), 2 * half, half / 4);
+}
+
+}  // namespace
+}  // namespace houghstream

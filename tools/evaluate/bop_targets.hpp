@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "tools/evaluate/evaluated_frame.hpp"
+
+namespace houghstream {
+
+/// What BOP asks for: so many objects of a kind in an image.
+struct BopTarget {
+  int scene_id = 0;
+  int image_id = 0;
+  int object_id = 0;
+  int count = 0;
+};
+
+/// test_targets_bop19.json: [{"scene_id", "im_id", "obj_id", "inst_count"}, ...]. Throws InputError where it does not
+/// hold that, asks for the same twice, or for nothing.
+std::vector<BopTarget> read_bop_targets(const std::filesystem::path& file);
+
+/// Those of a scene's frames for which there are targets, with their objects marked: where an image holds more than are
+/// asked for, the most visible ones are targets. Throws InputError naming `source`, the targets' file, where there are
+/// none for the scene, for an image that the scene lacks, and where it asks for more than the truth has there.
+std::vector<EvaluatedFrame> targeted_frames(std::vector<EvaluatedFrame> frames, const std::vector<BopTarget>& targets,
+                                            const std::filesystem::path& source);
+
+}  // namespace houghstream

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace houghstream {
+
+/// A probability that was stated, a score or a quality, and whether it came true.
+struct Statement {
+  double stated = 0.0;
+  bool is_true = false;
+};
+
+/// Statements of about the same probability.
+struct ReliabilityBin {
+  double from = 0.0;
+  double to = 0.0;  ///< excluded, but 1 in the last one
+  int count = 0;
+  double mean_score = 0.0;     ///< NaN where it is empty
+  double true_fraction = 0.0;  ///< NaN where it is empty
+};
+
+/// From where on a wanted precision is kept.
+struct ProposedThreshold {
+  double precision = 0.0;
+  std::optional<double> score;  ///< the smallest stated one from which on that share or more is true; nothing: none is
+  double recall = 0.0;          ///< what is true from there on, over all that could be; NaN without a score
+};
+
+/// How far statements hold (Guo et al., "On Calibration of Modern Neural Networks", ICML 2017).
+struct Calibration {
+  int count = 0;
+  /// Expected calibration error: the bins' differences between mean score and true fraction, each weighted by its
+  /// count; NaN without statements.
+  double ece = 0.0;
+  std::vector<ReliabilityBin> bins;         ///< ten of equal width
+  std::vector<ProposedThreshold> proposed;  ///< for precisions of 0.90, 0.95, 0.98 and 0.99
+};
+
+/// `could_be_true`: what a recall of 1 is.
+Calibration calibrate(const std::vector<Statement>& statements, int could_be_true);
+
+}  // namespace houghstream
