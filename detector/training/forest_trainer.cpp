@@ -171,4 +171,14 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   return forest;
 }
 
+Profile profile_of(const Forest& forest) {
+  Profile profile = make_profile(forest.profile);
+  profile.features = forest.features;
+  profile.patch = forest.patch;
+  profile.detection = detection_settings(forest);
+  profile.training.scoring = forest.scoring;
+  profile.training.trees = static_cast<int>(forest.roots.size());
+  return profile;
+}
+
 }  // namespace houghstream::training

@@ -23,4 +23,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
 Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile,
                    const Progress& progress);
 
+/// The profile by which a forest was trained, as add_objects wants it; seed and threads are the profile's.
+Profile profile_of(const Forest& forest);
+
 }  // namespace houghstream::training

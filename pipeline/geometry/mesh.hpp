@@ -35,10 +35,11 @@ struct SurfacePoints {
 };
 SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed);
 
-/// Reads PLY or OBJ with its texture or colours; normals are made where the file has none. Several textures of an OBJ,
-/// or textures and coloured materials, become one texture; colours of its materials alone become those of the vertices.
-/// `unit_m` is the length of the file's unit in metres (BOP files are in millimetres: 1e-3). Throws InputError when it
-/// is missing, unreadable, empty or holds non-finite coordinates.
+/// Reads PLY, OBJ or glTF (GLB) with its texture or colours; normals are made where the file has none. Several textures
+/// of a file, or textures and coloured materials, become one texture; colours of its materials alone become those of
+/// the vertices. Textures may lie within a GLB. Axes stay as the file has them (glTF: y up). `unit_m` is the length of
+/// the file's unit in metres (BOP files are in millimetres: 1e-3). Throws InputError when it is missing, unreadable,
+/// empty or holds non-finite coordinates.
 Mesh load_mesh(const std::filesystem::path& file, double unit_m = 1e-3);
 
 /// Writes an ASCII PLY in millimetres with normals and vertex colours, as BOP models are. A texture goes beside it

@@ -2,12 +2,15 @@
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/texture.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/mesh.hpp"
@@ -20,16 +23,31 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(std::min(std::max(value, 0.0F), 1.0F) * 255.0F));
 }
 
-void append_vertices(const aiMesh& part, double unit_m, const std::string& file, Mesh& mesh) {
+/// glTF states colours linear in the light, all else as a screen shows them (IEC 61966-2-1).
+std::uint8_t to_byte(float value, bool is_linear) {
+  if (!is_linear) return to_byte(value);
+  return to_byte(value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F);
+}
+
+bool is_gltf(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".glb" || extension == ".gltf";
+}
+
+void append_vertices(const aiMesh& part, double unit_m, const std::filesystem::path& file, Mesh& mesh) {
+  const bool is_linear = is_gltf(file);
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D& p = part.mVertices[i];
     const Eigen::Vector3f vertex = (Eigen::Vector3d(p.x, p.y, p.z) * unit_m).cast<float>();
-    require(vertex.allFinite(), "{}: vertex {} is ({}, {}, {}), expected finite coordinates", file, i, p.x, p.y, p.z);
+    require(vertex.allFinite(), "{}: vertex {} is ({}, {}, {}), expected finite coordinates", file.string(), i, p.x,
+            p.y, p.z);
     mesh.vertices.push_back(vertex);
     mesh.normals.emplace_back(part.mNormals[i].x, part.mNormals[i].y, part.mNormals[i].z);
     if (part.HasVertexColors(0)) {
       const aiColor4D& c = part.mColors[0][i];
-      mesh.colours.emplace_back(to_byte(c.b), to_byte(c.g), to_byte(c.r));
+      mesh.colours.emplace_back(to_byte(c.b, is_linear), to_byte(c.g, is_linear), to_byte(c.r, is_linear));
     }
     const aiVector3D uv = part.HasTextureCoords(0) ? part.mTextureCoords[0][i] : aiVector3D();
     mesh.uvs.emplace_back(uv.x, 1.0F - uv.y);  // files count v upwards
@@ -50,24 +68,51 @@ void append_triangles(const aiMesh& part, std::uint32_t first_vertex, const std:
   }
 }
 
+/// A texture that the file itself holds, CV_8UC3 BGR. Throws InputError where it cannot be decoded.
+cv::Mat decode_texture(const aiTexture& texture, const std::string& where) {
+  cv::Mat picture;
+  if (texture.mHeight == 0) {  // a picture file of mWidth bytes
+    const cv::Mat bytes(1, static_cast<int>(texture.mWidth), CV_8UC1, texture.pcData);
+    picture = cv::imdecode(bytes, cv::IMREAD_COLOR);
+  } else {
+    const cv::Mat bgra(static_cast<int>(texture.mHeight), static_cast<int>(texture.mWidth), CV_8UC4, texture.pcData);
+    cv::cvtColor(bgra, picture, cv::COLOR_BGRA2BGR);
+  }
+  require(!picture.empty(), "{}: cannot be decoded, expected a PNG or JPEG", where);
+  return picture;
+}
+
+/// The texture that gives a material its colour.
+std::string texture_name(const aiMaterial& material) {
+  aiString name;
+  for (const aiTextureType type : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR}) {
+    if (material.GetTexture(type, 0, &name) == aiReturn_SUCCESS) return name.C_Str();
+  }
+  return "";
+}
+
 /// What the material of a part says about its looks.
-MeshPart describe_part(const aiMesh& part, const aiMaterial& material, std::size_t first_vertex,
+MeshPart describe_part(const aiScene& scene, const aiMesh& part, std::size_t first_vertex,
                        const std::filesystem::path& file) {
+  const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];
   MeshPart out;
   out.first_vertex = first_vertex;
   out.vertices = part.mNumVertices;
   out.has_uvs = part.HasTextureCoords(0);
-  aiString texture;
-  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) {
-    std::string name = texture.C_Str();
-    std::replace(name.begin(), name.end(), '\\', '/');  // of files that were made on Windows
-    out.texture = file.parent_path() / name;
+  std::string texture = texture_name(material);
+  if (const aiTexture* embedded = texture.empty() ? nullptr : scene.GetEmbeddedTexture(texture.c_str())) {
+    out.texture = file / texture;  // a name for it: "FILE.glb/*0"
+    out.picture = decode_texture(*embedded, out.texture.string());
+  } else if (!texture.empty()) {
+    std::replace(texture.begin(), texture.end(), '\\', '/');  // of files that were made on Windows
+    out.texture = file.parent_path() / texture;
   }
   aiColor3D c;
-  // Where the file names no material, the library makes up a grey one of this name.
-  out.has_colour = std::string(material.GetName().C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
-                   material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == aiReturn_SUCCESS;
-  if (out.has_colour) out.colour = cv::Vec3b(to_byte(c.b), to_byte(c.g), to_byte(c.r));
+  // Where the file names no material, the library makes up a grey one of this name, or for glTF one without a name.
+  const std::string name = material.GetName().C_Str();
+  const bool is_linear = is_gltf(file);
+  out.has_colour = name != AI_DEFAULT_MATERIAL_NAME && material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == aiReturn_SUCCESS;
+  if (out.has_colour) out.colour = cv::Vec3b(to_byte(c.b, is_linear), to_byte(c.g, is_linear), to_byte(c.r, is_linear));
   return out;
 }
 
@@ -107,21 +152,21 @@ void append_ply_vertices(const Mesh& mesh, const PlyParts& parts, std::string& t
 }  // namespace
 
 Mesh load_mesh(const std::filesystem::path& file, double unit_m) {
-  require(std::filesystem::is_regular_file(file), "{}: no such file, expected a PLY or OBJ mesh", file.string());
+  require(std::filesystem::is_regular_file(file), "{}: no such file, expected a PLY, OBJ or glTF mesh", file.string());
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene =
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
                                            aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices);
   require(scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U,
-          "{}: {}, expected a PLY or OBJ mesh with triangles", file.string(), importer.GetErrorString());
+          "{}: {}, expected a PLY, OBJ or glTF mesh with triangles", file.string(), importer.GetErrorString());
   Mesh mesh;
   std::vector<MeshPart> parts;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
     const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());
     const aiMesh& part = *scene->mMeshes[i];
-    parts.push_back(describe_part(part, *scene->mMaterials[part.mMaterialIndex], first_vertex, file));
-    append_vertices(part, unit_m, file.string(), mesh);
+    parts.push_back(describe_part(*scene, part, first_vertex, file));
+    append_vertices(part, unit_m, file, mesh);
     append_triangles(part, first_vertex, file.string(), mesh);
   }
   require(!mesh.triangles.empty(), "{}: no triangles, expected a surface", file.string());

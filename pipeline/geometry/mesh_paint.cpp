@@ -15,9 +15,10 @@ bool is_textured(const MeshPart& part) {
   return part.has_uvs && !part.texture.empty();
 }
 
-cv::Mat read_texture(const fs::path& texture_file, const fs::path& file) {
-  cv::Mat texture = decode_image_file(texture_file, cv::IMREAD_COLOR);
-  require(!texture.empty(), "{}: missing or unreadable, expected the texture of {}", texture_file.string(),
+cv::Mat read_texture(const MeshPart& part, const fs::path& file) {
+  if (!part.picture.empty()) return part.picture;
+  cv::Mat texture = decode_image_file(part.texture, cv::IMREAD_COLOR);
+  require(!texture.empty(), "{}: missing or unreadable, expected the texture of {}", part.texture.string(),
           file.string());
   return texture;
 }
@@ -29,7 +30,7 @@ std::vector<cv::Mat> read_tiles(const std::vector<MeshPart>& parts, const fs::pa
   std::vector<cv::Mat> tiles;
   for (const MeshPart& part : parts) {
     const cv::Vec3b colour = part.has_colour ? part.colour : kGrey;
-    tiles.push_back(is_textured(part) ? read_texture(part.texture, file)
+    tiles.push_back(is_textured(part) ? read_texture(part, file)
                                       : cv::Mat(kColourTile_px, kColourTile_px, CV_8UC3, cv::Scalar(colour)));
   }
   return tiles;
@@ -79,7 +80,7 @@ void paint(const std::vector<MeshPart>& parts, const fs::path& file, Mesh& mesh)
     return is_textured(part) && part.texture == parts.front().texture;
   });
   if (one_texture) {
-    mesh.texture = read_texture(parts.front().texture, file);
+    mesh.texture = read_texture(parts.front(), file);
   } else if (any_textured) {
     paint_side_by_side(parts, file, mesh);
   } else {

@@ -92,13 +92,8 @@ Profile overridden(const Overrides& overrides) {
 }
 
 /// The profile by which a forest was trained; only seed and threads can be chosen.
-Profile profile_of(const Forest& forest, const Overrides& overrides) {
-  Profile profile = make_profile(forest.profile);
-  profile.features = forest.features;
-  profile.patch = forest.patch;
-  profile.detection = detection_settings(forest);
-  profile.training.scoring = forest.scoring;
-  profile.training.trees = static_cast<int>(forest.roots.size());
+Profile profile_for(const Forest& forest, const Overrides& overrides) {
+  Profile profile = training::profile_of(forest);
   profile.training.seed = overrides.seed;
   profile.training.threads = overrides.threads;
   return profile;
@@ -143,7 +138,7 @@ int train_main(int argc, char** argv, const std::string& name) {
   return run_tool(app, argc, argv, [&] {
     std::optional<Forest> old;
     if (!add_to.empty()) old = load_forest(add_to);
-    train(sources, old ? profile_of(*old, overrides) : overridden(overrides), old, out, name);
+    train(sources, old ? profile_for(*old, overrides) : overridden(overrides), old, out, name);
   });
 }
 

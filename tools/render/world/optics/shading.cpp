@@ -21,8 +21,12 @@ std::array<float, 256> make_linear_table() {
   return table;
 }
 
-Eigen::Vector3f sample_level(const cv::Mat& level, const Eigen::Vector2f& uv) {
+Eigen::Vector3f linear(const cv::Vec3b& bgr) {
   static const std::array<float, 256> kLinear = make_linear_table();
+  return {kLinear[bgr[0]], kLinear[bgr[1]], kLinear[bgr[2]]};
+}
+
+Eigen::Vector3f sample_level(const cv::Mat& level, const Eigen::Vector2f& uv) {
   const float x =
       std::clamp(uv.x() * static_cast<float>(level.cols) - 0.5F, 0.0F, static_cast<float>(level.cols) - 1.001F);
   const float y =
@@ -31,10 +35,7 @@ Eigen::Vector3f sample_level(const cv::Mat& level, const Eigen::Vector2f& uv) {
   const int y0 = static_cast<int>(y);
   const float fx = x - static_cast<float>(x0);
   const float fy = y - static_cast<float>(y0);
-  const auto texel = [&level](int row, int column) {
-    const cv::Vec3b& bgr = level.at<cv::Vec3b>(row, column);
-    return Eigen::Vector3f(kLinear[bgr[0]], kLinear[bgr[1]], kLinear[bgr[2]]);
-  };
+  const auto texel = [&level](int row, int column) { return linear(level.at<cv::Vec3b>(row, column)); };
   return (1.0F - fy) * ((1.0F - fx) * texel(y0, x0) + fx * texel(y0, x0 + 1)) +
          fy * ((1.0F - fx) * texel(y0 + 1, x0) + fx * texel(y0 + 1, x0 + 1));
 }
@@ -112,9 +113,14 @@ class Shader {
                     (first * thing.mesh.normals[a] + bary[0] * thing.mesh.normals[b] + bary[1] * thing.mesh.normals[c]))
                        .normalized();
     const float incidence = std::clamp(point.normal.dot(point.to_eye), 0.0F, 1.0F);
-    const Eigen::Vector2f uv = first * thing.mesh.uvs[a] + bary[0] * thing.mesh.uvs[b] + bary[1] * thing.mesh.uvs[c];
-    const float pixel_m = static_cast<float>(camera_.metres_per_px(z)) / std::sqrt(std::max(incidence, 0.05F));
-    point.reflectance_bgr = sample_level(mip_level(thing, triangle, pixel_m), uv);
+    if (thing.mip_levels.empty()) {
+      const std::vector<cv::Vec3b>& colours = thing.mesh.colours;
+      point.reflectance_bgr = first * linear(colours[a]) + bary[0] * linear(colours[b]) + bary[1] * linear(colours[c]);
+    } else {
+      const Eigen::Vector2f uv = first * thing.mesh.uvs[a] + bary[0] * thing.mesh.uvs[b] + bary[1] * thing.mesh.uvs[c];
+      const float pixel_m = static_cast<float>(camera_.metres_per_px(z)) / std::sqrt(std::max(incidence, 0.05F));
+      point.reflectance_bgr = sample_level(mip_level(thing, triangle, pixel_m), uv);
+    }
     point.gloss = thing.gloss;
     point.turn = pixel_uniform(kPatternSeed, static_cast<std::uint64_t>(y) * 4096U + static_cast<std::uint64_t>(x));
 

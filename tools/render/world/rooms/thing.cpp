@@ -24,14 +24,16 @@ float texel_density(const Mesh& mesh, const std::array<std::uint32_t, 3>& triang
 }  // namespace
 
 std::shared_ptr<const Thing> make_thing(std::string name, Mesh mesh, float gloss, float glow) {
-  require(
-      mesh.uvs.size() == mesh.vertices.size() && mesh.normals.size() == mesh.vertices.size() && !mesh.texture.empty(),
-      "{}: mesh without texture coordinates, normals or texture", name);
+  const bool textured = mesh.uvs.size() == mesh.vertices.size() && !mesh.texture.empty();
+  const bool coloured = mesh.texture.empty() && mesh.colours.size() == mesh.vertices.size();
+  require(mesh.normals.size() == mesh.vertices.size() && (textured || coloured),
+          "{}: mesh without normals, or with neither texture (and its coordinates) nor colours", name);
   auto thing = std::make_shared<Thing>();
   thing->name = std::move(name);
   thing->mesh = std::move(mesh);
   thing->gloss = gloss;
   thing->glow = glow;
+  if (coloured) return thing;
   thing->mip_levels = {thing->mesh.texture};
   while (std::min(thing->mip_levels.back().cols, thing->mip_levels.back().rows) >= 2 * kSmallestMipPx) {
     const cv::Mat& finer = thing->mip_levels.back();

@@ -15,11 +15,12 @@ struct Thing {
   Mesh mesh;
   float gloss = 0.1F;               ///< strength of the mirror-like part of the reflection, 0 = matt to 1
   float glow = 0.0F;                ///< share of its texture that it emits by itself (screens, windows), 0 to 1
-  std::vector<cv::Mat> mip_levels;  ///< CV_8UC3: the texture, each level half the size of the one before
-  std::vector<float> texels_per_m;  ///< per triangle, of level 0
+  /// CV_8UC3: the texture, each level half the size of the one before. Empty where vertices have colours instead.
+  std::vector<cv::Mat> mip_levels;
+  std::vector<float> texels_per_m;  ///< per triangle, of level 0; empty without texture
 };
 
-/// Prepares a finished mesh (texture, normals and uvs present) for shading.
+/// Prepares a finished mesh for shading: it has normals, and a texture with its coordinates or a colour per vertex.
 std::shared_ptr<const Thing> make_thing(std::string name, Mesh mesh, float gloss, float glow = 0.0F);
 
 using ThingPtr = std::shared_ptr<const Thing>;

@@ -1,0 +1,192 @@
+#include "drivers/store/object_store.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kJsonFile = "store.json";
+constexpr const char* kVersionKey = "houghstream_store";
+
+std::string text(const nlohmann::json& entry, const char* key, const std::string& where) {
+  const auto found = entry.find(key);
+  require(found != entry.end() && found->is_string() && !found->get<std::string>().empty(),
+          "{}: '{}' is {}, expected a text", where, key, found == entry.end() ? "missing" : found->dump());
+  return found->get<std::string>();
+}
+
+bool truth(const nlohmann::json& entry, const char* key, const std::string& where) {
+  const auto found = entry.find(key);
+  require(found != entry.end() && found->is_boolean(), "{}: '{}' is {}, expected true or false", where, key,
+          found == entry.end() ? "missing" : found->dump());
+  return found->get<bool>();
+}
+
+StoredObject parse_object(const nlohmann::json& entry, const std::string& file) {
+  require(entry.is_object(), "{}: an object is {}, expected its id, name and more", file, entry.dump());
+  StoredObject object;
+  object.id = json_integer(entry, "id", file);
+  const std::string where = fmt::format("{} object {}", file, object.id);
+  require(object.id >= 1, "{}: expected an id from 1 on", where);
+  object.name = text(entry, "name", where);
+  object.mesh = text(entry, "mesh", where);
+  object.coloured = truth(entry, "coloured", where);
+  object.views = json_integer(entry, "views", where);
+  object.attitudes = text(entry, "attitudes", where);
+  if (entry.contains("quality")) object.quality = entry.at("quality");
+  require(object.quality.is_null() || object.quality.is_object(), "{}: 'quality' is {}, expected numbers by name",
+          where, object.quality.dump());
+  return object;
+}
+
+std::vector<StoredObject> parse_objects(const nlohmann::json& json, const std::string& file) {
+  const auto list = json.find("objects");
+  require(list != json.end() && list->is_array() && !list->empty(), "{}: no 'objects', expected a list of at least one",
+          file);
+  std::vector<StoredObject> objects;
+  std::set<int> ids;
+  std::set<std::string> names;
+  for (const nlohmann::json& entry : *list) {
+    objects.push_back(parse_object(entry, file));
+    require(ids.insert(objects.back().id).second, "{}: object {} is listed twice, expected each once", file,
+            objects.back().id);
+    require(names.insert(objects.back().name).second, "{}: two objects are called '{}', expected one of each name",
+            file, objects.back().name);
+  }
+  std::sort(objects.begin(), objects.end(), [](const StoredObject& a, const StoredObject& b) { return a.id < b.id; });
+  return objects;
+}
+
+void require_file(const fs::path& file, const fs::path& store) {
+  require(fs::is_regular_file(file), "{}: missing, expected it in the object store {}: half written; teach it anew",
+          file.string(), store.string());
+}
+
+/// The models of the store must be those of its list.
+void check_models(const ObjectStore& store, const BopModels& models) {
+  const std::string info = (store.models_folder() / "models_info.json").string();
+  for (const StoredObject& object : store.objects) {
+    require_file(models.mesh_file(object.id), store.folder);
+    const auto name = models.names.find(object.id);
+    require(name != models.names.end(), "{}: no object {}, expected '{}' of {}", info, object.id, object.name,
+            kJsonFile);
+    require(name->second == object.name, "{}: object {} is called '{}', expected '{}' as in {}",
+            (store.models_folder() / "names.json").string(), object.id, name->second, object.name, kJsonFile);
+  }
+  require(models.diameters.size() == store.objects.size(), "{}: {} objects, expected the {} of {}", info,
+          models.diameters.size(), store.objects.size(), kJsonFile);
+}
+
+}  // namespace
+
+fs::path ObjectStore::forest_file() const {
+  return folder / "forest";
+}
+
+fs::path ObjectStore::models_folder() const {
+  return folder / "models";
+}
+
+fs::path ObjectStore::view_picture(int id) const {
+  return folder / "views" / fmt::format("obj_{:06d}.png", id);
+}
+
+fs::path ObjectStore::contact_sheet() const {
+  return folder / "contact_sheet.jpg";
+}
+
+std::map<std::string, nlohmann::json> ObjectStore::quality() const {
+  std::map<std::string, nlohmann::json> by_name;
+  for (const StoredObject& object : objects) {
+    if (!object.quality.is_null()) by_name[object.name] = object.quality;
+  }
+  return by_name;
+}
+
+ObjectStore read_store(const fs::path& folder) {
+  require(fs::is_directory(folder), "{}: no such folder, expected an object store of hs-teach", folder.string());
+  const fs::path file = folder / kJsonFile;
+  require(fs::is_regular_file(file), "{}: missing, expected it in an object store: half written, or no store",
+          file.string());
+  const nlohmann::json json = read_json_object(file);
+  const int version = json_integer(json, kVersionKey, file.string());
+  require(version == kStoreVersion, "{}: object store of version {}, expected {}: teach it anew", file.string(),
+          version, kStoreVersion);
+  ObjectStore store;
+  store.folder = folder;
+  store.objects = parse_objects(json, file.string());
+  if (json.contains("settings")) store.settings = json.at("settings");
+  require_file(store.forest_file(), folder);
+  require_file(store.models_folder() / "models_info.json", folder);
+  require_file(store.models_folder() / "names.json", folder);
+  const BopModels models = read_bop_models(store.models_folder());
+  check_models(store, models);
+  store.symmetries = models.symmetries;
+  return store;
+}
+
+void check_bounds(const Mesh& mesh, const Eigen::AlignedBox3d& stated, const std::string& file) {
+  constexpr double kTolerance = 0.02;  // of the largest side
+  const Eigen::AlignedBox3d box = mesh_bounds(mesh).cast<double>();
+  const double off =
+      std::max((box.min() - stated.min()).cwiseAbs().maxCoeff(), (box.max() - stated.max()).cwiseAbs().maxCoeff());
+  const Eigen::Vector3d is = box.sizes() * 1e3;
+  const Eigen::Vector3d said = stated.sizes() * 1e3;
+  require(off <= kTolerance * stated.sizes().maxCoeff(),
+          "{}: {:.1f} x {:.1f} x {:.1f} mm and up to {:.1f} mm off, expected the bounds that models_info.json states, "
+          "{:.1f} x {:.1f} x {:.1f} mm",
+          file, is.x(), is.y(), is.z(), off * 1e3, said.x(), said.y(), said.z());
+}
+
+std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store) {
+  const BopModels models = read_bop_models(store.models_folder());
+  std::map<std::string, Mesh> meshes;
+  for (const StoredObject& object : store.objects) {
+    const fs::path file = models.mesh_file(object.id);
+    Mesh mesh = load_mesh(file);
+    const auto stated = models.bounds.find(object.id);
+    if (stated != models.bounds.end()) check_bounds(mesh, stated->second, file.string());
+    meshes.emplace(object.name, std::move(mesh));
+  }
+  return meshes;
+}
+
+void require_same_objects(const ObjectStore& store, const std::vector<std::string>& forest_names) {
+  std::set<std::string> listed;
+  for (const StoredObject& object : store.objects) listed.insert(object.name);
+  const std::set<std::string> known(forest_names.begin(), forest_names.end());
+  require(known == listed, "{}: knows {}, expected the objects of {}: {}", store.forest_file().string(),
+          fmt::join(known, ", "), (store.folder / kJsonFile).string(), fmt::join(listed, ", "));
+}
+
+void write_store_json(const ObjectStore& store) {
+  OrderedJson json;
+  json[kVersionKey] = kStoreVersion;
+  json["objects"] = OrderedJson::array();
+  for (const StoredObject& object : store.objects) {
+    OrderedJson entry;
+    entry["id"] = object.id;
+    entry["name"] = object.name;
+    entry["mesh"] = object.mesh;
+    entry["coloured"] = object.coloured;
+    entry["views"] = object.views;
+    entry["attitudes"] = object.attitudes;
+    if (!object.quality.is_null()) entry["quality"] = object.quality;
+    json["objects"].push_back(entry);
+  }
+  json["settings"] = store.settings;
+  write_json(json, store.folder / kJsonFile);
+}
+
+bool may_be_replaced(const fs::path& folder) {
+  if (!fs::exists(folder)) return true;
+  return fs::is_directory(folder) && (fs::is_empty(folder) || fs::exists(folder / kJsonFile));
+}
+
+}  // namespace houghstream::store

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/files/json_file.hpp"
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/symmetry.hpp"
+
+// The object store: a folder with all that is known of the taught objects, which hs-teach writes and hs-detect and
+// hs-pose take as one argument.
+
+namespace houghstream::store {
+
+/// Of store.json; another one is refused.
+constexpr int kStoreVersion = 1;
+
+/// A taught object, as store.json says it.
+struct StoredObject {
+  int id = 0;                ///< from 1, that of its model and of its class in the forest
+  std::string name;          ///< no two are the same
+  std::string mesh;          ///< file that it was taught from, for people
+  bool coloured = true;      ///< false: only its shape is known
+  int views = 0;             ///< that it was taught by
+  std::string attitudes;     ///< in which it was shown: "resting", "upright" or "any"
+  nlohmann::json quality{};  ///< what was learnt of its poses' quality, an object; null where nothing was
+};
+
+struct ObjectStore {
+  std::filesystem::path folder;
+  std::vector<StoredObject> objects;                 ///< by id
+  OrderedJson settings;                              ///< of the last teaching, for people
+  std::map<int, Symmetries> symmetries;              ///< by id, of models_info.json; empty for an object without any
+  std::filesystem::path forest_file() const;         ///< of the detector
+  std::filesystem::path models_folder() const;       ///< a BOP models folder
+  std::filesystem::path view_picture(int id) const;  ///< some of its views, side by side
+  std::filesystem::path contact_sheet() const;       ///< the pictures of all objects
+  std::map<std::string, nlohmann::json> quality() const;  ///< by name, of those that have any
+};
+
+/// Reads store.json and models_info.json, no mesh and no forest. Throws InputError with one line that names file, value
+/// and expectation where the folder is no store, half written, of another version, lacks a file, or where its parts
+/// contradict one another.
+ObjectStore read_store(const std::filesystem::path& folder);
+
+/// Meshes by name, metres. Throws InputError where one cannot be read or has another size than models_info.json says.
+std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store);
+
+/// Throws InputError naming the mesh's file where it has other bounds than its models_info.json states, metres, by more
+/// than 2 % of the largest side.
+void check_bounds(const Mesh& mesh, const Eigen::AlignedBox3d& stated, const std::string& file);
+
+/// Throws InputError where the forest, whose classes have these names, is not that of the store.
+void require_same_objects(const ObjectStore& store, const std::vector<std::string>& forest_names);
+
+/// Writes FOLDER/store.json, last of all files: a folder without it is half written.
+void write_store_json(const ObjectStore& store);
+
+/// Whether the folder holds a store or what is left of one, which may be replaced; nothing else may.
+bool may_be_replaced(const std::filesystem::path& folder);
+
+}  // namespace houghstream::store

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+
+namespace houghstream::store {
+
+/// A store that is being made, in the folder `.STORE.partial-PID` beside STORE; STORE stays whole until publish(),
+/// which puts the new one into its place in one step. What an interrupted teaching left is removed when the next
+/// begins. One at a time works on a store.
+class StoreBuild {
+ public:
+  /// Throws InputError where STORE is a folder of something else, another teaching works on it, or the folder beside it
+  /// cannot be made.
+  explicit StoreBuild(const std::filesystem::path& store);
+  ~StoreBuild();  ///< removes what was not published
+  StoreBuild(const StoreBuild&) = delete;
+  StoreBuild& operator=(const StoreBuild&) = delete;
+
+  /// Where to write.
+  const std::filesystem::path& folder() const { return partial_; }
+
+  /// The folder becomes STORE, and what STORE was is removed. Throws InputError where it cannot.
+  void publish();
+
+ private:
+  std::filesystem::path store_;
+  std::filesystem::path partial_;
+  int lock_ = -1;
+};
+
+}  // namespace houghstream::store

@@ -1,0 +1,214 @@
+#include "tools/render/world/mesh_views.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/base/checks.hpp"
+#include "tools/render/world/objects/materials.hpp"
+#include "tools/render/world/objects/mesh_parts.hpp"
+#include "tools/render/world/objects/vessels.hpp"
+#include "tools/render/world/optics/depth_sensor.hpp"
+#include "tools/render/world/optics/light.hpp"
+#include "tools/render/world/optics/photo.hpp"
+#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/optics/shading.hpp"
+#include "tools/render/world/rooms/resting.hpp"
+#include "tools/render/world/scene_frames.hpp"
+#include "tools/render/world/seeds.hpp"
+
+namespace houghstream::world {
+namespace {
+
+constexpr int kMostAttitudes = 10;
+constexpr double kSameAttitudeDeg = 40.0;  // nearer ways of resting are one: views between them are jittered
+constexpr double kTiltDeviationDeg = 4.0;  // no table is level, no camera upright
+constexpr double kLeastLeanDeg = 10.0;
+constexpr double kMostLeanDeg = 45.0;
+constexpr int kMargin_px = 40;
+
+double radians(double degrees) {
+  return degrees * M_PI / 180.0;
+}
+
+/// A rotation about a level axis of random direction.
+Eigen::Matrix3d tilt(double angle_rad, Random& random) {
+  const double towards = random.uniform(0.0, 2.0 * M_PI);
+  const Eigen::Vector3d axis(std::cos(towards), std::sin(towards), 0.0);
+  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
+}
+
+/// Evenly distributed over all rotations (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
+Eigen::Matrix3d random_rotation(Random& random) {
+  const double u = random.uniform();
+  const double a = random.uniform(0.0, 2.0 * M_PI);
+  const double b = random.uniform(0.0, 2.0 * M_PI);
+  return Eigen::Quaterniond(std::sqrt(u) * std::cos(b), std::sqrt(1.0 - u) * std::sin(a),
+                            std::sqrt(1.0 - u) * std::cos(a), std::sqrt(u) * std::sin(b))
+      .toRotationMatrix();
+}
+
+/// What stands firmest comes first; what differs by less than kSameAttitudeDeg is left out.
+std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
+  std::vector<RestingAttitude> all;
+  for (const RestingFamily& family : resting_families(mesh)) all.insert(all.end(), family.begin(), family.end());
+  std::stable_sort(all.begin(), all.end(), [](const RestingAttitude& a, const RestingAttitude& b) {
+    return a.steepest_slope_rad() > b.steepest_slope_rad();
+  });
+  std::vector<Eigen::Vector3d> ups;
+  for (const RestingAttitude& attitude : all) {
+    const Eigen::Vector3d up = attitude.R_table_object.row(2);
+    const bool is_new = std::all_of(ups.begin(), ups.end(), [&](const Eigen::Vector3d& other) {
+      return up.dot(other) < std::cos(radians(kSameAttitudeDeg));
+    });
+    if (is_new && static_cast<int>(ups.size()) < kMostAttitudes) ups.push_back(up);
+  }
+  return ups;
+}
+
+/// A table whose top is at `height`.
+Placed table_top(double height, Random& random) {
+  constexpr double kThickness = 0.02;
+  const cv::Mat cover =
+      plain({256, 256}, hsv(random.uniform(0, 360), random.uniform(0.0, 0.5), random.uniform(0.2, 0.9)), 0.05, random);
+  Placed table{make_thing("table", turned_mesh({{0.6, 0.0}, {0.6, kThickness}}, cover), 0.08F),
+               Eigen::Isometry3d::Identity(), 0, true};
+  table.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, height - 0.5 * kThickness));  // its origin is its middle
+  return table;
+}
+
+/// What is beside the object: nothing would make the camera's exposure rise and its depth end without an edge.
+void put_wall_behind(double distance, Random& random, ShadedView& view) {
+  const auto grey = static_cast<float>(random.uniform(0.03, 0.5));
+  const cv::Scalar colour(grey * random.uniform(0.7, 1.3), grey, grey * random.uniform(0.7, 1.3));
+  const cv::Mat empty = view.geometry.id == 0;
+  view.radiance.setTo(colour, empty);
+  view.geometry.depth.setTo(distance, empty);
+  view.cos_incidence.setTo(1.0, empty);
+  view.reflectance.setTo(0.5, empty);
+}
+
+}  // namespace
+
+MeshAttitudes parse_mesh_attitudes(const std::string& name) {
+  if (name == "resting") return MeshAttitudes::kResting;
+  if (name == "upright") return MeshAttitudes::kUpright;
+  if (name == "any") return MeshAttitudes::kAny;
+  fail("attitudes '{}', expected resting, upright or any", name);
+}
+
+MeshViews::MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t seed)
+    : settings_(settings), seed_(world_seed(WorldUse::kTraining, seed)) {
+  const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
+  centre_ = bounds.center().cast<double>();
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    radius_ = std::max(radius_, (vertex.cast<double>() - centre_).norm());
+  if (!settings.has_colour) mesh.texture.release();
+  if (mesh.texture.empty()) mesh.uvs.clear();
+  if (!settings.has_colour) mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(128, 128, 128));
+  thing_ = make_thing("taught", std::move(mesh), 0.15F);
+  if (settings.attitudes == MeshAttitudes::kAny) {
+    add_any_views();
+  } else {
+    add_level_views(up_directions());
+  }
+}
+
+std::vector<Eigen::Vector3d> MeshViews::up_directions() const {
+  if (settings_.attitudes == MeshAttitudes::kUpright) return {Eigen::Vector3d::UnitZ()};
+  try {
+    return resting_ups(thing_->mesh);
+  } catch (const InputError&) {  // an open surface encloses nothing that could weigh
+    std::vector<Eigen::Vector3d> sides;
+    for (int axis = 0; axis < 3; ++axis) {
+      sides.emplace_back(Eigen::Vector3d::Unit(axis));
+      sides.emplace_back(-Eigen::Vector3d::Unit(axis));
+    }
+    return sides;
+  }
+}
+
+void MeshViews::add_level_views(const std::vector<Eigen::Vector3d>& ups) {
+  resting_attitudes_ = settings_.attitudes == MeshAttitudes::kResting ? static_cast<int>(ups.size()) : 0;
+  const int each = std::min(settings_.views_per_attitude, settings_.most_views / static_cast<int>(ups.size()));
+  for (std::size_t attitude = 0; attitude < ups.size(); ++attitude) {
+    const Eigen::Matrix3d R_level_object =
+        Eigen::Quaterniond::FromTwoVectors(ups[attitude], Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    for (int i = 0; i < each; ++i) {
+      Random random(aspect_seed(seed_, 1000000U * (attitude + 1U) + static_cast<std::uint64_t>(i)));
+      // Evenly over the part of the sphere between the two pitches: Fibonacci's spiral.
+      const double low = std::sin(radians(settings_.lowest_pitch_deg));
+      const double high = std::sin(radians(settings_.highest_pitch_deg));
+      const double azimuth = i * M_PI * (3.0 - std::sqrt(5.0));
+      ViewPose pose;
+      pose.pitch_rad = std::asin(low + (high - low) * (i + 0.5) / each);
+      pose.roll_rad = radians(kTiltDeviationDeg) * random.normal();
+      const bool leans = settings_.attitudes == MeshAttitudes::kResting && chance(random, settings_.leaning_share);
+      const double lean_deg = leans ? random.uniform(kLeastLeanDeg, kMostLeanDeg) : kTiltDeviationDeg * random.normal();
+      pose.on_table = !leans;
+      pose.R_level_object = tilt(radians(lean_deg), random) *
+                            Eigen::AngleAxisd(azimuth, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R_level_object;
+      poses_.push_back(pose);
+    }
+  }
+}
+
+void MeshViews::add_any_views() {
+  for (int i = 0; i < settings_.most_views; ++i) {
+    Random random(aspect_seed(seed_, 1000000U + static_cast<std::uint64_t>(i)));
+    ViewPose pose;
+    pose.R_level_object = random_rotation(random);
+    pose.pitch_rad = radians(random.uniform(settings_.lowest_pitch_deg, settings_.highest_pitch_deg));
+    poses_.push_back(pose);
+  }
+}
+
+ThingPtr MeshViews::painted(std::uint64_t seed_of_view) const {
+  if (settings_.has_colour) return thing_;
+  Random random(aspect_seed(seed_of_view, 1));
+  Thing thing = *thing_;
+  const cv::Scalar colour = hsv(random.uniform(0, 360), random.uniform(0.0, 0.8), random.uniform(0.15, 0.95));
+  thing.mesh.colours.assign(thing.mesh.vertices.size(), cv::Vec3b(colour[0], colour[1], colour[2]));
+  thing.gloss = static_cast<float>(random.uniform(0.0, 0.3));
+  return std::make_shared<const Thing>(std::move(thing));
+}
+
+TrainingView MeshViews::render(int index) const {
+  const ViewPose& pose = poses_.at(static_cast<std::size_t>(index));
+  const std::uint64_t own = aspect_seed(seed_, 500U + static_cast<std::uint64_t>(index));
+  Random random(aspect_seed(own, 2));
+  World world;
+  set_light_and_photo(world, chance(random, 0.25) ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 3));
+  world.focus_radius_m = std::max(0.3, 1.5 * radius_);
+  Placed object{painted(own), Eigen::Isometry3d::Identity(), 1, true};
+  object.T_world_object.rotate(pose.R_level_object);
+  object.T_world_object.translate(-centre_);
+  world.items = {object};
+  if (pose.on_table) {
+    double lowest = 0.0;
+    for (const Eigen::Vector3f& vertex : thing_->mesh.vertices)
+      lowest = std::min(lowest, (object.T_world_object * vertex.cast<double>()).z());
+    world.items.push_back(table_top(lowest, random));
+  }
+
+  const double distance = std::max(settings_.distance_m, 3.5 * radius_) * random.uniform(0.96, 1.04);
+  const Eigen::Vector3d eye = distance * Eigen::Vector3d(0.0, -std::cos(pose.pitch_rad), std::sin(pose.pitch_rad));
+  const Eigen::Isometry3d T_camera_world =
+      Eigen::AngleAxisd(pose.roll_rad, Eigen::Vector3d::UnitZ()) * look_at(eye, Eigen::Vector3d::Zero());
+  const Camera whole = synthetic_camera();
+  const int half = std::min(whole.height / 2, static_cast<int>(whole.fx * radius_ / (distance - radius_)) + kMargin_px);
+  const Camera camera = whole.cropped(whole.width / 2 - half, whole.height / 2 - half, 2 * half, 2 * half);
+  ShadedView seen = shade_view(light_world(world), camera, T_camera_world);
+  put_wall_behind(distance + random.uniform(2.0, 4.0) * radius_, random, seen);
+
+  TrainingView view;
+  view.frame.camera = camera;
+  view.frame.colour = take_photo(seen.radiance, world.photo, aspect_seed(own, 4));
+  view.frame.depth = measure_depth({seen.geometry.depth, seen.cos_incidence, seen.reflectance, seen.gloss}, camera,
+                                   DepthSensorSettings{}, aspect_seed(own, 5));
+  view.mask = seen.geometry.id == 1;
+  view.T_camera_object = T_camera_world * object.T_world_object;
+  return view;
+}
+
+}  // namespace houghstream::world

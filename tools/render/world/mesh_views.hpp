@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/training_view.hpp"
+#include "tools/render/world/rooms/thing.hpp"
+
+namespace houghstream::world {
+
+/// In which attitudes a mesh is shown.
+enum class MeshAttitudes : std::uint8_t {
+  kResting,  ///< as it comes to rest on a table, and leaning from there
+  kUpright,  ///< its z axis up
+  kAny       ///< all rotations alike, as if held
+};
+
+/// "resting", "upright" or "any". Throws InputError naming them for another.
+MeshAttitudes parse_mesh_attitudes(const std::string& name);
+
+struct MeshViewSettings {
+  MeshAttitudes attitudes = MeshAttitudes::kResting;
+  int views_per_attitude = 86;  ///< of each way of resting, all round and from low to high; fewer where there are many
+  int most_views = 640;         ///< of one object; so many are shown of kAny
+  double lowest_pitch_deg = 12.0;  ///< of the camera over the level
+  double highest_pitch_deg = 80.0;
+  double distance_m = 0.7;     ///< camera to object; more where it would not fit the picture
+  double leaning_share = 0.2;  ///< of the views of kResting
+  bool has_colour = true;      ///< false: another plain colour in every view
+};
+
+/// Training views of a mesh: each in a light of its own, as a structured-light camera sees it. Neither axis nor origin
+/// of the mesh mean anything. Same arguments, same views; const calls are thread-safe.
+class MeshViews {
+ public:
+  /// `mesh` has metres, triangles, normals, and a texture or a colour per vertex unless has_colour is false.
+  MeshViews(Mesh mesh, const MeshViewSettings& settings, std::uint64_t seed);
+
+  int count() const { return static_cast<int>(poses_.size()); }
+  /// In how many ways it was found to rest; 0 where that was not asked for or could not be told (no volume).
+  int resting_attitudes() const { return resting_attitudes_; }
+
+  /// View `index`, cropped around the object; names, ids and source are left empty.
+  TrainingView render(int index) const;
+
+ private:
+  struct ViewPose {
+    Eigen::Matrix3d R_level_object = Eigen::Matrix3d::Identity();  ///< into a frame with z up
+    double pitch_rad = 0.0;
+    double roll_rad = 0.0;  ///< of the camera about its line of sight
+    bool on_table = false;
+  };
+
+  std::vector<Eigen::Vector3d> up_directions() const;
+  void add_level_views(const std::vector<Eigen::Vector3d>& ups);
+  void add_any_views();
+  ThingPtr painted(std::uint64_t seed_of_view) const;
+
+  MeshViewSettings settings_;
+  std::uint64_t seed_;
+  ThingPtr thing_;
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  ///< of the bounding box
+  double radius_ = 0.0;                               ///< of the sphere about it, metres
+  int resting_attitudes_ = 0;
+  std::vector<ViewPose> poses_;
+};
+
+}  // namespace houghstream::world

@@ -1,0 +1,54 @@
+#include "tools/teach/contact_sheet.hpp"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "drivers/files/image_file.hpp"
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+constexpr int kColumns = 12;
+constexpr int kShown = 24;
+constexpr int kTile_px = 100;
+constexpr int kTitle_px = 26;
+
+/// The view, square, without being distorted; what is not the object is darker.
+cv::Mat tile_of(const TrainingView& view) {
+  cv::Mat shown = view.frame.colour * 0.6;
+  view.frame.colour.copyTo(shown, view.mask);
+  cv::Rect box = cv::boundingRect(view.mask);
+  const int side = std::max({box.width, box.height, 8}) * 5 / 4;
+  box = cv::Rect(box.x + box.width / 2 - side / 2, box.y + box.height / 2 - side / 2, side, side);
+  cv::Mat square = cv::Mat::zeros(side, side, CV_8UC3);
+  const cv::Rect inside = box & cv::Rect({0, 0}, shown.size());
+  shown(inside).copyTo(square(inside - box.tl()));
+  cv::Mat tile;
+  cv::resize(square, tile, {kTile_px - 2, kTile_px - 2}, 0, 0, cv::INTER_AREA);
+  return tile;
+}
+
+}  // namespace
+
+cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& title) {
+  const int rows = kShown / kColumns;
+  cv::Mat picture(kTitle_px + rows * kTile_px, kColumns * kTile_px, CV_8UC3, cv::Scalar(40, 40, 40));
+  cv::putText(picture, title, {4, kTitle_px - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.55, {255, 255, 255}, 1, cv::LINE_AA);
+  const int count = static_cast<int>(views.size());
+  for (int i = 0; i < std::min(kShown, count); ++i) {
+    const std::size_t which = static_cast<std::size_t>(count <= kShown ? i : i * (count - 1) / (kShown - 1));
+    const cv::Mat tile = tile_of(views[which]);
+    tile.copyTo(picture({{i % kColumns * kTile_px + 1, kTitle_px + i / kColumns * kTile_px + 1}, tile.size()}));
+  }
+  return picture;
+}
+
+void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& sheet) {
+  cv::Mat all;
+  for (const std::filesystem::path& file : pictures) all.push_back(read_colour_image(file));
+  require(cv::imwrite(sheet.string(), all), "{}: cannot be written", sheet.string());
+}
+
+}  // namespace houghstream::teach

@@ -1,0 +1,82 @@
+#include <opencv2/core.hpp>
+#include <sstream>
+
+#include "tools/common/tool_main.hpp"
+#include "tools/teach/teach_jobs.hpp"
+
+// hs-teach: objects are taught from their meshes, into an object store.
+
+namespace {
+
+using namespace houghstream;
+using namespace houghstream::teach;
+
+/// What lists hold between commas: an option that took several words would take the sources that follow it.
+struct Lists {
+  std::string names;
+  std::string ids;
+  std::string rooms;
+};
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream in(list);
+  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
+  CommandLine mesh = app.add_subcommand("mesh", "teaches objects from their meshes");
+  mesh.add_option("sources", options.meshes.sources,
+                  "meshes (PLY, OBJ, GLB, glTF), folders of them, or BOP models/ folders")
+      .required();
+  mesh.add_option("--out", options.out, "object store to write; one that is there is replaced when all is done")
+      .required();
+  mesh.add_flag("--add", options.add, "the objects join those of the store");
+  mesh.add_option("--unit", options.meshes.unit_m, "unit of the meshes' coordinates: mm, cm or m; default mm, glTF m")
+      .transform({{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}});
+  mesh.add_option("--names", lists.names, "2=cracker,5=mustard: by BOP id or file name");
+  mesh.add_option("--ids", lists.ids, "2,5: only these of a BOP folder");
+  mesh.add_option("--attitudes", options.attitudes,
+                  "resting (as it comes to rest, and leaning), upright (the mesh's z axis up) or any")
+      .capture_default_str();
+  mesh.add_option("--rooms", lists.rooms,
+                  "own pictures without the objects, beside the rendered rooms: bop:DIR or images:DIR");
+  mesh.add_option("--camera", options.rooms.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of images:DIR");
+  mesh.add_option("--cache", options.rooms.cache, "where rendered rooms are kept; default ~/.cache/houghstream");
+  mesh.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
+  mesh.add_option("--threads", options.threads, "any number gives the same store").range(1, 256).capture_default_str();
+  mesh.add_option("--dump-views", options.dump_views, "writes the training views as a BOP training folder too");
+  return mesh;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  TeachOptions options;
+  Lists lists;
+  std::filesystem::path folder;
+  std::string name;
+  cv::setNumThreads(1);  // views are rendered in parallel, each on one thread
+  CommandLine app("Teaches objects from their meshes, into an object store for hs-detect and hs-pose", "hs-teach");
+  app.require_subcommand();
+  const CommandLine mesh = add_mesh(app, options, lists);
+  CommandLine list = app.add_subcommand("list", "the objects of a store");
+  list.add_option("store", folder, "object store").required();
+  CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
+  remove.add_option("store", folder, "object store").required();
+  remove.add_option("name", name, "of the object").required();
+  return run_tool(app, argc, argv, [&] {
+    options.meshes.names = split(lists.names);
+    options.meshes.ids = split(lists.ids);
+    options.rooms.further = split(lists.rooms);
+    options.rooms.threads = options.threads;
+    if (mesh.given()) {
+      teach_meshes(options);
+    } else if (list.given()) {
+      list_store(folder);
+    } else {
+      remove_from_store(folder, name);
+    }
+  });
+}

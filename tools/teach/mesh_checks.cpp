@@ -1,0 +1,211 @@
+#include "tools/teach/mesh_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <opencv2/core.hpp>
+#include <utility>
+#include <vector>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pose/model/surface_tree.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+constexpr double kSmallest_m = 0.01;
+constexpr double kLargest_m = 1.5;  // what the camera's range of 0.3 to 2.6 m shows whole
+
+struct Unit {
+  const char* name;
+  double metres;
+};
+constexpr Unit kUnits[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}};
+
+std::string unit_name(double unit_m) {
+  for (const Unit& unit : kUnits) {
+    if (std::abs(unit.metres - unit_m) < 1e-9) return unit.name;
+  }
+  return fmt::format("units of {} m", unit_m);
+}
+
+void require_size(const std::string& where, double unit_m, const Mesh& mesh) {
+  const double size = mesh_diameter(mesh);
+  if (size >= kSmallest_m && size <= kLargest_m) return;
+  std::vector<std::string> fitting;
+  for (const Unit& unit : kUnits) {
+    const double other = size / unit_m * unit.metres;
+    if (other >= kSmallest_m && other <= kLargest_m)
+      fitting.push_back(fmt::format("--unit {} would make it {:.3g} m", unit.name, other));
+  }
+  fail("{}: {:.4g} m across when read in {}, expected {} to {} m, what the camera sees{}{}", where, size,
+       unit_name(unit_m), kSmallest_m, kLargest_m, fitting.empty() ? "" : ": ", fmt::join(fitting, ", "));
+}
+
+/// Vertices at one place have one number: where texture is cut, the surface is not.
+std::vector<std::uint32_t> weld(const Mesh& mesh) {
+  std::vector<std::uint32_t> order(mesh.vertices.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto key = [&](std::uint32_t i) {
+    const Eigen::Vector3f& v = mesh.vertices[i];
+    return std::array<float, 3>{v.x(), v.y(), v.z()};
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::vector<std::uint32_t> welded(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    welded[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? welded[order[i - 1]] : order[i];
+  return welded;
+}
+
+/// How a surface hangs together.
+struct Topology {
+  double open_m = 0.0;      ///< length of edges that one face has alone
+  std::size_t edges = 0;    ///< between two faces
+  std::size_t against = 0;  ///< of these, between two that are wound against each other
+  double volume_m3 = 0.0;   ///< signed, about the middle of the bounding box; negative where faces look inwards
+  double box_volume_m3 = 0.0;
+};
+
+Topology examine(const Mesh& mesh) {
+  using Edge = std::pair<std::pair<std::uint32_t, std::uint32_t>, int>;
+  const std::vector<std::uint32_t> welded = weld(mesh);
+  const Eigen::AlignedBox3d box = mesh_bounds(mesh).cast<double>();
+  Topology found;
+  found.box_volume_m3 = box.volume();
+  std::vector<Edge> edges;
+  for (const auto& t : mesh.triangles) {
+    const auto at = [&](std::size_t k) -> Eigen::Vector3d { return mesh.vertices[t[k]].cast<double>() - box.center(); };
+    found.volume_m3 += at(0).dot(at(1).cross(at(2))) / 6.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = welded[t[k]];
+      const std::uint32_t b = welded[t[(k + 1) % 3]];
+      if (a != b) edges.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t first = 0; first < edges.size();) {
+    std::size_t last = first;
+    int direction = 0;
+    for (; last < edges.size() && edges[last].first == edges[first].first; ++last) direction += edges[last].second;
+    const auto& [a, b] = edges[first].first;
+    if (last - first == 1) found.open_m += static_cast<double>((mesh.vertices[a] - mesh.vertices[b]).norm());
+    if (last - first == 2) {
+      ++found.edges;
+      found.against += direction != 0 ? 1 : 0;
+    }
+    first = last;
+  }
+  return found;
+}
+
+void turn_faces(Mesh& mesh) {
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+}
+
+/// Area-weighted: above 0 where the normals look to the side from which faces are counter-clockwise.
+double agreement(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3f& a = mesh.vertices[t[0]];
+    const Eigen::Vector3f face = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+    const Eigen::Vector3f normal = mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]];
+    sum += static_cast<double>(face.norm()) * (face.dot(normal) >= 0.0F ? 1.0 : -1.0);
+  }
+  return sum;
+}
+
+/// Largest distance from the surface that the motion gives one of its points.
+double largest_distance(const std::vector<Eigen::Vector3f>& points, const SurfaceTree& tree,
+                        const Eigen::Isometry3d& motion) {
+  float largest = 0.0F;
+  for (const Eigen::Vector3f& point : points)
+    largest = std::max(largest, tree.nearest((motion * point.cast<double>()).cast<float>()).distance);
+  return static_cast<double>(largest);
+}
+
+}  // namespace
+
+void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
+  require_size(where, unit_m, mesh);
+  Topology found = examine(mesh);
+  constexpr double kLeastVolume = 1e-3;  // of the box's: below, a plate has no inside
+  bool turned = false;
+  if (found.volume_m3 < -kLeastVolume * found.box_volume_m3) {
+    turn_faces(mesh);
+    turned = true;
+  }
+  if (agreement(mesh) < 0.0) {
+    for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
+    turned = true;
+  }
+  if (turned)
+    log_warning("{}: surface or normals face inwards (volume {:.4g} cm3), expected outwards: turned around", where,
+                found.volume_m3 * 1e6);
+  constexpr double kOpen = 0.25;  // of the diameter: less are cracks
+  if (found.open_m > kOpen * mesh_diameter(mesh))
+    log_warning("{}: open edges of {:.3g} m in all, expected a closed surface: taught as it is", where, found.open_m);
+  constexpr std::size_t kAgainst = 100;  // one of so many
+  if (found.against * kAgainst > found.edges)
+    log_warning("{}: {} of {} neighbouring faces are wound against each other, expected none: taught as it is", where,
+                found.against, found.edges);
+}
+
+void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetries& symmetries) {
+  if (symmetries.empty()) return;
+  constexpr int kPoints = 500;
+  constexpr double kSteps = 12.0;  // of a full turn
+  const double allowed = std::max(0.015, 0.1 * mesh_diameter(mesh));
+  const SurfaceTree tree(mesh);
+  const std::vector<Eigen::Vector3f> points = sample_surface(mesh, kPoints, 1).points;
+  const auto check = [&](const std::string& which, const Eigen::Isometry3d& motion) {
+    const double off = largest_distance(points, tree, motion);
+    require(off <= allowed,
+            "{}: {} takes points of the mesh up to {:.1f} mm off its surface, expected at most {:.1f} mm", where, which,
+            off * 1e3, allowed * 1e3);
+  };
+  for (std::size_t i = 0; i < symmetries.discrete.size(); ++i)
+    check(fmt::format("symmetries_discrete {}", i), symmetries.discrete[i]);
+  for (std::size_t i = 0; i < symmetries.continuous.size(); ++i) {
+    const auto& [axis, offset] = symmetries.continuous[i];
+    for (double step = 1.0; step < kSteps; step += 1.0) {
+      Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+      motion.translate(offset).rotate(Eigen::AngleAxisd(2.0 * M_PI * step / kSteps, axis)).translate(-offset);
+      check(fmt::format("symmetries_continuous {}", i), motion);
+    }
+  }
+}
+
+bool has_colour(const Mesh& mesh) {
+  constexpr int kSame = 4;   // of 255: what a JPEG changes
+  constexpr int kGrey = 10;  // of 255, between the channels
+  cv::Mat pixels;
+  if (!mesh.texture.empty()) {
+    pixels = mesh.texture;
+  } else if (mesh.colours.size() == mesh.vertices.size() && !mesh.colours.empty()) {
+    pixels = cv::Mat(mesh.colours, true);
+  } else {
+    return false;
+  }
+  std::vector<cv::Mat> channels;
+  cv::split(pixels, channels);
+  double brightest = 0.0;
+  double darkest = 255.0;
+  for (const cv::Mat& channel : channels) {
+    double low = 0.0;
+    double high = 0.0;
+    cv::minMaxLoc(channel, &low, &high);
+    if (high - low > 2 * kSame) return true;
+    brightest = std::max(brightest, high);
+    darkest = std::min(darkest, low);
+  }
+  return brightest - darkest > kGrey + 2 * kSame;
+}
+
+void remove_colour(Mesh& mesh) {
+  mesh.texture.release();
+  mesh.uvs.clear();
+  mesh.colours.clear();
+}
+
+}  // namespace houghstream::teach

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/symmetry.hpp"
+
+namespace houghstream::teach {
+
+/// Whether a mesh, in metres, can be taught. A surface or normals that face inwards are turned around, with a line of
+/// the log; an open surface and one whose faces are wound against each other are taught, with a line of the log. Throws
+/// InputError where it is smaller or larger than what a camera sees (10 mm to 1.5 m across), naming the unit that would
+/// fit. `where` names the file, `unit_m` the unit that it was read in.
+void check_mesh(const std::string& where, double unit_m, Mesh& mesh);
+
+/// Throws InputError naming `where` for a symmetry that takes a point of the surface farther from it than a tenth of
+/// the diameter and 15 mm, which is what BOP allows a candidate (Hodan et al. 2020).
+void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetries& symmetries);
+
+/// False where a mesh has no colours, or one grey only, which is what programs write that know none.
+bool has_colour(const Mesh& mesh);
+
+/// Takes texture and colours from it.
+void remove_colour(Mesh& mesh);
+
+}  // namespace houghstream::teach

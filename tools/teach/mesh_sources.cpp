@@ -1,0 +1,156 @@
+#include "tools/teach/mesh_sources.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/store/object_store.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tools/teach/mesh_checks.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMillimetre = 1e-3;
+
+std::string lower_extension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_mesh_file(const fs::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == ".ply" || extension == ".obj" || extension == ".glb" || extension == ".gltf";
+}
+
+double unit_of(const fs::path& file, const MeshSources& sources) {
+  const std::string extension = lower_extension(file);
+  const bool is_gltf = extension == ".glb" || extension == ".gltf";  // whose standard says metres
+  return sources.unit_m.value_or(is_gltf ? 1.0 : kMillimetre);
+}
+
+/// An OBJ names a file of materials, and without it would be taught without its colours.
+void require_materials(const fs::path& file) {
+  if (lower_extension(file) != ".obj") return;
+  constexpr const char* kWord = "mtllib ";
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind(kWord, 0) != 0) continue;
+    std::string name = line.substr(std::string(kWord).size());
+    name.erase(name.find_last_not_of(" \r\t") + 1);
+    require(fs::exists(file.parent_path() / name), "{}: missing, expected the materials of {}",
+            (file.parent_path() / name).string(), file.string());
+  }
+}
+
+TaughtMesh read_mesh(int id, const std::string& name, const fs::path& file, double unit_m) {
+  TaughtMesh taught;
+  taught.id = id;
+  taught.name = name;
+  taught.file = file;
+  require_materials(file);
+  taught.mesh = load_mesh(file, unit_m);
+  check_mesh(file.string(), unit_m, taught.mesh);
+  taught.coloured = has_colour(taught.mesh);
+  if (!taught.coloured) remove_colour(taught.mesh);
+  return taught;
+}
+
+int parse_id(const std::string& text) {
+  int id = 0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), id);
+  require(result.ec == std::errc() && result.ptr == text.data() + text.size() && id >= 1,
+          "--ids '{}', expected an object's id, from 1 on", text);
+  return id;
+}
+
+void append_bop_folder(const fs::path& folder, const MeshSources& sources, std::vector<TaughtMesh>& meshes) {
+  const BopModels models = read_bop_models(folder);
+  std::set<int> wanted;
+  for (const std::string& id : sources.ids) wanted.insert(parse_id(id));
+  for (const int id : wanted) {
+    require(models.diameters.count(id) == 1, "--ids {}: {} has no such object", id,
+            (folder / "models_info.json").string());
+  }
+  for (const auto& [id, diameter] : models.diameters) {
+    if (!wanted.empty() && wanted.count(id) == 0) continue;
+    const fs::path file = models.mesh_file(id);
+    meshes.push_back(read_mesh(id, models.names.at(id), file, sources.unit_m.value_or(kMillimetre)));
+    const auto stated = models.bounds.find(id);
+    if (stated != models.bounds.end()) store::check_bounds(meshes.back().mesh, stated->second, file.string());
+    meshes.back().symmetries = models.symmetries.at(id);
+    const std::string where = fmt::format("{} object {}", (folder / "models_info.json").string(), id);
+    check_symmetries(where, meshes.back().mesh, meshes.back().symmetries);
+  }
+}
+
+void append_plain_folder(const fs::path& folder, const MeshSources& sources, std::vector<TaughtMesh>& meshes) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (is_mesh_file(entry.path())) files.push_back(entry.path());
+  }
+  require(!files.empty(), "{}: neither models_info.json nor any NAME.ply, NAME.obj, NAME.glb", folder.string());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) meshes.push_back(read_mesh(0, file.stem().string(), file, unit_of(file, sources)));
+}
+
+/// New names, by id or by old name. Throws InputError for one without effect.
+void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& meshes) {
+  for (const std::string& rename : renames) {
+    const std::size_t equals = rename.find('=');
+    require(equals != std::string::npos && equals > 0 && equals + 1 < rename.size(),
+            "--names '{}', expected ID=NAME, for instance 2=cracker", rename);
+    const std::string which = rename.substr(0, equals);
+    const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const TaughtMesh& mesh) {
+      return mesh.id > 0 ? std::to_string(mesh.id) == which : mesh.file.stem().string() == which;
+    });
+    require(found != meshes.end(), "--names '{}': no object '{}' is read", rename, which);
+    found->name = rename.substr(equals + 1);
+  }
+}
+
+void require_different(const std::vector<TaughtMesh>& meshes) {
+  std::map<std::string, std::string> files;  // by name
+  std::map<int, std::string> files_by_id;
+  for (const TaughtMesh& mesh : meshes) {
+    const auto [other, is_new] = files.emplace(mesh.name, mesh.file.string());
+    require(is_new, "{}: is called '{}' as {} is, expected one object of each name (--names)", mesh.file.string(),
+            mesh.name, other->second);
+    if (mesh.id == 0) continue;
+    const auto [same, is_first] = files_by_id.emplace(mesh.id, mesh.file.string());
+    require(is_first, "{}: has the id {} as {} has, expected one object of each id", mesh.file.string(), mesh.id,
+            same->second);
+  }
+}
+
+}  // namespace
+
+std::vector<TaughtMesh> read_meshes(const MeshSources& sources) {
+  std::vector<TaughtMesh> meshes;
+  bool any_bop = false;
+  for (const fs::path source : sources.sources) {
+    if (fs::exists(source / "models_info.json")) {
+      any_bop = true;
+      append_bop_folder(source, sources, meshes);
+    } else if (fs::is_directory(source)) {
+      append_plain_folder(source, sources, meshes);
+    } else {
+      require(fs::exists(source), "{}: no such file or folder, expected a mesh or a folder of meshes", source.string());
+      require(is_mesh_file(source), "{}: expected a mesh: PLY, OBJ, GLB or glTF", source.string());
+      meshes.push_back(read_mesh(0, source.stem().string(), source, unit_of(source, sources)));
+    }
+  }
+  require(any_bop || sources.ids.empty(), "--ids goes with a BOP models folder (with models_info.json)");
+  rename(sources.names, meshes);
+  require_different(meshes);
+  return meshes;
+}
+
+}  // namespace houghstream::teach

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/symmetry.hpp"
+
+namespace houghstream::teach {
+
+/// Where meshes lie, as the command line names it.
+struct MeshSources {
+  std::vector<std::string> sources;  ///< mesh files; BOP models folders (with models_info.json); folders of meshes
+  std::optional<double> unit_m;      ///< of the files' coordinates; without it millimetres, for glTF metres
+  std::vector<std::string> names;    ///< "2=cracker": an object of a BOP folder by id, or of a file by its name
+  std::vector<std::string> ids;      ///< of a BOP folder's objects, which to teach; empty = all
+};
+
+/// A mesh to be taught, checked.
+struct TaughtMesh {
+  int id = 0;  ///< of a BOP folder; 0 = to be given
+  std::string name;
+  std::filesystem::path file;
+  Mesh mesh;  ///< metres; without colours where it is not coloured
+  Symmetries symmetries;
+  bool coloured = true;  ///< false: no colour, or nothing but one grey
+};
+
+/// Reads and checks them all (mesh_checks.hpp). Throws InputError with one line for what cannot be taught, for two
+/// objects of one name or id, and for names and ids that have no effect.
+std::vector<TaughtMesh> read_meshes(const MeshSources& sources);
+
+}  // namespace houghstream::teach

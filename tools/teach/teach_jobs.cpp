@@ -1,0 +1,263 @@
+#include "tools/teach/teach_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iterator>
+#include <optional>
+
+#include "detector/forest/forest_file.hpp"
+#include "detector/training/forest_trainer.hpp"
+#include "detector/training/object_removal.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/datasets/object_pixels.hpp"
+#include "drivers/files/image_file.hpp"
+#include "drivers/store/object_store.hpp"
+#include "drivers/store/store_build.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/parallel.hpp"
+#include "tools/render/world/mesh_views.hpp"
+#include "tools/teach/contact_sheet.hpp"
+#include "tools/teach/lookalikes.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+namespace fs = std::filesystem;
+using store::ObjectStore;
+using store::StoredObject;
+
+/// A line for each step, with the seconds since the start.
+class Progress {
+ public:
+  void operator()(const std::string& line) const { fmt::print(stderr, "hs-teach: {:6.1f} s  {}\n", seconds(), line); }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// A store with its forest and meshes, all of it in memory.
+struct Contents {
+  ObjectStore list;
+  std::optional<Forest> forest;
+  std::map<std::string, Mesh> meshes;
+};
+
+Contents read_contents(const fs::path& folder) {
+  Contents contents;
+  contents.list = store::read_store(folder);
+  contents.meshes = store::load_store_meshes(contents.list);
+  contents.forest = load_forest(contents.list.forest_file());
+  std::vector<std::string> names;
+  for (const ObjectClass& object : contents.forest->classes) names.push_back(object.name);
+  store::require_same_objects(contents.list, names);
+  return contents;
+}
+
+/// Ids of BOP folders are kept where they are free; what has none, or another object's, gets the next free one.
+void give_ids(const ObjectStore& old, std::vector<TaughtMesh>& meshes) {
+  std::vector<int> taken;
+  for (const StoredObject& object : old.objects) taken.push_back(object.id);
+  const auto is_free = [&](int id) { return std::find(taken.begin(), taken.end(), id) == taken.end(); };
+  for (TaughtMesh& mesh : meshes) {
+    if (mesh.id > 0 && !is_free(mesh.id)) mesh.id = 0;
+    if (mesh.id > 0) taken.push_back(mesh.id);
+  }
+  for (TaughtMesh& mesh : meshes) {
+    if (mesh.id > 0) continue;
+    for (mesh.id = 1; !is_free(mesh.id);) ++mesh.id;
+    taken.push_back(mesh.id);
+  }
+  std::sort(meshes.begin(), meshes.end(), [](const TaughtMesh& a, const TaughtMesh& b) { return a.id < b.id; });
+}
+
+void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) {
+  for (const TaughtMesh& mesh : meshes) {
+    const bool is_known = std::any_of(old.objects.begin(), old.objects.end(),
+                                      [&](const StoredObject& object) { return object.name == mesh.name; });
+    require(!is_known, "{}: the store {} has a '{}' already, expected a new name (--names), or hs-teach remove first",
+            mesh.file.string(), old.folder.string(), mesh.name);
+  }
+}
+
+/// Training views of a mesh; those that show no depth of it are left out.
+std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options) {
+  world::MeshViewSettings settings;
+  settings.attitudes = world::parse_mesh_attitudes(options.attitudes);
+  settings.has_colour = taught.coloured;
+  const world::MeshViews rendered(taught.mesh, settings,
+                                  options.seed * 1000003U + static_cast<std::uint64_t>(taught.id));
+  std::vector<TrainingView> views(static_cast<std::size_t>(rendered.count()));
+  parallel_for(options.threads, rendered.count(), [&](int i) {
+    TrainingView& view = views[static_cast<std::size_t>(i)];
+    view = rendered.render(i);
+    view.class_id = taught.id;
+    view.class_name = taught.name;
+    view.source = fmt::format("{} view {}", taught.file.string(), i);
+  });
+  const auto shows_nothing = [](const TrainingView& view) {
+    return count_depth_pixels(view.frame.depth, view.mask) == 0;
+  };
+  views.erase(std::remove_if(views.begin(), views.end(), shows_nothing), views.end());
+  require(!views.empty(), "{}: no view of it shows any depth, expected an object that a camera sees",
+          taught.file.string());
+  return views;
+}
+
+/// The views of one object as a scene folder in BOP format.
+void dump_views(const std::vector<TrainingView>& views, const fs::path& folder) {
+  BopWriter writer(folder);
+  for (const TrainingView& view : views) {
+    TrueObject object;
+    object.object_id = view.class_id;
+    object.T_camera_object = view.T_camera_object;
+    object.box_visible_px = cv::boundingRect(view.mask);
+    writer.add(view.frame, {object}, {view.mask});
+  }
+  writer.finish();
+}
+
+std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes) {
+  std::vector<NamedModel> models;
+  for (const TaughtMesh& taught : meshes) models.push_back({taught.id, taught.name, taught.mesh, taught.symmetries});
+  return models;
+}
+
+std::string title_of(const StoredObject& object) {
+  return fmt::format("{} (object {}): {} views, {}{}", object.name, object.id, object.views, object.attitudes,
+                     object.coloured ? "" : ", colour unknown");
+}
+
+/// Views of all objects, in order; their pictures go to the store, and to the dump where one is wanted.
+std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
+                                     ObjectStore& made, const Progress& progress) {
+  std::vector<TrainingView> all;
+  for (const TaughtMesh& taught : meshes) {
+    std::vector<TrainingView> views = render_views(taught, options);
+    StoredObject object;
+    object.id = taught.id;
+    object.name = taught.name;
+    object.mesh = taught.file.string();
+    object.coloured = taught.coloured;
+    object.views = static_cast<int>(views.size());
+    object.attitudes = options.attitudes;
+    progress(title_of(object));
+    write_png(view_picture(views, title_of(object)), made.view_picture(object.id));
+    if (!options.dump_views.empty()) dump_views(views, options.dump_views / fmt::format("{:06d}", object.id));
+    made.objects.push_back(object);
+    std::move(views.begin(), views.end(), std::back_inserter(all));
+  }
+  if (!options.dump_views.empty()) write_bop_models(models_of(meshes), options.dump_views / "models");
+  return all;
+}
+
+/// The forest's classes get the ids of the store.
+void take_ids(const ObjectStore& list, Forest& forest) {
+  for (ObjectClass& known : forest.classes) {
+    for (const StoredObject& object : list.objects) {
+      if (object.name == known.name) known.class_id = object.id;
+    }
+  }
+}
+
+Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>& old, const TeachOptions& options,
+             const Progress& progress) {
+  Profile profile = old ? training::profile_of(*old) : make_profile("realtime");
+  profile.training.seed = options.seed;
+  profile.training.threads = options.threads;
+  const auto report = [&](const std::string& line) { progress(line); };
+  return old ? training::add_objects(*old, views, profile, report) : training::train_forest(views, profile, report);
+}
+
+/// Everything but the pictures of views, which are there, and store.json last.
+void write_store(ObjectStore list, const std::vector<NamedModel>& models, const Forest& forest) {
+  std::sort(list.objects.begin(), list.objects.end(),
+            [](const StoredObject& a, const StoredObject& b) { return a.id < b.id; });
+  write_bop_models(models, list.models_folder());
+  save_forest(forest, list.forest_file());
+  std::vector<fs::path> pictures;
+  for (const StoredObject& object : list.objects) pictures.push_back(list.view_picture(object.id));
+  write_contact_sheet(pictures, list.contact_sheet());
+  store::write_store_json(list);
+}
+
+/// What stays of a store goes into the one that is being made.
+void keep(const Contents& old, const std::string& except, ObjectStore& made, std::vector<NamedModel>& models) {
+  for (const StoredObject& object : old.list.objects) {
+    if (object.name == except) continue;
+    made.objects.push_back(object);
+    models.push_back({object.id, object.name, old.meshes.at(object.name), old.list.symmetries.at(object.id)});
+    std::error_code error;
+    fs::copy_file(old.list.view_picture(object.id), made.view_picture(object.id), error);
+    require(!error, "{}: cannot be copied: {}", old.list.view_picture(object.id).string(), error.message());
+  }
+}
+
+ObjectStore start_store(const fs::path& folder) {
+  ObjectStore made;
+  made.folder = folder;
+  std::error_code error;
+  fs::create_directories(folder / "views", error);
+  require(!error, "{}: cannot make this folder: {}", (folder / "views").string(), error.message());
+  return made;
+}
+
+void name_lookalikes(const std::vector<NamedModel>& models) {
+  std::vector<NamedMesh> named;
+  for (const NamedModel& model : models) named.emplace_back(model.name, &model.mesh);
+  for (const Lookalike& pair : find_lookalikes(named)) log_warning("{}", describe(pair));
+}
+
+}  // namespace
+
+void teach_meshes(const TeachOptions& options) {
+  const Progress progress;
+  world::parse_mesh_attitudes(options.attitudes);
+  Contents old;
+  if (options.add) old = read_contents(options.out);
+  std::vector<TaughtMesh> meshes = read_meshes(options.meshes);
+  require_new(old.list, meshes);
+  give_ids(old.list, meshes);
+  progress(fmt::format("{} meshes read", meshes.size()));
+
+  store::StoreBuild build(options.out);
+  ObjectStore made = start_store(build.folder());
+  std::vector<NamedModel> models;
+  keep(old, "", made, models);
+  std::vector<TrainingView> views = read_rooms(options.rooms);
+  progress(fmt::format("{} pictures of rooms read", views.size()));
+  std::vector<TrainingView> of_objects = make_views(meshes, options, made, progress);
+  std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
+  Forest forest = train(views, old.forest, options, progress);
+  take_ids(made, forest);
+  for (NamedModel& model : models_of(meshes)) models.push_back(std::move(model));
+  made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
+  write_store(made, models, forest);
+  build.publish();
+  name_lookalikes(models);
+  fmt::print("teach_seconds {:.1f}\n", progress.seconds());
+}
+
+void list_store(const fs::path& folder) {
+  for (const StoredObject& object : store::read_store(folder).objects)
+    fmt::print("{:>6} {:<24} {:>5} views, {}, {}; {}\n", object.id, object.name, object.views, object.attitudes,
+               object.coloured ? "coloured" : "colour unknown", object.mesh);
+}
+
+void remove_from_store(const fs::path& folder, const std::string& name) {
+  const Contents old = read_contents(folder);
+  const Forest forest = training::remove_object(*old.forest, name);
+  store::StoreBuild build(folder);
+  ObjectStore made = start_store(build.folder());
+  made.settings = old.list.settings;
+  std::vector<NamedModel> models;
+  keep(old, name, made, models);
+  write_store(made, models, forest);
+  build.publish();
+}
+
+}  // namespace houghstream::teach

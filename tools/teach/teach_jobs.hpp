@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "tools/teach/mesh_sources.hpp"
+#include "tools/teach/training_rooms.hpp"
+
+namespace houghstream::teach {
+
+/// What hs-teach mesh is asked for.
+struct TeachOptions {
+  MeshSources meshes;
+  RoomSettings rooms;
+  std::filesystem::path out;          ///< the store
+  std::string attitudes = "resting";  ///< see world::parse_mesh_attitudes
+  bool add = false;                   ///< to the store that is there
+  std::filesystem::path dump_views;   ///< BOP training folder to write the views to as well; empty = none
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+/// Teaches objects from their meshes. Says on standard error what is done, and at the end which objects can hardly be
+/// told apart. The store that was there stays whole until the new one is. Throws InputError for what cannot be taught.
+void teach_meshes(const TeachOptions& options);
+
+/// Prints what the store knows, an object a line.
+void list_store(const std::filesystem::path& folder);
+
+/// Takes an object out of the store. Throws InputError where it is not there, or the only one.
+void remove_from_store(const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace houghstream::teach

@@ -1,0 +1,78 @@
+#include "tools/teach/training_rooms.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "tools/render/render_jobs.hpp"
+#include "tools/train/training_sources.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the rendered rooms; to be raised when they come to look otherwise.
+constexpr int kRoomsVersion = 1;
+constexpr std::uint64_t kRoomsSeed = 1;
+
+/// What renderings that were interrupted have left; the name ends in the number of their process.
+void remove_leftovers(const fs::path& cache, const std::string& prefix) {
+  for (const auto& entry : fs::directory_iterator(cache)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind(prefix, 0) != 0) continue;
+    const int process = std::atoi(name.substr(prefix.size()).c_str());
+    if (process > 0 && (kill(process, 0) == 0 || errno == EPERM)) continue;
+    std::error_code error;
+    fs::remove_all(entry.path(), error);
+  }
+}
+
+/// The folder of the rendered rooms; renders them beside it first where it is missing, so that it is always whole.
+fs::path rendered_rooms(const RoomSettings& settings) {
+  const fs::path cache = settings.cache.empty() ? default_cache() : settings.cache;
+  const fs::path rooms = cache / fmt::format("rooms-{}-{}", kRoomsVersion, settings.count);
+  if (fs::exists(rooms / "scene_gt_info.json")) return rooms;
+  std::error_code error;
+  fs::create_directories(cache, error);
+  require(!error, "{}: cannot make this folder: {}; --cache names another", cache.string(), error.message());
+  const std::string prefix = rooms.filename().string() + ".partial-";
+  remove_leftovers(cache, prefix);
+  const fs::path partial = cache / (prefix + std::to_string(getpid()));
+  log_info("rooms are rendered once into {}", rooms.string());
+  render::RenderOptions options;
+  options.out = partial;
+  options.seed = kRoomsSeed;
+  options.threads = settings.threads;
+  render::render_background(options, settings.count);
+  fs::rename(partial, rooms, error);
+  if (error) {  // another teaching was faster
+    require(fs::exists(rooms / "scene_gt_info.json"), "{}: cannot be written: {}", rooms.string(), error.message());
+    fs::remove_all(partial);
+  }
+  return rooms;
+}
+
+}  // namespace
+
+fs::path default_cache() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && *cache != '\0') return fs::path(cache) / "houghstream";
+  const char* home = std::getenv("HOME");
+  require(home != nullptr && *home != '\0', "neither XDG_CACHE_HOME nor HOME is set, expected --cache FOLDER");
+  return fs::path(home) / ".cache" / "houghstream";
+}
+
+std::vector<TrainingView> read_rooms(const RoomSettings& settings) {
+  TrainingSources sources;
+  sources.backgrounds = {"bop:" + rendered_rooms(settings).string()};
+  sources.backgrounds.insert(sources.backgrounds.end(), settings.further.begin(), settings.further.end());
+  sources.camera = settings.camera;
+  return read_training_sources(sources, settings.threads);
+}
+
+}  // namespace houghstream::teach
