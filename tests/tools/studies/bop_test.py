@@ -248,6 +248,11 @@ class Chosen(Case):
         write_set(self.root, split=".")
         self.assertEqual([scene.name for scene in open_dataset(str(self.root), "test", 1).scenes], ["000001", "000050"])
 
+    def test_models_may_be_the_ones_made_by_cad(self):
+        write_set(self.root)
+        (self.root / "models").rename(self.root / "models_cad")
+        self.assertEqual(open_dataset(f"tless={self.root}", "test", 1).models, self.root / "models_cad")
+
     def test_names_of_an_option(self):
         self.assertEqual(names_of("2=a,5=b_c"), {2: "a", 5: "b_c"})
         self.assertEqual(names_of(""), {})

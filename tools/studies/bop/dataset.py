@@ -8,6 +8,7 @@ import re
 
 from studies.bop.choose import FILES, BadSet, chosen_images, missing_picture, read, read_targets
 
+MODELS = ("models", "models_cad", "models_eval")  # as sets call them; the first that is there
 TARGETS = "test_targets_bop19.json"
 SAME_SIZE = 0.1  # diameters of one object in set and store differ by no more, a share
 
@@ -21,7 +22,7 @@ class Dataset:
 
     @property
     def models(self):
-        return self.root / "models"
+        return models_folder(self.root)
 
 
 def named_folder(text):
@@ -32,6 +33,11 @@ def named_folder(text):
     if not re.fullmatch(r"[A-Za-z0-9_.-]+", name):
         raise BadSet(f"--dataset {text}: the name is '{name}', expected letters, digits, _ . -")
     return name, root
+
+
+def models_folder(root):
+    found = [root / name for name in MODELS if (root / name / "models_info.json").is_file()]
+    return found[0] if found else root / MODELS[0]
 
 
 def scene_folders(root, split):
@@ -50,7 +56,7 @@ def open_dataset(text, split, every, with_models=True):
     name, root = named_folder(text)
     if not root.is_dir():
         raise BadSet(f"{root}: no such folder, expected a BOP set")
-    if with_models and not (root / "models" / "models_info.json").is_file():
+    if with_models and not (models_folder(root) / "models_info.json").is_file():
         raise BadSet(
             f"{root / 'models' / 'models_info.json'}: not there, expected the set's models, or --objects STORE"
         )

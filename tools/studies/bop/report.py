@@ -77,6 +77,9 @@ def reliability(calibration, title):
     return chart.svg()
 
 
+WORST = 4  # poses of a scene that are shown
+
+
 def pictures(folders):
     """Of each scene what was missed or false, and the worst poses, by (words, pictures)."""
     out = []
@@ -90,7 +93,10 @@ def pictures(folders):
         )
         if worst:
             out.append(
-                (f"scene {scene.name}: the worst poses that were published", [embedded(file, "png") for file in worst])
+                (
+                    f"scene {scene.name}: the worst poses that were published",
+                    [embedded(file, "png") for file in worst[:WORST]],
+                )
             )
     return out
 
