@@ -10,8 +10,10 @@ import sys
 
 ON_THE_ROBOT = ("hs-capture", "hs-detect", "hs-pose", "hs-view", "hs-stream", "hs-log", "hs-doctor")
 TEACHING = ("hs-train", "hs-evaluate", "hs-fuse")
+RENDERING = ("hs-teach",)  # which holds the rendered world, and no other study
 STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl|reference_engine"
                      r"|make_named_scene|light_world")
+WORLD = re.compile(r"houghstream::(\w+::)*world::|make_named_scene|light_world")
 PCL = re.compile(r"\blibpcl_\w+|\blibvtk\w*")
 
 
@@ -21,6 +23,8 @@ def output_of(*command):
 
 def faults_of(program):
     names = sorted({m.group() for m in map(STUDIES.search, output_of("nm", "-C", str(program)).split("\n")) if m})
+    if program.name in RENDERING:
+        names = [name for name in names if not WORLD.fullmatch(name)]
     libraries = sorted(set(PCL.findall(output_of("ldd", str(program)))))
     return [f"{program.name}: holds {found}" for found in [*names, *libraries]]
 
@@ -28,7 +32,7 @@ def faults_of(program):
 def main():
     if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "hs-detect").is_file():
         sys.exit("usage: product_contents.py BIN (the folder that holds hs-detect)")
-    faults = [fault for name in (*ON_THE_ROBOT, *TEACHING) for fault in faults_of(pathlib.Path(sys.argv[1], name))]
+    faults = [fault for name in (*ON_THE_ROBOT, *TEACHING, *RENDERING) for fault in faults_of(pathlib.Path(sys.argv[1], name))]
     print("\n".join(faults) if faults else "the product holds no study")
     sys.exit(1 if faults else 0)
 

@@ -7,6 +7,7 @@
 
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
+#include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
@@ -25,6 +26,7 @@ struct EvaluateOptions {
   std::string targets;
   std::string log;
   std::string channel = ".*";
+  std::string objects;
   std::string forest;
   std::string models;
   std::string latency;
@@ -242,6 +244,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
       .description(
           "with --log: results of frames on these channels, a regular expression for the whole name; one camera's");
   app.add_option("--forest", options.forest, "forest: detects in-process without --log, and names the classes");
+  app.add_option("--objects", options.objects, "object store of hs-teach, instead of --forest and --models");
   app.add_option("--models", options.models, "models/ of the scene: measures poses (in-process: estimates them)");
   app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")
       .delimiter(',');
@@ -271,11 +274,22 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 
 }  // namespace
 
+/// A store's forest and models, where one is named.
+static EvaluateOptions with_store(EvaluateOptions options) {
+  if (options.objects.empty()) return options;
+  require(options.forest.empty() && options.models.empty(),
+          "expected either --objects STORE or --forest FILE and --models FOLDER");
+  const store::ObjectStore objects = store::read_store(options.objects);
+  options.forest = objects.forest_file().string();
+  options.models = objects.models_folder().string();
+  return options;
+}
+
 int evaluate_main(int argc, char** argv, const std::string& name) {
   CommandLine app("Compares detections and poses with the truth of a scene", name);
   EvaluateOptions options;
   add_options(app, options);
-  return run_tool(app, argc, argv, [&] { run(options); });
+  return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }
 
 }  // namespace houghstream

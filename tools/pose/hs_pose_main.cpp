@@ -1,4 +1,6 @@
 #include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/store/object_store.hpp"
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/process/pose_process.hpp"
@@ -8,12 +10,14 @@
 namespace {
 
 /// Meshes by class name; without a folder every detection is answered with "no model".
-std::map<std::string, houghstream::Mesh> load_models(const std::string& folder, double unit_m) {
-  if (folder.empty()) {
-    houghstream::log_warning("no --models: detections are answered without a pose");
-    return {};
-  }
-  return houghstream::load_class_models(folder, unit_m);
+std::map<std::string, houghstream::Mesh> load_models(const std::string& objects, const std::string& folder,
+                                                     double unit_m) {
+  using namespace houghstream;
+  require(objects.empty() || folder.empty(), "expected either --objects STORE or --models FOLDER");
+  if (!objects.empty()) return store::load_store_meshes(store::read_store(objects));
+  if (!folder.empty()) return load_class_models(folder, unit_m);
+  log_warning("neither --objects nor --models: detections are answered without a pose");
+  return {};
 }
 
 }  // namespace
@@ -21,6 +25,7 @@ std::map<std::string, houghstream::Mesh> load_models(const std::string& folder, 
 int main(int argc, char** argv) {
   using namespace houghstream;
   CommandLine app("Refines detections to 6-DoF poses and publishes object_poses_t", "hs-pose");
+  std::string objects;
   std::string models;
   double model_unit_m = 1e-3;
   std::string camera;
@@ -28,6 +33,7 @@ int main(int argc, char** argv) {
   std::string output_log;
   PoseSettings settings;
   PoseProcessOptions options;
+  app.add_option("--objects", objects, "object store of hs-teach, instead of --models");
   add_model_options(app, models, model_unit_m);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("--threads", settings.threads, "threads").range(1, 64).capture_default_str();
@@ -45,7 +51,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.camera = parse_camera(camera);
-    std::map<std::string, Mesh> meshes = load_models(models, model_unit_m);
+    std::map<std::string, Mesh> meshes = load_models(objects, models, model_unit_m);
     for (const auto& [name, mesh] : meshes) options.models.insert(name);
     const PoseEstimator estimator(std::move(meshes), settings);
     LcmBus bus(url, output_log);

@@ -22,8 +22,9 @@ struct Pace {
 
 void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--source", options.source, "as hs-capture takes it; without it the frames are somebody else's");
-  app.add_option("--forest", options.forest, "forest file of hs-train").required();
-  app.add_option("--models", options.models, "models folder; without it there are no poses");
+  app.add_option("--objects", options.objects, "object store of hs-teach");
+  app.add_option("--forest", options.forest, "forest file of hs-train, instead of --objects");
+  app.add_option("--models", options.models, "with --forest: models folder; without it there are no poses");
   app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
   app.add_clearing_flag("--no-view", options.view, "no window");
@@ -59,6 +60,8 @@ Duration from_seconds(double seconds) {
 }
 
 void run_stream(StreamOptions options, const Pace& pace) {
+  require(options.objects.empty() != options.forest.empty(), "expected either --objects STORE or --forest FILE");
+  require(options.objects.empty() || options.models.empty(), "--models goes with --forest; --objects has its own");
   options.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   if (options.view && options.view_options.empty() && !has_display()) {
     log_warning("no display: without hs-view; --view-options '--video FILE.mp4' writes what it would show");

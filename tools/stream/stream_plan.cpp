@@ -30,14 +30,19 @@ ChildPlan plan(const StreamOptions& options, const std::string& name, const Word
 
 std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
   const Words camera = options.camera.empty() ? Words() : Words{"--camera", options.camera};
-  const Words models = options.models.empty() ? Words() : Words{"--models", options.models};
+  const bool has_store = !options.objects.empty();
+  const Words store = {"--objects", options.objects};
+  const Words forest = {"--forest", options.forest};
+  const std::string folder = has_store ? options.objects + "/models" : options.models;
+  const Words models = folder.empty() ? Words() : Words{"--models", folder};
   const auto with_camera = [&](Words words) {
     words.insert(words.end(), camera.begin(), camera.end());
     return words;
   };
   std::vector<ChildPlan> plans;
-  plans.push_back(plan(options, "detect", with_camera({"--forest", options.forest}), options.detect_options));
-  if (!models.empty()) plans.push_back(plan(options, "pose", with_camera(models), options.pose_options));
+  plans.push_back(plan(options, "detect", with_camera(has_store ? store : forest), options.detect_options));
+  if (!models.empty())
+    plans.push_back(plan(options, "pose", with_camera(has_store ? store : models), options.pose_options));
   if (options.view) {
     plans.push_back(plan(options, "view", with_camera(models), options.view_options));
     plans.back().ends_stream = true;

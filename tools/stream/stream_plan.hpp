@@ -12,6 +12,7 @@ namespace houghstream::stream {
 struct StreamOptions {
   std::filesystem::path executables;  ///< folder of hs-capture, hs-detect, hs-pose, hs-view
   std::string source;                 ///< of hs-capture; "" = the frames come from somebody else's driver
+  std::string objects;                ///< object store for all of them; "" = forest and models
   std::string forest;                 ///< of hs-detect
   std::string models;                 ///< folder for hs-pose and hs-view; "" = no poses
   std::string camera;                 ///< for frames without a camera of their own
@@ -24,7 +25,7 @@ struct StreamOptions {
   std::string view_options;
 };
 
-/// The processes with their command lines, in the order of the stream. Without models there is no hs-pose.
+/// The processes with their command lines, in the order of the stream. Without models or store there is no hs-pose.
 std::vector<ChildPlan> plan_stream(const StreamOptions& options);
 
 }  // namespace houghstream::stream

@@ -103,16 +103,19 @@ void turn_faces(Mesh& mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
-/// Area-weighted: above 0 where the normals look to the side from which faces are counter-clockwise.
+/// Share of the surface whose normals look to the side from which its faces are counter-clockwise.
 double agreement(const Mesh& mesh) {
-  double sum = 0.0;
+  double agreeing = 0.0;
+  double all = 0.0;
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3f& a = mesh.vertices[t[0]];
     const Eigen::Vector3f face = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
     const Eigen::Vector3f normal = mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]];
-    sum += static_cast<double>(face.norm()) * (face.dot(normal) >= 0.0F ? 1.0 : -1.0);
+    const auto area = static_cast<double>(face.norm());
+    all += area;
+    if (face.dot(normal) >= 0.0F) agreeing += area;
   }
-  return sum;
+  return all > 0.0 ? agreeing / all : 1.0;
 }
 
 /// Largest distance from the surface that the motion gives one of its points.
@@ -128,20 +131,19 @@ double largest_distance(const std::vector<Eigen::Vector3f>& points, const Surfac
 
 void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
   require_size(where, unit_m, mesh);
-  Topology found = examine(mesh);
+  const Topology found = examine(mesh);
   constexpr double kLeastVolume = 1e-3;  // of the box's: below, a plate has no inside
-  bool turned = false;
   if (found.volume_m3 < -kLeastVolume * found.box_volume_m3) {
     turn_faces(mesh);
-    turned = true;
-  }
-  if (agreement(mesh) < 0.0) {
-    for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
-    turned = true;
-  }
-  if (turned)
-    log_warning("{}: surface or normals face inwards (volume {:.4g} cm3), expected outwards: turned around", where,
+    log_warning("{}: the surface faces inwards (volume {:.4g} cm3), expected outwards: turned around", where,
                 found.volume_m3 * 1e6);
+  }
+  const double agreeing = agreement(mesh);
+  if (agreeing < 0.5) {
+    for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
+    log_warning("{}: {:.0f} % of the normals face inwards, expected none: turned around", where,
+                100.0 * (1.0 - agreeing));
+  }
   constexpr double kOpen = 0.25;  // of the diameter: less are cracks
   if (found.open_m > kOpen * mesh_diameter(mesh))
     log_warning("{}: open edges of {:.3g} m in all, expected a closed surface: taught as it is", where, found.open_m);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <iterator>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "detector/forest/forest_file.hpp"
@@ -19,7 +20,6 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
-#include "tools/render/world/mesh_views.hpp"
 #include "tools/teach/contact_sheet.hpp"
 #include "tools/teach/lookalikes.hpp"
 
@@ -86,7 +86,7 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 
 /// Training views of a mesh; those that show no depth of it are left out.
 std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options) {
-  world::MeshViewSettings settings;
+  world::MeshViewSettings settings = options.views;
   settings.attitudes = world::parse_mesh_attitudes(options.attitudes);
   settings.has_colour = taught.coloured;
   const world::MeshViews rendered(taught.mesh, settings,
@@ -166,7 +166,15 @@ void take_ids(const ObjectStore& list, Forest& forest) {
 
 Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>& old, const TeachOptions& options,
              const Progress& progress) {
-  Profile profile = old ? training::profile_of(*old) : make_profile("realtime");
+  Profile profile = options.profile;
+  if (old) {
+    profile = training::profile_of(*old);
+    const int trees = profile.training.trees;
+    const Scoring scoring = profile.training.scoring;
+    profile.training = options.profile.training;
+    profile.training.trees = trees;
+    profile.training.scoring = scoring;
+  }
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
   const auto report = [&](const std::string& line) { progress(line); };

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "detector/profiles.hpp"
+#include "tools/render/world/mesh_views.hpp"
 #include "tools/teach/mesh_sources.hpp"
 #include "tools/teach/training_rooms.hpp"
 
@@ -13,10 +15,12 @@ namespace houghstream::teach {
 struct TeachOptions {
   MeshSources meshes;
   RoomSettings rooms;
-  std::filesystem::path out;          ///< the store
-  std::string attitudes = "resting";  ///< see world::parse_mesh_attitudes
-  bool add = false;                   ///< to the store that is there
-  std::filesystem::path dump_views;   ///< BOP training folder to write the views to as well; empty = none
+  std::filesystem::path out;                   ///< the store
+  std::string attitudes = "resting";           ///< see world::parse_mesh_attitudes
+  bool add = false;                            ///< to the store that is there
+  std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
+  world::MeshViewSettings views;               ///< attitudes and colour are those of the object
+  Profile profile = make_profile("realtime");  ///< with `add` its training only, the rest is the forest's
   std::uint64_t seed = 1;
   int threads = 2;
 };

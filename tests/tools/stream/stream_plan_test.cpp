@@ -27,6 +27,17 @@ TEST(StreamPlan, PutsTheStreamTogether) {
   EXPECT_TRUE(plans[3].ends_stream);
 }
 
+TEST(StreamPlan, AnObjectStoreIsForAll) {
+  StreamOptions options;
+  options.executables = "/bin";
+  options.objects = "store";
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 3U);
+  EXPECT_EQ(plans[0].command, (Words{"/bin/hs-detect", "--channel", "OPENNI_FRAME", "--objects", "store"}));
+  EXPECT_EQ(plans[1].command, (Words{"/bin/hs-pose", "--channel", "OPENNI_FRAME", "--objects", "store"}));
+  EXPECT_EQ(plans[2].command, (Words{"/bin/hs-view", "--channel", "OPENNI_FRAME", "--models", "store/models"}));
+}
+
 TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
   StreamOptions options;
   options.executables = "/bin";
