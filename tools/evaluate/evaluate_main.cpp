@@ -14,9 +14,9 @@
 #include "tools/evaluate/bop_results.hpp"
 #include "tools/evaluate/bop_targets.hpp"
 #include "tools/evaluate/class_names.hpp"
-#include "tools/evaluate/frame_times.hpp"
 #include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/report.hpp"
+#include "tools/evaluate/search_times.hpp"
 
 namespace houghstream {
 namespace {
@@ -199,7 +199,7 @@ void write_files(const EvaluateOptions& options, const Figures& figures, const s
                options.out);
   std::vector<EvaluatedFrame> frames;
   for (const OpenScene& it : scenes) frames.insert(frames.end(), it.frames.begin(), it.frames.end());
-  write_frame_times(frames, std::filesystem::path(options.out) / kFrameTimesFile);
+  write_search_times(frames, std::filesystem::path(options.out) / kSearchTimesFile);
   if (figures.all.frames_with_poses == 0) return;
   std::vector<BopEstimate> estimates;
   for (const OpenScene& it : scenes) {

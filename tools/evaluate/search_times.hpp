@@ -8,10 +8,10 @@
 namespace houghstream {
 
 /// hs-evaluate writes it beside its report.
-inline constexpr const char* kFrameTimesFile = "frames.csv";
+inline constexpr const char* kSearchTimesFile = "frames.csv";
 
 /// scene,image_id,detect_ms,pose_ms,detections,poses of each frame with detections: the sums of the stages whose names
 /// begin with "detect." and "pose.", empty where there are none. Throws InputError where it cannot be written.
-void write_frame_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file);
+void write_search_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file);
 
 }  // namespace houghstream

@@ -1,4 +1,4 @@
-#include "tools/evaluate/frame_times.hpp"
+#include "tools/evaluate/search_times.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ std::string milliseconds(const std::vector<StageTime>& stages, const std::string
 
 }  // namespace
 
-void write_frame_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file) {
+void write_search_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file) {
   std::ofstream out(file);
   out << "scene,image_id,detect_ms,pose_ms,detections,poses\n";
   for (const EvaluatedFrame& frame : frames) {

@@ -1,4 +1,4 @@
-#include "tools/evaluate/frame_times.hpp"
+#include "tools/evaluate/search_times.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ EvaluatedFrame frame(int image_id) {
   return out;
 }
 
-TEST(FrameTimes, StagesAreSummedByTheProgramAndSkippedFramesHaveNone) {
+TEST(SearchTimes, StagesAreSummedByTheProgramAndSkippedFramesHaveNone) {
   EvaluatedFrame both = frame(5);
   both.detections.emplace();
   both.detections->detections.resize(2);
@@ -29,8 +29,8 @@ TEST(FrameTimes, StagesAreSummedByTheProgramAndSkippedFramesHaveNone) {
   EvaluatedFrame detected = frame(9);
   detected.detections.emplace();
   detected.detections->stages = {{"detect.leaves", 2000}};
-  const std::filesystem::path file = fresh_folder("frame_times") / "frames.csv";
-  write_frame_times({both, frame(7), detected}, file);
+  const std::filesystem::path file = fresh_folder("search_times") / "frames.csv";
+  write_search_times({both, frame(7), detected}, file);
   std::ifstream in(file);
   std::stringstream text;
   text << in.rdbuf();
@@ -40,8 +40,8 @@ TEST(FrameTimes, StagesAreSummedByTheProgramAndSkippedFramesHaveNone) {
             "000050,9,2.000,,0,0\n");
 }
 
-TEST(FrameTimes, AFolderThatIsNotThereIsRefused) {
-  EXPECT_THROW(write_frame_times({}, "/no/such/folder/frames.csv"), InputError);
+TEST(SearchTimes, AFolderThatIsNotThereIsRefused) {
+  EXPECT_THROW(write_search_times({}, "/no/such/folder/frames.csv"), InputError);
 }
 
 }  // namespace
