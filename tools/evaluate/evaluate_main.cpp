@@ -15,8 +15,8 @@
 #include "tools/evaluate/bop_targets.hpp"
 #include "tools/evaluate/class_names.hpp"
 #include "tools/evaluate/in_process.hpp"
+#include "tools/evaluate/metrics/search_times.hpp"
 #include "tools/evaluate/report.hpp"
-#include "tools/evaluate/search_times.hpp"
 
 namespace houghstream {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/evaluate/search_times.hpp"
+#include "tools/evaluate/metrics/search_times.hpp"
 
 #include <gtest/gtest.h>
 
