@@ -14,7 +14,7 @@ PoseEvidence good() {
   evidence.depth.violating = 20;
   evidence.depth.outline_ends = 150;
   evidence.depth.outline_continues = 15;
-  evidence.colour = ColourComparison{400, 0.8F, 14.0F, 5.0F};
+  evidence.colour = ColourComparison{400, 0.8F, 14.0F, 0.4F};
   return evidence;
 }
 
@@ -51,9 +51,37 @@ TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
 
 TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.colour->left_over = 40.0F;
+  evidence.colour->agreement = 0.1F;
   EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
+}
+
+TEST(PoseQuality, AnotherColourSpeaksAgainstAPose) {
+  PoseEvidence evidence = good();
+  evidence.colour->chroma_conflict = 3.0F;
+  EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
+  EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
+}
+
+TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
+  PoseEvidence evidence = good();
+  evidence.colour->agreement = -0.5F;
+  const float contradicted = quality(evidence);
+  evidence.colour->agreement = -20.0F;
+  EXPECT_EQ(quality(evidence), contradicted);
+}
+
+TEST(PoseQuality, LittleThatAgreesSpeaksAgainstAPoseAsLearnt) {
+  QualitySettings settings;
+  settings.weights.extent = 1.0;
+  settings.bias -= settings.weights.extent * settings.typical.extent;
+  PoseEvidence far = good();  // as much of it is seen, in a tenth of the pixels
+  far.depth.rendered /= 10;
+  far.depth.agreeing /= 10;
+  far.depth.violating /= 10;
+  const QualityTerms terms = quality_terms(far, settings);
+  EXPECT_LT(pose_quality(terms, settings), pose_quality(quality_terms(good(), settings), settings) - 0.05F);
+  EXPECT_EQ(reason_against(terms, settings), PoseStatus::kTooFewPoints);
 }
 
 TEST(PoseQuality, AWeakDetectionSpeaksAgainstAPose) {
