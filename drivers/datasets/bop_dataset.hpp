@@ -86,10 +86,14 @@ std::optional<std::filesystem::path> find_bop_models(const std::filesystem::path
 /// Names of a scene's objects by id: its own names.json, else those of find_bop_models(); empty without either.
 std::map<int, std::string> find_bop_names(const std::filesystem::path& scene_folder);
 
-/// All training views of a BOP training folder: every scene in or under it, one object per image, cropped around its
-/// mask; its models/ lies beside or above, and its frame is the model's in all of them (`object_frame` stays empty).
-/// Images without objects are background (class_id 0, not cropped). Views without depth on the object are left out with
-/// a warning; throws InputError when nothing is left.
+/// Objects that are less visible (visib_fract) are not taught from: what hides them would be part of their picture.
+constexpr double kTaughtVisibility = 0.75;
+
+/// All training views of a BOP training folder, rendered (also PBR) or recorded: every scene in or under it, one view
+/// for each object of each image, cropped around its mask_visib; its models/ lies beside or above, and its frame is the
+/// model's in all of them (`object_frame` stays empty). Images without objects are background (class_id 0, not
+/// cropped). Objects below kTaughtVisibility are left out, and those without depth, with a warning; throws InputError
+/// when nothing is left.
 std::vector<TrainingView> read_bop_training_views(const std::filesystem::path& folder, int threads = 1);
 
 }  // namespace houghstream

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -37,13 +38,19 @@ void crop_around_mask(TrainingView& view) {
   view.mask = view.mask(crop).clone();
 }
 
-TrainingView object_view(const BopScene& scene, std::size_t index, const std::map<int, std::string>& names) {
-  const TrueObject& object = scene.images()[index].objects.front();
+std::string image_name(const BopScene& scene, std::size_t index) {
+  return fmt::format("{} image {}", scene.folder().string(), scene.images()[index].image_id);
+}
+
+/// One object of an image as a view; `frame` is the whole image.
+TrainingView object_view(const BopScene& scene, std::size_t index, std::size_t object_index, const RgbdFrame& frame,
+                         const std::map<int, std::string>& names) {
+  const TrueObject& object = scene.images()[index].objects[object_index];
   TrainingView view;
-  view.source = fmt::format("{} image {}", scene.folder().string(), scene.images()[index].image_id);
+  view.source = fmt::format("{} object {}", image_name(scene, index), object_index);
   require(object.has_pose, "{}: object without pose, expected cam_R_m2c and cam_t_m2c to train from", view.source);
-  view.frame = scene.read_frame(index);
-  view.mask = scene.read_mask(index, 0);
+  view.frame = frame;
+  view.mask = scene.read_mask(index, object_index);
   view.class_id = object.object_id;
   const auto name = names.find(object.object_id);
   view.class_name = name != names.end() ? name->second : fmt::format("object_{}", object.object_id);
@@ -51,50 +58,79 @@ TrainingView object_view(const BopScene& scene, std::size_t index, const std::ma
   return view;
 }
 
-/// One image as a view; nothing where it shows too little of its object.
-std::optional<TrainingView> read_view(const BopScene& scene, std::size_t index,
-                                      const std::map<int, std::string>& names) {
-  const std::string source = fmt::format("{} image {}", scene.folder().string(), scene.images()[index].image_id);
-  const std::size_t objects = scene.images()[index].objects.size();
-  require(objects <= 1, "{}: {} objects, expected one object per training image", source, objects);
-  if (objects == 0) {
-    return TrainingView{scene.read_frame(index), {}, 0, "", Eigen::Isometry3d::Identity(), source, ""};
+/// What came of an image.
+struct ImageViews {
+  std::vector<TrainingView> views;
+  int hidden = 0;  ///< objects that are less visible than kTaughtVisibility
+  int empty = 0;   ///< objects without mask or depth
+};
+
+/// An image as one view for each of its objects that shows enough of itself; the image is read once.
+ImageViews read_views(const BopScene& scene, std::size_t index, const std::map<int, std::string>& names) {
+  const std::vector<TrueObject>& objects = scene.images()[index].objects;
+  ImageViews out;
+  if (objects.empty()) {
+    const std::string source = image_name(scene, index);
+    out.views.push_back({scene.read_frame(index), {}, 0, "", Eigen::Isometry3d::Identity(), source, ""});
+    return out;
   }
-  TrainingView view = object_view(scene, index, names);
-  if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
-    log_warning("{}: empty mask, or no depth on the object; view left out", view.source);
-    return std::nullopt;
+  std::optional<RgbdFrame> frame;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].visible_fraction < kTaughtVisibility) {
+      ++out.hidden;
+      continue;
+    }
+    if (!frame) frame = scene.read_frame(index);
+    TrainingView view = object_view(scene, index, i, *frame, names);
+    if (count_depth_pixels(view.frame.depth, view.mask) == 0) {
+      log_warning("{}: empty mask, or no depth on the object; view left out", view.source);
+      ++out.empty;
+      continue;
+    }
+    crop_around_mask(view);
+    out.views.push_back(std::move(view));
   }
-  crop_around_mask(view);
-  return view;
+  return out;
 }
 
-/// Returns the number of views that were left out.
-int append_views(const BopScene& scene, const std::map<int, std::string>& names, int threads,
-                 std::vector<TrainingView>& views) {
-  std::vector<std::optional<TrainingView>> read(scene.images().size());
+/// What was left out of a scene, or of all.
+struct LeftOut {
+  int hidden = 0;
+  int empty = 0;
+};
+
+LeftOut append_views(const BopScene& scene, const std::map<int, std::string>& names, int threads,
+                     std::vector<TrainingView>& views) {
+  std::vector<ImageViews> read(scene.images().size());
   parallel_for(threads, static_cast<int>(read.size()), [&](int i) {
-    read[static_cast<std::size_t>(i)] = read_view(scene, static_cast<std::size_t>(i), names);
+    read[static_cast<std::size_t>(i)] = read_views(scene, static_cast<std::size_t>(i), names);
   });
-  int skipped = 0;
-  for (std::optional<TrainingView>& view : read) {
-    if (view) views.push_back(std::move(*view));
-    skipped += view ? 0 : 1;
+  LeftOut left_out;
+  for (ImageViews& image : read) {
+    std::move(image.views.begin(), image.views.end(), std::back_inserter(views));
+    left_out.hidden += image.hidden;
+    left_out.empty += image.empty;
   }
-  return skipped;
+  return left_out;
 }
 
 }  // namespace
 
 std::vector<TrainingView> read_bop_training_views(const fs::path& folder, int threads) {
   std::vector<TrainingView> views;
-  int skipped = 0;
+  LeftOut left_out;
   for (const fs::path& scene_folder : scene_folders(folder)) {
-    skipped += append_views(BopScene(scene_folder), find_bop_names(scene_folder), threads, views);
+    const LeftOut here = append_views(BopScene(scene_folder), find_bop_names(scene_folder), threads, views);
+    left_out.hidden += here.hidden;
+    left_out.empty += here.empty;
   }
   require(!views.empty(),
-          "{}: all {} views have an empty mask or no depth on the object, expected at least one usable view",
-          folder.string(), skipped);
+          "{}: of its objects {} have an empty mask or no depth, {} are visible by less than {:.0f} %, expected at "
+          "least one usable view",
+          folder.string(), left_out.empty, left_out.hidden, 100.0 * kTaughtVisibility);
+  if (left_out.hidden > 0)
+    log_info("{}: {} views, {} objects visible by less than {:.0f} % left out", folder.string(), views.size(),
+             left_out.hidden, 100.0 * kTaughtVisibility);
   return views;
 }
 

@@ -16,6 +16,7 @@
 #include "tools/evaluate/bop_targets.hpp"
 #include "tools/evaluate/class_names.hpp"
 #include "tools/evaluate/in_process.hpp"
+#include "tools/evaluate/metrics/search_times.hpp"
 #include "tools/evaluate/report.hpp"
 
 namespace houghstream {
@@ -199,6 +200,9 @@ void write_files(const EvaluateOptions& options, const Figures& figures, const s
                scenes.size() > 1 ? summary_json(figures.all, figures.scenes, options.rules, latencies)
                                  : summary_json(figures.all, options.rules, latencies),
                options.out);
+  std::vector<EvaluatedFrame> frames;
+  for (const OpenScene& it : scenes) frames.insert(frames.end(), it.frames.begin(), it.frames.end());
+  write_search_times(frames, std::filesystem::path(options.out) / kSearchTimesFile);
   if (figures.all.frames_with_poses == 0) return;
   std::vector<BopEstimate> estimates;
   for (const OpenScene& it : scenes) {

@@ -205,6 +205,30 @@ def recorded_pose_words(summary):
     )
 
 
+def bop_table(summary):
+    from studies.bop import report
+
+    columns = (*report.TABLE, ("teach_seconds", "teaching, s"))
+    return table([report.header(columns, "set"), *report.rows(summary["datasets"], columns)])
+
+
+def bop_rivals(summary):
+    from studies.bop import report
+
+    if not summary["settings"]["rivals"]:
+        return None
+    cut = [f"{name}: {run['rivals_cut']}." for name, run in summary["datasets"].items() if run["rivals_cut"]]
+    rows = [report.header(report.RIVALS, "set"), *report.rows(summary["datasets"], report.RIVALS)]
+    return "\n\n".join([table(rows), *cut])
+
+
+def bop_words(summary):
+    settings = summary["settings"]
+    words = f"Every {settings['every']}th image" if settings["every"] > 1 else "All images"
+    taught = f"the store {settings['objects']}" if settings["objects"] else f"{settings['seeds']} teaching(s) a set"
+    return f"{words} of the sets' targets, split `{settings['split']}`; {taught}."
+
+
 def reproduce_tables(folder):
     """(title, functions of the summary) of each section."""
     from studies.reproduce import tables
@@ -265,6 +289,12 @@ def bench_sections(out, commit):
     ]
 
 
+def bop_sections(out, commit):
+    measured = Source(out / "bop" / "summary.json", commit)
+    command = "tools/bench bop --dataset NAME=ROOT"
+    return [section("Sets of the BOP challenge", measured, command, bop_table, bop_words, bop_rivals)]
+
+
 def copy_pictures(folder, into):
     from PIL import Image
 
@@ -277,7 +307,7 @@ def copy_pictures(folder, into):
 
 def page(out, commit):
     reproduced = Source(out / "reproduce" / "summary.json", commit)
-    sections = demo_sections(out, commit) + bench_sections(out, commit)
+    sections = demo_sections(out, commit) + bench_sections(out, commit) + bop_sections(out, commit)
     if reproduced.is_there:
         sections += [
             section(title, reproduced, "", *content) for title, *content in reproduce_tables(out / "reproduce")

@@ -32,6 +32,7 @@ class Unit:
     what: str = ""  # detector, in the words of the report
     scene: str = ""
     seed: int = 0  # 0: the same for all
+    of: str = ""  # digest of what it reads that no unit has made
 
     @property
     def kind(self):
@@ -155,7 +156,7 @@ class Store:
         """Of the command, its program and what the inputs contain: a program that was built again but makes the same as
         before does not make all after it run again."""
         inputs = [self.record(self.units[name]).get("made") for name in unit.inputs]
-        text = json.dumps([unit.command, self._program_digest(unit), inputs])
+        text = json.dumps([unit.command, self._program_digest(unit), inputs] + [unit.of] * bool(unit.of))
         return hashlib.sha256(text.encode()).hexdigest()
 
     def record(self, unit):

@@ -25,6 +25,18 @@ std::vector<std::string> split(const std::string& list) {
   return parts;
 }
 
+void add_practice_options(CommandLine& command, TeachOptions& options) {
+  command
+      .add_option("--practice-frames", options.practice.frames,
+                  "pictures of rooms in which scores and qualities are learnt")
+      .range(10, 10000)
+      .capture_default_str();
+  command.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
+  command.add_option("--threads", options.threads, "any number gives the same store")
+      .range(1, 256)
+      .capture_default_str();
+}
+
 CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   CommandLine mesh = app.add_subcommand("mesh", "teaches objects from their meshes");
   mesh.add_option("sources", options.meshes.sources,
@@ -44,8 +56,7 @@ CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
                   "own pictures without the objects, beside the rendered rooms: bop:DIR or images:DIR");
   mesh.add_option("--camera", options.rooms.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of images:DIR");
   mesh.add_option("--cache", options.rooms.cache, "where rendered rooms are kept; default ~/.cache/houghstream");
-  mesh.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
-  mesh.add_option("--threads", options.threads, "any number gives the same store").range(1, 256).capture_default_str();
+  add_practice_options(mesh, options);
   mesh.add_option("--dump-views", options.dump_views, "writes the training views as a BOP training folder too");
   return mesh;
 }
@@ -66,6 +77,9 @@ int main(int argc, char** argv) {
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
   remove.add_option("name", name, "of the object").required();
+  CommandLine practise = app.add_subcommand("practise", "learns anew what detections and poses of a store are worth");
+  practise.add_option("store", folder, "object store").required();
+  add_practice_options(practise, options);
   return run_tool(app, argc, argv, [&] {
     options.meshes.names = split(lists.names);
     options.meshes.ids = split(lists.ids);
@@ -73,6 +87,10 @@ int main(int argc, char** argv) {
     options.rooms.threads = options.threads;
     if (mesh.given()) {
       teach_meshes(options);
+    } else if (practise.given()) {
+      options.practice.seed = options.seed;
+      options.practice.threads = options.threads;
+      practise_store(folder, options.practice);
     } else if (list.given()) {
       list_store(folder);
     } else {

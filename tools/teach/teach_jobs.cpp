@@ -158,10 +158,10 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
 }
 
 /// The objects of the finished store, looked for in rooms; what is learnt of the new ones goes into forest and store.
-void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids, const TeachOptions& options,
+void practise_all(const std::vector<NamedModel>& models, const std::set<int>& new_ids, const PracticeSettings& settings,
                   Forest& forest, ObjectStore& made) {
   std::vector<PractisedObject> objects(models.size());
-  parallel_for(options.threads, static_cast<int>(models.size()), [&](int i) {
+  parallel_for(settings.threads, static_cast<int>(models.size()), [&](int i) {
     const NamedModel& model = models[static_cast<std::size_t>(i)];
     const auto of_model = [&](const StoredObject& object) { return object.id == model.object_id; };
     const StoredObject& stored = *std::find_if(made.objects.begin(), made.objects.end(), of_model);
@@ -171,10 +171,7 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
     object.in_room = {model.object_id, world::make_taught_thing(model.mesh, stored.coloured),
                       world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured};
   });
-  PracticeSettings practice = options.practice;
-  practice.seed = options.seed;
-  practice.threads = options.threads;
-  const std::map<std::string, QualitySettings> learnt = practise(objects, new_ids, practice, forest);
+  const std::map<std::string, QualitySettings> learnt = practise(objects, new_ids, settings, forest);
   for (StoredObject& object : made.objects) {
     if (const auto found = learnt.find(object.name); found != learnt.end())
       object.quality = quality_to_json(found->second);
@@ -287,7 +284,10 @@ void teach_meshes(const TeachOptions& options) {
     new_ids.insert(model.object_id);
     models.push_back(std::move(model));
   }
-  practise_all(models, new_ids, options, forest, made);
+  PracticeSettings practice = options.practice;
+  practice.seed = options.seed;
+  practice.threads = options.threads;
+  practise_all(models, new_ids, practice, forest, made);
   progress(fmt::format("scores and qualities learnt in {} pictures of rooms", options.practice.frames));
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
   write_store(made, models, forest);
@@ -313,6 +313,24 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   keep(old, name, made, models);
   write_store(made, models, forest);
   build.publish();
+}
+
+void practise_store(const fs::path& folder, const PracticeSettings& settings) {
+  const Progress progress;
+  store::read_store(folder);  // nothing is made beside what is no store
+  store::StoreBuild build(folder);
+  const Contents old = read_contents(folder);
+  ObjectStore made = start_store(build.folder());
+  made.settings = old.list.settings;
+  std::vector<NamedModel> models;
+  keep(old, "", made, models);
+  std::set<int> ids;
+  for (const NamedModel& model : models) ids.insert(model.object_id);
+  Forest forest = *old.forest;
+  practise_all(models, ids, settings, forest, made);
+  write_store(made, models, forest);
+  build.publish();
+  progress(fmt::format("scores and qualities learnt in {} pictures of rooms", settings.frames));
 }
 
 }  // namespace houghstream::teach

@@ -34,6 +34,9 @@ void teach_meshes(const TeachOptions& options);
 /// Prints what the store knows, an object a line.
 void list_store(const std::filesystem::path& folder);
 
+/// Learns scores and qualities of a store's objects anew.
+void practise_store(const std::filesystem::path& folder, const PracticeSettings& settings);
+
 /// Takes an object out of the store. Throws InputError where it is not there, or the only one.
 void remove_from_store(const std::filesystem::path& folder, const std::string& name);
 

@@ -85,6 +85,43 @@ TEST(BopTraining, ViewsWithoutDepthAreLeftOutAndNothingLeftIsAnError) {
   EXPECT_THROW(read_bop_training_views(write_training("training_holes", {without_object_depth()})), InputError);
 }
 
+TEST(BopTraining, EachObjectOfAnImageIsAViewByItsOwnMask) {
+  const fs::path folder = fresh_folder("training_crowd");
+  const cv::Rect second_box(40, 150, 20, 24);
+  TrueObject cup = mug();
+  cup.object_id = 5;
+  cup.T_camera_object.translation().z() = 2.0;
+  BopWriter writer(folder);
+  writer.add(room_frame(), {mug(), cup, mug()},
+             {box_mask(kBox, kWidth, kHeight), box_mask(second_box, kWidth, kHeight), box_mask(kBox, kWidth, kHeight)});
+  writer.finish();
+  const auto views = read_bop_training_views(folder);
+  ASSERT_EQ(views.size(), 3U);
+  EXPECT_EQ(views[1].class_id, 5);
+  EXPECT_EQ(views[1].class_name, "object_5");
+  EXPECT_EQ(views[1].T_camera_object.translation().z(), 2.0);
+  EXPECT_EQ(cv::countNonZero(views[1].mask), second_box.area());
+  EXPECT_EQ(cv::countNonZero(views[2].mask), kBox.area());
+  const cv::Rect box = cv::boundingRect(views[1].mask);
+  const Eigen::Vector3d ray = views[1].frame.camera.backproject(box.x, box.y, 1.0);
+  EXPECT_NEAR((ray - room_frame().camera.backproject(second_box.x, second_box.y, 1.0)).norm(), 0.0, 1e-12);
+}
+
+TEST(BopTraining, WhatIsMostlyHiddenIsLeftOutOfACrowd) {
+  const fs::path folder = fresh_folder("training_hidden");
+  TrueObject hidden = mug();
+  hidden.object_id = 7;
+  hidden.visible_fraction = kTaughtVisibility - 0.01;
+  BopWriter writer(folder);
+  const cv::Mat mask = box_mask(kBox, kWidth, kHeight);
+  writer.add(room_frame(), {hidden, mug()}, {mask, mask});
+  writer.add(room_frame(), {hidden}, {mask});
+  writer.finish();
+  const auto views = read_bop_training_views(folder);
+  ASSERT_EQ(views.size(), 1U) << "an image whose objects are all hidden is no background either";
+  EXPECT_EQ(views[0].class_id, 2);
+}
+
 TEST(BopTraining, BadFoldersAreRefused) {
   EXPECT_THROW(read_bop_training_views("/no/such/folder"), InputError);
   EXPECT_THROW(read_bop_training_views(fresh_folder("training_empty")), InputError);
@@ -93,7 +130,7 @@ TEST(BopTraining, BadFoldersAreRefused) {
   BopWriter writer(crowded);
   writer.add(room_frame(), {mug(), mug()}, {});
   writer.finish();
-  EXPECT_THROW(read_bop_training_views(crowded), InputError) << "two objects in one training image";
+  EXPECT_THROW(read_bop_training_views(crowded), InputError) << "two objects, no masks";
 }
 
 }  // namespace

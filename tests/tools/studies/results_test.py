@@ -6,6 +6,7 @@ import unittest
 
 from studies import results
 from studies.bench import speed
+from studies.bop.figures import COUNTS, FIGURES
 from studies.measured import write_json
 from studies.reproduce.results import Results
 from studies.reproduce.summary import summarise
@@ -54,6 +55,17 @@ class ResultsOfACommit(unittest.TestCase):
 
     def section(self, text, title):
         return text.split(f"## {title}")[1].split("\n## ")[0]
+
+    def test_bop_sets_have_their_table_and_say_what_was_cut(self):
+        figures = dict.fromkeys((*FIGURES, *COUNTS, "ar_at_default", "teach_seconds"))
+        figures |= {"ar": 0.75, "targets": 35, "spread": {"ar": [0.7, 0.8]}, "rivals_cut": "cut after 300 s: PPF"}
+        settings = {"rivals": True, "every": 1, "split": "test", "objects": None, "seeds": 3}
+        write_json(
+            self.out / "bop" / "summary.json", {"datasets": {"ycbv": figures}, **OF_COMMIT, "settings": settings}
+        )
+        section = self.section(self.written(), "Sets of the BOP challenge")
+        for words in ("| ycbv | 35 | 0.750 (0.700 to 0.800) |", "ycbv: cut after 300 s: PPF.", "3 teaching(s) a set"):
+            self.assertIn(words, section)
 
     def test_each_table_names_machine_date_and_command(self):
         write_json(self.out / "demo" / "summary.json", demo())

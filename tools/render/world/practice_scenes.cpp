@@ -18,6 +18,8 @@ namespace {
 constexpr std::uint64_t kFirstRoom = 1ULL << 44U;  // number of training worlds, far beyond those of other uses
 constexpr int kMostObjects = 7;
 constexpr int kMostDistractors = 12;
+constexpr double kLookAlikes = 0.5;     // share of the rooms that have one: scores say how likely an object is where
+                                        // as many stand about as in a home
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
 /// Turned hues, darker or brighter.
@@ -102,7 +104,8 @@ World PracticeScenes::furnished(int room) const {
   set_light_and_photo(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 2));
   TableSetter setter(world, walls.table_half, aspect_seed(own, 3));
   Random& random = setter.random();
-  const Eigen::AlignedBox2d middle = setter.region(-0.7, 0.7, -0.8, 0.6);
+  const double reach = random.uniform(0.35, 0.8);  // near together they hide one another
+  const Eigen::AlignedBox2d middle = setter.region(-reach, reach, -reach, 0.8 * reach);
   const Eigen::AlignedBox2d all = setter.region(-0.95, 0.95, -0.95, 0.95);
   const int first = random.below(static_cast<int>(objects_.size()));
   const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMostObjects));
@@ -111,7 +114,7 @@ World PracticeScenes::furnished(int room) const {
     const ThingPtr thing = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
     setter.put(put_down(object, thing, object.id, random), middle);
   }
-  for (int i = random.between(1, 3); i > 0; --i) {
+  if (chance(random, kLookAlikes)) {
     const PracticeObject& object = pick(random, objects_);
     setter.put(put_down(object, look_alike(*object.thing, random), 0, random), all);
   }

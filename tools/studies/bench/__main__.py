@@ -23,7 +23,8 @@ def part(text):
 def parse(words):
     parser = Options("bench", "Measures everything from nothing to a report: installs, builds, renders data, trains, and "
                               "then times detection beside its rivals, streams a minute of frames through the processes, "
-                              "lets the number of objects grow, and compares poses.")  # fmt: skip
+                              "lets the number of objects grow, and compares poses. Sets of the BOP challenge: tools/bench "
+                              "bop --help.")  # fmt: skip
     add = parser.add_argument
     add("parts", nargs="*", type=part, metavar="speed | stream | growth | pose",
         help="speed: time a frame: profiles, stages, threads, instruction sets, the reference engine, LINEMOD. stream: a "

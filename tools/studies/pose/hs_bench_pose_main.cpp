@@ -25,6 +25,7 @@ struct BenchOptions {
   std::filesystem::path out;
   int every = 1;
   int rivals_every = 10;
+  double rivals_s = 0.0;
   bool no_rivals = false;
   SearchOptions search;
 };
@@ -90,7 +91,7 @@ void run(const BenchOptions& options) {
       makers = make_makers(models.meshes, !options.no_rivals);
     }
     const DetectedScene detected = detect_scene(name, scene, detector, options.every);
-    bench_scene(detected, models, makers, {options.rivals_every, settings.threads}, bench);
+    bench_scene(detected, models, makers, {options.rivals_every, options.rivals_s, settings.threads}, bench);
   }
   write_bench(bench, options.out);
   write_worst(bench.each_frame.at(kOurs).trials, scenes, meshes, options.out);
@@ -112,8 +113,14 @@ int main(int argc, char** argv) {
   app.add_option("--rivals-every", options.rivals_every, "of those, the rivals look at every Mth; they are slow")
       .range(1, 100000)
       .capture_default_str();
+  app.add_option("--rivals-seconds", options.rivals_s,
+                 "the rivals look at as many frames of a scene as they can in this time; 0: no limit")
+      .range(0.0, 1e6)
+      .capture_default_str();
   app.add_flag("--no-rivals", options.no_rivals, "leave the rivals out");
   add_search_options(app, options.search);
+  app.add_option("--min-mass", options.search.min_mass_share,
+                 "vote mass, over a whole object's, from which a maximum counts; default: the profile's");
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

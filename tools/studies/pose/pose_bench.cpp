@@ -1,12 +1,14 @@
 #include "tools/studies/pose/pose_bench.hpp"
 
+#include "tools/studies/rivals/frame_budget.hpp"
+
 namespace houghstream {
 namespace {
 
-PoseRun run_maker(const DetectedScene& detected, const PoseMaker& maker, int every) {
+PoseRun run_maker(const DetectedScene& detected, const PoseMaker& maker) {
   PoseRun run;
   run.scene = detected.name;
-  run.frames = every_nth(detected.frames, every);
+  run.frames = detected.frames;
   for (EvaluatedFrame& frame : run.frames) {
     TimedPoses made = make_poses(maker, detected.scene.read_frame(frame.image), *frame.detections);
     frame.poses = std::move(made.poses);
@@ -15,9 +17,42 @@ PoseRun run_maker(const DetectedScene& detected, const PoseMaker& maker, int eve
   return run;
 }
 
-PoseRun thin_run(const PoseRun& run, int every) {
-  PoseRun out{run.scene, every_nth(run.frames, every), {}};
-  for (std::size_t i = 0; i < run.ms.size(); i += static_cast<std::size_t>(every)) out.ms.push_back(run.ms[i]);
+PoseRun thin_run(const PoseRun& run, const std::vector<std::size_t>& chosen) {
+  PoseRun out{run.scene, {}, {}};
+  for (const std::size_t i : chosen) {
+    out.frames.push_back(run.frames[i]);
+    out.ms.push_back(run.ms[i]);
+  }
+  return out;
+}
+
+/// Frames with results of rivals.
+struct RivalRuns {
+  std::vector<std::size_t> frames;  ///< of the detected ones, in rising order
+  std::map<std::string, PoseRun> by_rival;
+};
+
+/// Frame by frame, all rivals in turn, while there is time.
+RivalRuns run_rivals(const DetectedScene& detected, const BenchedMakers& makers, const BenchRules& rules) {
+  const auto every = static_cast<std::size_t>(rules.rivals_every);
+  const std::size_t count = (detected.frames.size() + every - 1) / every;
+  std::map<std::string, std::map<std::size_t, TimedPoses>> made;
+  const std::vector<std::size_t> visited = visit_within(rules.rivals_s, count, [&](std::size_t i) {
+    const EvaluatedFrame& frame = detected.frames[i * every];
+    const RgbdFrame image = detected.scene.read_frame(frame.image);
+    for (const auto& [name, maker] : makers.rivals) made[name][i] = make_poses(maker, image, *frame.detections);
+  });
+  RivalRuns out;
+  for (const std::size_t i : visited) out.frames.push_back(i * every);
+  for (auto& [name, results] : made) {
+    PoseRun& run = out.by_rival[name];
+    run.scene = detected.name;
+    for (auto& [i, poses] : results) {
+      run.frames.push_back(detected.frames[i * every]);
+      run.frames.back().poses = std::move(poses.poses);
+      run.ms.push_back(std::move(poses.ms));
+    }
+  }
   return out;
 }
 
@@ -33,18 +68,16 @@ void VariantResult::add(const PoseRun& run, const BopScene& scene, const SceneMo
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
                  const BenchRules& rules, PoseBench& bench) {
   bench.frames += static_cast<int>(detected.frames.size());
+  const RivalRuns rivals = makers.rivals.empty() ? RivalRuns{} : run_rivals(detected, makers, rules);
+  bench.rival_frames += static_cast<int>(rivals.frames.size());
   for (const auto& [name, maker] : makers.each_frame) {
-    const PoseRun run = run_maker(detected, maker, 1);
+    const PoseRun run = run_maker(detected, maker);
     bench.each_frame[name].add(run, detected.scene, models, rules.threads);
-    if (!makers.rivals.empty())
-      bench.on_rival_frames[name].add(thin_run(run, rules.rivals_every), detected.scene, models, rules.threads);
+    if (!rivals.frames.empty())
+      bench.on_rival_frames[name].add(thin_run(run, rivals.frames), detected.scene, models, rules.threads);
   }
-  for (const auto& [name, maker] : makers.rivals) {
-    bench.on_rival_frames[name].add(run_maker(detected, maker, rules.rivals_every), detected.scene, models,
-                                    rules.threads);
-  }
-  if (!makers.rivals.empty())
-    bench.rival_frames += static_cast<int>(every_nth(detected.frames, rules.rivals_every).size());
+  for (const auto& [name, run] : rivals.by_rival)
+    bench.on_rival_frames[name].add(run, detected.scene, models, rules.threads);
 }
 
 }  // namespace houghstream

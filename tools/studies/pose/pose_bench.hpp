@@ -42,10 +42,12 @@ struct DetectedScene {
 /// How a scene is benched.
 struct BenchRules {
   int rivals_every = 10;  ///< the rivals look at frames 0, N, 2N, ... of those that were detected in
+  double rivals_s = 0.0;  ///< of those, at as many as can be done in this time, spread over the scene; 0: at all
   int threads = 1;        ///< for measuring errors; the makers run on one
 };
 
-/// Has every maker give poses to all detections, rivals to those of their frames, and adds what came of it.
+/// Has every maker give poses to all detections, rivals to those of their frames, and adds what came of it. All rivals
+/// look at the same frames.
 void bench_scene(const DetectedScene& detected, const SceneModels& models, const BenchedMakers& makers,
                  const BenchRules& rules, PoseBench& bench);
 

@@ -7,6 +7,7 @@
 #include "tools/common/rounded.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/report.hpp"
+#include "tools/studies/rivals/frame_budget.hpp"
 #include "tools/studies/rivals/linemod_detector.hpp"
 #include "tools/studies/rivals/linemod_tuning.hpp"
 #include "tools/train/training_sources.hpp"
@@ -24,6 +25,7 @@ struct LinemodOptions {
   std::vector<std::string> scenes;
   std::string out;
   std::size_t every = 1;
+  double seconds = 0.0;
   bool tune = false;
 };
 
@@ -39,16 +41,21 @@ std::string folder_name(const fs::path& scene) {
   return fs::weakly_canonical(scene).filename().string();
 }
 
-/// Every Nth frame of the scene: its truth, and what was detected.
-std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, const BopScene& scene, std::size_t every) {
+/// Every Nth frame of the scene, or as many of them as can be done in time: its truth, and what was detected.
+std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, const BopScene& scene,
+                                            const LinemodOptions& options) {
   const std::vector<EvaluatedFrame> all = read_truth(scene, find_bop_names(scene.folder()));
+  std::vector<EvaluatedFrame> chosen = every_nth(all, static_cast<int>(options.every));
+  const std::vector<std::size_t> visited = visit_within(options.seconds, chosen.size(), [&](std::size_t i) {
+    chosen[i].detections = detector.detect(scene.read_frame(chosen[i].image));
+    log_debug("{}: frame {} of {}, {} detections", scene.folder().string(), chosen[i].image + 1, all.size(),
+              chosen[i].detections->detections.size());
+  });
+  if (visited.size() < chosen.size())
+    fmt::print("{}: cut, {} of {} frames in {} s\n", scene.folder().string(), visited.size(), chosen.size(),
+               options.seconds);
   std::vector<EvaluatedFrame> frames;
-  for (std::size_t i = 0; i < all.size(); i += every) {
-    frames.push_back(all[i]);
-    frames.back().detections = detector.detect(scene.read_frame(i));
-    log_debug("{}: frame {} of {}, {} detections", scene.folder().string(), i + 1, all.size(),
-              frames.back().detections->detections.size());
-  }
+  for (const std::size_t i : visited) frames.push_back(std::move(chosen[i]));
   return frames;
 }
 
@@ -76,7 +83,7 @@ void evaluate_scenes(const LinemodOptions& options) {
   fmt::print("train_seconds {:.1f}\ntemplates {}\nrefused_templates {}\nrefused_views {}\n", train_seconds,
              training.templates, training.refused_templates, training.refused_views);
   for (const BopScene& scene : scenes) {
-    const std::vector<EvaluatedFrame> frames = detect_in_scene(detector, scene, options.every);
+    const std::vector<EvaluatedFrame> frames = detect_in_scene(detector, scene, options);
     const Evaluation evaluation = evaluate(frames, class_names(views), {}, options.rules);
     fmt::print("\n{}\n{}", scene.folder().string(), summary_table(evaluation, options.rules));
     OrderedJson summary = summary_json(evaluation, options.rules, {});
@@ -87,7 +94,8 @@ void evaluate_scenes(const LinemodOptions& options) {
                           {"check_depth", options.selection.check_depth},
                           {"min_distance", rounded(options.templates.min_distance, 3)},
                           {"max_distance", rounded(options.templates.max_distance, 3)},
-                          {"every", options.every}};
+                          {"every", options.every},
+                          {"frames", frames.size()}};
     write_report(evaluation, summary, fs::path(options.out) / folder_name(scene.folder()));
   }
 }
@@ -117,6 +125,9 @@ void add_options(CommandLine& app, LinemodOptions& options) {
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
   app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times");
   app.add_option("--every", options.every, "look at every Nth frame").range(1, 1000000).capture_default_str();
+  app.add_option("--seconds", options.seconds, "look at as many frames of a scene as time is left for; 0: no limit")
+      .range(0.0, 1e6)
+      .capture_default_str();
   app.add_option("--out", options.out, "folder for SCENE/summary.json and SCENE/curves.csv");
   app.add_flag("--tune", options.tune, "print how a grid of settings fares on composed training pictures instead");
   app.add_flag("--check-depth", options.selection.check_depth, "drop matches where the scene is nearer or farther");

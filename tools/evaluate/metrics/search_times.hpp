@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "tools/evaluate/evaluated_frame.hpp"
+
+namespace houghstream {
+
+/// hs-evaluate writes it beside its report.
+inline constexpr const char* kSearchTimesFile = "frames.csv";
+
+/// scene,image_id,detect_ms,pose_ms,detections,poses of each frame with detections: the sums of the stages whose names
+/// begin with "detect." and "pose.", empty where there are none. Throws InputError where it cannot be written.
+void write_search_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file);
+
+}  // namespace houghstream
