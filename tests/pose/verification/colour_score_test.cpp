@@ -66,7 +66,7 @@ TEST(ColourScore, PalerColoursAreNoConflictAndOthersAre) {
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
   const float same = compare(frame, box, kPose)->chroma_conflict;
   EXPECT_LT(same, 0.4F);
-  EXPECT_LT(compare(with_saturation(frame, 0.6), box, kPose)->chroma_conflict, same + 0.15F);
+  EXPECT_LT(compare(with_saturation(frame, 0.8), box, kPose)->chroma_conflict, same + 0.15F);
   RgbdFrame blue = frame;
   cv::cvtColor(frame.colour, blue.colour, cv::COLOR_BGR2RGB);
   const float other = compare(blue, box, kPose)->chroma_conflict;

@@ -14,7 +14,7 @@ PoseEvidence good() {
   evidence.depth.violating = 20;
   evidence.depth.outline_ends = 150;
   evidence.depth.outline_continues = 15;
-  evidence.colour = ColourComparison{400, 0.8F, 14.0F, 0.4F};
+  evidence.colour = ColourComparison{400, 0.6F, 14.0F, 0.5F};
   return evidence;
 }
 
@@ -49,18 +49,29 @@ TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByOutline);
 }
 
+/// A right pose as most are.
+QualityTerms typical() {
+  return QualitySettings{}.typical;
+}
+
 TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.colour->agreement = 0.1F;
-  EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
+  evidence.colour->agreement = 0.0F;
+  EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
+  QualityTerms terms = typical();
+  terms.agreement = quality_terms(evidence, {}).agreement;
+  EXPECT_LT(pose_quality(terms, {}), pose_quality(typical(), {}) - 0.1F);
 }
 
 TEST(PoseQuality, AnotherColourSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
   evidence.colour->chroma_conflict = 3.0F;
-  EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
+  EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
+  QualityTerms terms = typical();
+  terms.chroma_conflict = quality_terms(evidence, {}).chroma_conflict;
+  EXPECT_LT(pose_quality(terms, {}), pose_quality(typical(), {}) - 0.1F);
 }
 
 TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
@@ -75,12 +86,11 @@ TEST(PoseQuality, LittleThatAgreesSpeaksAgainstAPoseAsLearnt) {
   QualitySettings settings;
   settings.weights.extent = 1.0;
   settings.bias -= settings.weights.extent * settings.typical.extent;
-  PoseEvidence far = good();  // as much of it is seen, in a tenth of the pixels
-  far.depth.rendered /= 10;
-  far.depth.agreeing /= 10;
-  far.depth.violating /= 10;
-  const QualityTerms terms = quality_terms(far, settings);
-  EXPECT_LT(pose_quality(terms, settings), pose_quality(quality_terms(good(), settings), settings) - 0.05F);
+  PoseEvidence far = good();  // as much of it is seen, in a ninetieth of the pixels
+  far.depth.agreeing /= 90;
+  QualityTerms terms = typical();
+  terms.extent = quality_terms(far, settings).extent;
+  EXPECT_LT(pose_quality(terms, settings), pose_quality(typical(), settings) - 0.1F);
   EXPECT_EQ(reason_against(terms, settings), PoseStatus::kTooFewPoints);
 }
 
@@ -95,6 +105,9 @@ TEST(PoseQuality, AModelWithoutColoursIsJudgedByTheRest) {
   PoseEvidence evidence = good();
   evidence.colour.reset();
   EXPECT_GT(quality(evidence), 0.9F);
+  evidence.depth.violating = 900;
+  evidence.depth.agreeing = 900;
+  EXPECT_LT(quality(evidence), 0.9F) << "no colours are no proof";
 }
 
 }  // namespace

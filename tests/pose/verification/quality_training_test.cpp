@@ -69,7 +69,7 @@ TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsTh
   examples[0].is_right = true;
   examples[1].terms.outline = 4.0;
   examples[1].is_right = true;
-  examples[2].terms.outline = -50.0;
+  examples[2].terms.outline = -2.0;
   QualitySettings prior;
   prior.least = 0.77F;
   const QualitySettings found = fit_quality_settings(examples, prior, 1.0);
