@@ -148,6 +148,30 @@ TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   EXPECT_EQ(found.status, PoseStatus::kValid);
 }
 
+TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  const Detections seen = only(detection_of("mug", scene.object, scene.truth, 5));
+  const auto found = [&](const std::string& learnt_for, const QualitySettings& learnt) {
+    PoseSettings settings;
+    settings.class_quality[learnt_for] = learnt;
+    return estimator_for("mug", mug(), settings).estimate(scene.frame, seen).poses.at(0);
+  };
+  const ObjectPose by_default = estimator_for("mug", mug()).estimate(scene.frame, seen).poses.at(0);
+  ASSERT_EQ(by_default.status, PoseStatus::kValid);
+  QualitySettings doubtful;
+  doubtful.bias -= 50.0;
+  doubtful.weights = {};
+  doubtful.weights.detection_log_odds = 1.0;
+  doubtful.typical.detection_log_odds = 5.0;
+  const ObjectPose withheld = found("mug", doubtful);
+  EXPECT_LT(withheld.quality, 0.01F);
+  EXPECT_EQ(withheld.status, PoseStatus::kLowScore) << "by its own weights and typical values";
+  EXPECT_FALSE(withheld.T_camera_object.has_value());
+  doubtful.least = 0.0F;
+  EXPECT_EQ(found("mug", doubtful).status, PoseStatus::kValid) << "by its own least quality";
+  EXPECT_EQ(found("box", doubtful).quality, by_default.quality) << "another class's";
+}
+
 TEST(PoseEstimator, MissingInputGivesAReasonAndNoPose) {
   const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
   const PoseEstimator estimator = estimator_for("mug", mug());

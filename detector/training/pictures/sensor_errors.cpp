@@ -108,7 +108,11 @@ TrainingView resurfaced(const TrainingView& view, double strength, Random& rando
   const double blur_px = strength * kMostBlur_px * random.uniform(-1.0, 1.0);
   TrainingView out = view;
   out.frame.colour = view.frame.colour.clone();  // the view's own pixels stay as they are
-  if (blur_px > 0.2) cv::GaussianBlur(view.frame.colour, out.frame.colour, {0, 0}, blur_px);
+  if (blur_px > 0.2) {
+    cv::Mat blurred;
+    cv::GaussianBlur(view.frame.colour, blurred, {0, 0}, blur_px);
+    blurred.copyTo(out.frame.colour, view.mask);
+  }
   std::array<double, 256> tone{};
   for (std::size_t v = 0; v < tone.size(); ++v) tone[v] = 255.0 * std::pow(static_cast<double>(v) / 255.0, gamma);
   for (int y = 0; y < view.mask.rows; ++y) {

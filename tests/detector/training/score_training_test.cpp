@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "detector/evidence/score.hpp"
 #include "detector/training/forest_trainer.hpp"
@@ -22,11 +25,13 @@ struct Toys {
   }
 };
 
+const std::set<int> kClasses = {1, 2};
+
 Forest with_score_trained(const Toys& toys, Forest forest, int threads) {
   Profile profile = toy::quick_profile();
   profile.training.validation_frames = 16;
   profile.training.threads = threads;
-  train_score_model(toys.objects, toys.rooms, profile, forest);
+  train_score_model(composed_frames(toys.objects, toys.rooms, profile.training), kClasses, 0, profile, forest);
   return forest;
 }
 
@@ -82,6 +87,53 @@ TEST(ScoreTraining, AnyNumberOfThreadsGivesTheSameModel) {
   const Forest parallel = with_score_trained(toys, forest, 3);
   for (std::size_t c = 0; c < serial.classes.size(); ++c) {
     EXPECT_EQ(listed(serial.classes[c].score_model.weights), listed(parallel.classes[c].score_model.weights));
+  }
+}
+
+/// A picture that is not composed of views: a tile of each kind in a room; `is_there` says whether the truth names
+/// them.
+ValidationFrame tiles_in_a_room(int index, bool is_there) {
+  ValidationFrame frame;
+  frame.frame = toy::room(50 + static_cast<std::uint64_t>(index));
+  for (const int kind : {0, 1}) {
+    const cv::Mat mask = toy::put_tile(kind, 90.0 + 130.0 * kind, 110.0 + 20.0 * index, 0.7, frame.frame);
+    if (is_there) frame.objects.push_back({kind + 1, {}, cv::boundingRect(mask), 1.0});
+  }
+  return frame;
+}
+
+Evidence of_a_tile() {
+  Evidence evidence;
+  evidence.mass_share = 1.0F;
+  evidence.fit.visible = 1.0F;
+  evidence.fit.likeness = 0.8F;
+  return evidence;
+}
+
+TEST(ScoreTraining, LearnsFromAnySourceOfFrames) {
+  const Toys toys;
+  Profile profile = toy::quick_profile();
+  profile.training.validation_frames = 3;
+  const Forest taught = train_forest(toys.views, profile, [](auto&) {});
+  std::array<Forest, 2> forests = {taught, taught};
+  for (const bool is_there : {false, true}) {
+    std::array<std::atomic<int>, 2> asked{};
+    const ValidationSource source{2, [&](int index) {
+                                    ++asked.at(static_cast<std::size_t>(index));
+                                    return tiles_in_a_room(index, is_there);
+                                  }};
+    train_score_model(source, {1}, 0, profile, forests[is_there ? 1 : 0]);
+    EXPECT_EQ(asked[0], 1);
+    EXPECT_EQ(asked[1], 1);
+  }
+  for (std::size_t c = 0; c < taught.classes.size(); ++c) {
+    const ScoreModel& without = forests[0].classes[c].score_model;
+    const ScoreModel& with = forests[1].classes[c].score_model;
+    if (taught.classes[c].class_id == 1) {
+      EXPECT_GT(score(with, of_a_tile()), score(without, of_a_tile()) + 0.05F);
+    } else {  // not asked for
+      EXPECT_EQ(listed(with.weights), listed(taught.classes[c].score_model.weights));
+    }
   }
 }
 

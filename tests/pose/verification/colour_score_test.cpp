@@ -28,7 +28,7 @@ float agreement(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3
 }
 
 ColourComparison agreeing_by(float share) {
-  return {100, share, 10.0F, 1.0F};
+  return {100, share, 10.0F, 0.1F};
 }
 
 TEST(ColourScore, TheRightSideExplainsWhatIsSeenAndTheOppositeDoesNot) {
@@ -39,7 +39,7 @@ TEST(ColourScore, TheRightSideExplainsWhatIsSeenAndTheOppositeDoesNot) {
   EXPECT_LT(agreement(frame, box, turned(kPose, 180.0)), right - 0.4F);
   const ColourComparison front = compare(frame, box, kPose).value();
   EXPECT_LT(front.left_over, 0.6F * compare(frame, box, turned(kPose, 180.0))->left_over);
-  EXPECT_LT(front.chroma_shift, 6.0F);
+  EXPECT_LT(front.chroma_conflict, 0.4F);
   EXPECT_GT(front.points, 200);
 }
 
@@ -49,6 +49,30 @@ TEST(ColourScore, ADimmerAndYellowerLightDecidesNothing) {
   const float before = agreement(frame, box, kPose);
   cv::multiply(frame.colour, cv::Scalar(0.5, 0.6, 0.65), frame.colour);
   EXPECT_GT(agreement(frame, box, kPose), before - 0.12F);
+}
+
+/// The picture with its colours' distance from grey times `strength`.
+RgbdFrame with_saturation(RgbdFrame frame, double strength) {
+  cv::Mat grey;
+  cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(grey, grey, cv::COLOR_GRAY2BGR);
+  cv::addWeighted(frame.colour, strength, grey, 1.0 - strength, 0.0, frame.colour);
+  return frame;
+}
+
+TEST(ColourScore, PalerColoursAreNoConflictAndOthersAre) {
+  Mesh box = printed_box();
+  for (cv::Vec3b& colour : box.colours) colour = cv::Vec3b(40, colour[1] / 3, 200);  // all sides reddish
+  RgbdFrame frame = coloured_frame(box, kPose, 1);
+  frame.colour *= 1.4;  // as bright as the model, on the whole
+  EXPECT_LT(compare(frame, box, kPose)->chroma_conflict, 0.4F);
+  EXPECT_LT(compare(with_saturation(frame, 0.75), box, kPose)->chroma_conflict, 0.4F);
+  RgbdFrame blue = frame;
+  cv::cvtColor(frame.colour, blue.colour, cv::COLOR_BGR2RGB);
+  const float other = compare(blue, box, kPose)->chroma_conflict;
+  EXPECT_GT(other, 2.0F);
+  EXPECT_LE(other, 4.0F);
+  EXPECT_GT(compare(with_saturation(frame, 0.0), box, kPose)->chroma_conflict, 1.0F) << "grey is not pale red";
 }
 
 TEST(ColourScore, WithoutColoursOrMeasuredDepthThereIsNoAnswer) {

@@ -14,7 +14,7 @@ PoseEvidence good() {
   evidence.depth.violating = 20;
   evidence.depth.outline_ends = 150;
   evidence.depth.outline_continues = 15;
-  evidence.colour = ColourComparison{400, 0.8F, 14.0F, 5.0F};
+  evidence.colour = ColourComparison{400, 0.6F, 14.0F, 0.5F};
   return evidence;
 }
 
@@ -49,11 +49,49 @@ TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByOutline);
 }
 
+/// A right pose as most are.
+QualityTerms typical() {
+  return QualitySettings{}.typical;
+}
+
 TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.colour->left_over = 40.0F;
-  EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
+  evidence.colour->agreement = 0.0F;
+  EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
+  QualityTerms terms = typical();
+  terms.agreement = quality_terms(evidence, {}).agreement;
+  EXPECT_LT(pose_quality(terms, {}), pose_quality(typical(), {}) - 0.1F);
+}
+
+TEST(PoseQuality, AnotherColourSpeaksAgainstAPose) {
+  PoseEvidence evidence = good();
+  evidence.colour->chroma_conflict = 3.0F;
+  EXPECT_LT(quality(evidence), quality(good()));
+  EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
+  QualityTerms terms = typical();
+  terms.chroma_conflict = quality_terms(evidence, {}).chroma_conflict;
+  EXPECT_LT(pose_quality(terms, {}), pose_quality(typical(), {}) - 0.1F);
+}
+
+TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
+  PoseEvidence evidence = good();
+  evidence.colour->agreement = -0.5F;
+  const float contradicted = quality(evidence);
+  evidence.colour->agreement = -20.0F;
+  EXPECT_EQ(quality(evidence), contradicted);
+}
+
+TEST(PoseQuality, LittleThatAgreesSpeaksAgainstAPoseAsLearnt) {
+  QualitySettings settings;
+  settings.weights.extent = 1.0;
+  settings.bias -= settings.weights.extent * settings.typical.extent;
+  PoseEvidence far = good();  // as much of it is seen, in a ninetieth of the pixels
+  far.depth.agreeing /= 90;
+  QualityTerms terms = typical();
+  terms.extent = quality_terms(far, settings).extent;
+  EXPECT_LT(pose_quality(terms, settings), pose_quality(typical(), settings) - 0.1F);
+  EXPECT_EQ(reason_against(terms, settings), PoseStatus::kTooFewPoints);
 }
 
 TEST(PoseQuality, AWeakDetectionSpeaksAgainstAPose) {
@@ -67,6 +105,9 @@ TEST(PoseQuality, AModelWithoutColoursIsJudgedByTheRest) {
   PoseEvidence evidence = good();
   evidence.colour.reset();
   EXPECT_GT(quality(evidence), 0.9F);
+  evidence.depth.violating = 900;
+  evidence.depth.agreeing = 900;
+  EXPECT_LT(quality(evidence), 0.9F) << "no colours are no proof";
 }
 
 }  // namespace

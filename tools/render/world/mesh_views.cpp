@@ -38,10 +38,18 @@ Eigen::Matrix3d tilt(double angle_rad, Random& random) {
   return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
 }
 
+/// About the middle of its bounding box: of a surface that is not closed, the volume depends on where the origin is.
+Mesh about_its_middle(Mesh mesh) {
+  const Eigen::Vector3f middle = mesh_bounds(mesh).center();
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex -= middle;
+  return mesh;
+}
+
 /// What stands firmest comes first; what differs by less than kSameAttitudeDeg is left out.
 std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
   std::vector<RestingAttitude> all;
-  for (const RestingFamily& family : resting_families(mesh)) all.insert(all.end(), family.begin(), family.end());
+  for (const RestingFamily& family : resting_families(about_its_middle(mesh)))
+    all.insert(all.end(), family.begin(), family.end());
   std::stable_sort(all.begin(), all.end(), [](const RestingAttitude& a, const RestingAttitude& b) {
     return a.steepest_slope_rad() > b.steepest_slope_rad();
   });

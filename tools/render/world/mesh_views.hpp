@@ -21,8 +21,8 @@ enum class MeshAttitudes : std::uint8_t {
 MeshAttitudes parse_mesh_attitudes(const std::string& name);
 
 /// Which directions of the object (unit length, object frame) point up in these attitudes: what stands firmest first,
-/// such as differ clearly. The sides of the bounding box for an open mesh, which encloses nothing that could weigh;
-/// none for kAny.
+/// such as differ clearly. The sides of the bounding box for a mesh that does not rest, or encloses nothing that could
+/// weigh; none for kAny.
 std::vector<Eigen::Vector3d> up_directions(const Mesh& mesh, MeshAttitudes attitudes);
 
 /// Evenly distributed over all rotations (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
@@ -31,7 +31,7 @@ Eigen::Matrix3d random_rotation(Random& random);
 struct MeshViewSettings {
   MeshAttitudes attitudes = MeshAttitudes::kResting;
   int views_per_attitude = 200;  ///< of each way of resting, all round and from low to high; fewer where there are many
-  int most_views = 640;         ///< of one object; so many are shown of kAny
+  int most_views = 640;          ///< of one object; so many are shown of kAny
   double lowest_pitch_deg = 12.0;  ///< of the camera over the level
   double highest_pitch_deg = 80.0;
   double distance_m = 0.7;     ///< camera to object; more where it would not fit the picture

@@ -8,6 +8,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/studies/quality/quality_fit.hpp"
 #include "tools/teach/quality_examples.hpp"
 
 namespace {

@@ -12,7 +12,7 @@ EvaluatedFrame to_truth(const training::ValidationFrame& composed, const std::ve
   EvaluatedFrame truth;
   for (const training::ValidationFrame::Object& object : composed.objects) {
     NamedObject named;
-    named.class_name = shown[object.view]->class_name;
+    named.class_name = shown[object.view.value()]->class_name;
     named.truth.box_visible_px = object.box_visible_px;
     named.truth.visible_fraction = object.visible_fraction;
     truth.objects.push_back(named);

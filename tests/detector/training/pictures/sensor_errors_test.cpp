@@ -210,5 +210,54 @@ TEST(FarNoise, NothingIsAddedAtTheOwnDistanceAndNothingMissingIsMadeUp) {
   EXPECT_FALSE(std::isnan(depth.at<float>(4, 6)));
 }
 
+TEST(Resurfaced, WithoutStrengthColoursStayAsTheyAre) {
+  const TrainingView view = toy::training_views().front();
+  Random random(1);
+  const TrainingView same = resurfaced(view, 0.0, random);
+  EXPECT_EQ(cv::norm(same.frame.colour, view.frame.colour, cv::NORM_INF), 0.0);
+  EXPECT_EQ(random.bits(), Random(1).bits()) << "nothing is drawn";
+}
+
+TEST(Resurfaced, OnlyTheObjectsColoursChange) {
+  const TrainingView view = toy::training_views().front();
+  const TrainingView untouched = toy::training_views().front();
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    const TrainingView other = resurfaced(view, 1.0, random);
+    EXPECT_GT(cv::norm(other.frame.colour, view.frame.colour, cv::NORM_INF, view.mask), 0.0);
+    EXPECT_EQ(cv::norm(other.frame.colour, view.frame.colour, cv::NORM_INF, ~view.mask), 0.0) << "seed " << seed;
+    EXPECT_EQ(cv::norm(other.mask, view.mask, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::countNonZero(other.frame.depth != view.frame.depth), 0);
+  }
+  EXPECT_EQ(cv::norm(view.frame.colour, untouched.frame.colour, cv::NORM_INF), 0.0) << "the view's own stay";
+}
+
+/// Mean change of the object's colours over some seeds, 8-bit steps.
+double change_by(double strength) {
+  const TrainingView view = toy::training_views().front();
+  double sum = 0.0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    sum += cv::norm(resurfaced(view, strength, random).frame.colour, view.frame.colour, cv::NORM_L1, view.mask) /
+           cv::countNonZero(view.mask);
+  }
+  return sum / 20.0;
+}
+
+TEST(Resurfaced, MoreStrengthChangesMore) {
+  EXPECT_GT(change_by(0.3), 1.0);
+  EXPECT_GT(change_by(1.0), 1.5 * change_by(0.3));
+}
+
+TEST(Resurfaced, TheSameSeedIsTheSameSurface) {
+  const TrainingView view = toy::training_views().front();
+  const auto surface = [&](std::uint64_t seed) {
+    Random random(seed);
+    return resurfaced(view, 1.0, random).frame.colour;
+  };
+  EXPECT_EQ(cv::norm(surface(3), surface(3), cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(surface(3), surface(4), cv::NORM_INF), 0.0);
+}
+
 }  // namespace
 }  // namespace houghstream::training

@@ -31,6 +31,7 @@ Profile open_profile(const std::string& name) {
   profile.training.occluded_share = 0.0;
   profile.training.light_variation = 0.0;
   profile.training.patches_per_view = 120;
+  profile.training.patches_per_room = 80;
   profile.training.composites_per_view = 1;
   return profile;
 }
@@ -222,7 +223,7 @@ TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
     Random random(7);
     PictureWorkspace own;
     const TrainingPicture picture = background_picture(room, level, profile, random, own);
-    const auto drawn = static_cast<std::size_t>(profile.training.patches_per_view / kBackgroundPictures);
+    const auto drawn = static_cast<std::size_t>(profile.training.patches_per_room / kBackgroundPictures);
     EXPECT_EQ(picture.samples.size(), drawn);
     EXPECT_EQ(picture.spare_background.size(), drawn * static_cast<std::size_t>(profile.training.spare_background));
     for (const auto* list : {&picture.samples, &picture.spare_background}) {
@@ -242,7 +243,7 @@ TEST(TrainingPictures, ABackgroundOfAScaleSpaceNeedsNoDepth) {
     Random random(7);
     PictureWorkspace own;
     const TrainingPicture picture = background_picture(room, level, profile, random, own);
-    EXPECT_EQ(picture.samples.size(), 30U) << level.size_ratio;
+    EXPECT_EQ(picture.samples.size(), 20U) << level.size_ratio;
     EXPECT_TRUE(picture.spare_background.empty());
     for (const TrainingSample& sample : picture.samples) ASSERT_EQ(sample.scale, 256);
   }

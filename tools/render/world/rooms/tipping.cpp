@@ -92,6 +92,8 @@ TippingBody::TippingBody(const Mesh& mesh) {
 
 Support TippingBody::support(const Eigen::Vector3d& down) const {
   Support support;
+  // Of an open surface, the centre of mass may lie below all of it.
+  support.height_m = down.dot(points_.front());
   for (const Eigen::Vector3d& point : points_) support.height_m = std::max(support.height_m, down.dot(point));
   support.along = down.unitOrthogonal();
   support.across = support.along.cross(down);

@@ -51,5 +51,48 @@ TEST(Shading, TextureIsWhereItBelongs) {
   EXPECT_NEAR(view.cos_incidence.at<float>(60, 80), 1.0F, 0.01F);
 }
 
+ShadedView seen_from_a_corner(const ThingPtr& thing) {
+  World world;
+  world.items = {{thing, Eigen::Isometry3d::Identity(), 0, true}};
+  world.lights = {Light{{1.0, -2.0, 2.0}, Eigen::Vector3f::Ones(), 0.01, true}};
+  world.ambient_bgr.setConstant(0.1F);
+  return shade_view(light_world(world), kCamera, look_at({0.5, -1, 0.8}, {0, 0, 0}));
+}
+
+TEST(Shading, ColoursOfVerticesShadeAsATextureOfTheSameColour) {
+  const cv::Vec3b colour(30, 120, 210);
+  const Mesh textured = box({0.4, 0.3, 0.2}, cv::Mat(16, 16, CV_8UC3, cv::Scalar(colour)));
+  Mesh coloured = textured;
+  coloured.texture.release();
+  coloured.uvs.clear();
+  coloured.colours.assign(coloured.vertices.size(), colour);
+  const ShadedView by_texture = seen_from_a_corner(make_thing("box", textured, 0.3F));
+  const ShadedView by_vertex = seen_from_a_corner(make_thing("box", coloured, 0.3F));
+  EXPECT_GT(cv::countNonZero(by_texture.geometry.id), 1000);
+  double brightest = 0.0;
+  cv::minMaxLoc(by_texture.radiance.reshape(1), nullptr, &brightest);
+  EXPECT_GT(brightest, 0.1);
+  EXPECT_LT(cv::norm(by_texture.radiance, by_vertex.radiance, cv::NORM_INF), 1e-5);
+  EXPECT_LT(cv::norm(by_texture.reflectance, by_vertex.reflectance, cv::NORM_INF), 1e-5);
+  EXPECT_EQ(cv::norm(by_texture.gloss, by_vertex.gloss, cv::NORM_INF), 0.0);
+}
+
+TEST(Shading, ColoursOfVerticesBlendBetweenThem) {
+  Mesh mesh = box({0.4, 0.3, 0.2}, cv::Mat(16, 16, CV_8UC3, cv::Scalar::all(0)));
+  mesh.texture.release();
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    mesh.colours.push_back(vertex.x() < 0.0F ? cv::Vec3b(255, 0, 0) : cv::Vec3b(0, 0, 255));
+  World world;
+  world.items = {{make_thing("box", mesh, 0.0F), Eigen::Isometry3d::Identity(), 0, true}};
+  const ShadedView view = shade_view(light_world(world), kCamera, look_at({0, -1, 0}, {0, 0, 0}));
+  const auto at = [&](double x) {
+    const Eigen::Vector2d px = kCamera.project(look_at({0, -1, 0}, {0, 0, 0}) * Eigen::Vector3d(x, -0.15, 0.0));
+    return view.radiance.at<cv::Vec3f>(static_cast<int>(px.y()), static_cast<int>(px.x()));
+  };
+  EXPECT_GT(at(-0.19)[0], 10 * at(-0.19)[2]);
+  EXPECT_GT(at(0.19)[2], 10 * at(0.19)[0]);
+  EXPECT_NEAR(at(0.0)[0], at(0.0)[2], 0.05F * at(0.0)[0]);
+}
+
 }  // namespace
 }  // namespace houghstream::world

@@ -1,0 +1,85 @@
+#include "pose/verification/quality_training.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pipeline/base/random.hpp"
+
+namespace houghstream {
+namespace {
+
+const QualityTerms kWeights = {1.5, 0.5, 1.0, -0.5, 2.0, 1.0, 0.25};
+constexpr double kBias = -1.0;
+
+/// Right as often as kWeights and kBias say.
+std::vector<QualityExample> drawn(int count) {
+  QualitySettings truth;
+  truth.bias = kBias;
+  truth.weights = kWeights;
+  Random random(7);
+  std::vector<QualityExample> examples(static_cast<std::size_t>(count));
+  for (QualityExample& example : examples) {
+    for (const auto term : kQualityTerms) example.terms.*term = random.normal();
+    example.is_right = random.uniform() < static_cast<double>(pose_quality(example.terms, truth));
+  }
+  return examples;
+}
+
+TEST(QualityTraining, ManyExamplesGiveTheWeightsThatDrewThem) {
+  const QualitySettings found = fit_quality_settings(drawn(20000), QualitySettings{}, 1.0);
+  EXPECT_NEAR(found.bias, kBias, 0.1);
+  for (const auto term : kQualityTerms) EXPECT_NEAR(found.weights.*term, kWeights.*term, 0.1);
+}
+
+/// How far the weights are from the default ones.
+double way_from_prior(const QualitySettings& settings) {
+  const QualitySettings prior;
+  double sum_sq = (settings.bias - prior.bias) * (settings.bias - prior.bias);
+  for (const auto term : kQualityTerms) {
+    const double way = settings.weights.*term - prior.weights.*term;
+    sum_sq += way * way;
+  }
+  return std::sqrt(sum_sq);
+}
+
+TEST(QualityTraining, FewExamplesLeaveThePriorLittle) {
+  const double by_few = way_from_prior(fit_quality_settings(drawn(5), QualitySettings{}, 1.0));
+  EXPECT_GT(by_few, 0.0);
+  EXPECT_LT(by_few, 0.3 * way_from_prior(fit_quality_settings(drawn(20000), QualitySettings{}, 1.0)));
+  EXPECT_LT(way_from_prior(fit_quality_settings(drawn(5), QualitySettings{}, 100.0)), 0.1 * by_few);
+}
+
+TEST(QualityTraining, NoExamplesGiveThePrior) {
+  QualitySettings prior;
+  prior.bias = 0.5;
+  prior.weights.outline = 3.0;
+  prior.typical.outline = 7.0;
+  const QualitySettings found = fit_quality_settings({}, prior, 1.0);
+  EXPECT_DOUBLE_EQ(found.bias, 0.5);
+  for (const auto term : kQualityTerms) {
+    EXPECT_DOUBLE_EQ(found.weights.*term, prior.weights.*term);
+    EXPECT_DOUBLE_EQ(found.typical.*term, prior.typical.*term);
+  }
+}
+
+TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsThePriors) {
+  std::vector<QualityExample> examples(3);
+  examples[0].terms.outline = 2.0;
+  examples[0].is_right = true;
+  examples[1].terms.outline = 4.0;
+  examples[1].is_right = true;
+  examples[2].terms.outline = -2.0;
+  QualitySettings prior;
+  prior.least = 0.77F;
+  const QualitySettings found = fit_quality_settings(examples, prior, 1.0);
+  EXPECT_DOUBLE_EQ(found.typical.outline, 3.0);
+  EXPECT_DOUBLE_EQ(found.typical.visible, 0.0);
+  EXPECT_EQ(found.least, 0.77F);
+  const QualitySettings none_right = fit_quality_settings({examples[2]}, prior, 1.0);
+  EXPECT_DOUBLE_EQ(none_right.typical.outline, prior.typical.outline);
+  EXPECT_LT(none_right.bias, prior.bias) << "a wrong pose speaks against all";
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,82 @@
+#include "tools/common/stored_quality.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream {
+namespace {
+
+QualitySettings learnt() {
+  QualitySettings settings;
+  settings.bias = -1.25;
+  double value = 0.0;
+  for (const auto term : kQualityTerms) {
+    settings.weights.*term = value += 0.1;
+    settings.typical.*term = -(value / 3.0);
+  }
+  settings.least = 0.9F;
+  return settings;
+}
+
+/// A mug whose quality is known, and a bowl of which nothing was learnt.
+store::ObjectStore store_with(const nlohmann::json& quality) {
+  store::ObjectStore objects;
+  objects.folder = "/some/store";
+  objects.objects = {{1, "mug", "mug.ply", true, 12, "resting", quality},
+                     {2, "bowl", "bowl.ply", true, 12, "resting", nullptr}};
+  return objects;
+}
+
+TEST(StoredQuality, ComesBackFromJsonAsItWas) {
+  const auto json = nlohmann::json::parse(quality_to_json(learnt()).dump());
+  QualitySettings others;
+  others.least = 0.35F;
+  const std::map<std::string, QualitySettings> read = stored_quality(store_with(json), others);
+  ASSERT_EQ(read.size(), 1U) << "nothing was learnt of the bowl";
+  const QualitySettings& mug = read.at("mug");
+  EXPECT_EQ(mug.bias, learnt().bias);
+  for (const auto term : kQualityTerms) {
+    EXPECT_EQ(mug.weights.*term, learnt().weights.*term);
+    EXPECT_EQ(mug.typical.*term, learnt().typical.*term);
+  }
+  EXPECT_EQ(mug.least, 0.35F) << "the threshold is its reader's";
+}
+
+TEST(StoredQuality, TermsAreHeldByTheirNames) {
+  nlohmann::json json = quality_to_json(learnt());
+  EXPECT_EQ(json["weights"]["outline"], learnt().weights.outline);
+  EXPECT_EQ(json["typical"]["extent"], learnt().typical.extent);
+}
+
+/// One line that names the store, the object and `part`.
+void expect_refused(const nlohmann::json& json, const std::string& part) {
+  const std::string error = error_of([&] { stored_quality(store_with(json), {}); });
+  for (const std::string& named : {std::string("/some/store/store.json"), std::string("mug"), part})
+    EXPECT_NE(error.find(named), std::string::npos) << named << " in: " << error;
+  EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+}
+
+TEST(StoredQuality, AMissingOrUnknownNumberIsRefusedNamingTheStore) {
+  const nlohmann::json whole = quality_to_json(learnt());
+  nlohmann::json json = whole;
+  json["weights"].erase("agreement");
+  expect_refused(json, "'weights'");
+  json["weights"]["contrast"] = 1.0;  // of another version
+  expect_refused(json, "'agreement'");
+  json = whole;
+  json.erase("typical");
+  expect_refused(json, "'typical'");
+  json = whole;
+  json.erase("bias");
+  expect_refused(json, "'bias'");
+  json = whole;
+  json["typical"]["visible"] = "much";
+  expect_refused(json, "'visible'");
+  json = whole;
+  json["weights"] = 3;
+  expect_refused(json, "'weights'");
+}
+
+}  // namespace
+}  // namespace houghstream

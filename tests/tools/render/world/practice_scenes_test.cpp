@@ -1,0 +1,108 @@
+#include "tools/render/world/practice_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/geometry/renderer.hpp"
+#include "tools/render/world/objects/mesh_parts.hpp"
+
+namespace houghstream::world {
+namespace {
+
+constexpr int kFrames = 6;
+
+PracticeObject brick(int id, const Eigen::Vector3d& size, const cv::Vec3b& colour) {
+  Mesh mesh = box(size, cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(0)));
+  mesh.texture.release();
+  mesh.colours.assign(mesh.vertices.size(), colour);
+  const std::vector<Eigen::Vector3d> ups = up_directions(mesh, MeshAttitudes::kResting);
+  return {id, make_taught_thing(mesh, true), ups, true};
+}
+
+PracticeScenes two_bricks(std::uint64_t seed) {
+  return {{brick(3, {0.08, 0.12, 0.18}, {30, 30, 200}), brick(8, {0.1, 0.1, 0.06}, {200, 60, 20})}, seed};
+}
+
+// Equal bytes, NaN included.
+bool identical(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
+}
+
+TEST(PracticeScenes, TheSameSeedGivesTheSameFrameAndAnotherOneAnotherRoom) {
+  const SceneFrame frame = two_bricks(1).render(3);
+  const SceneFrame again = two_bricks(1).render(3);
+  EXPECT_TRUE(identical(frame.frame.colour, again.frame.colour));
+  EXPECT_TRUE(identical(frame.frame.depth, again.frame.depth));
+  EXPECT_EQ(frame.objects.size(), again.objects.size());
+  const SceneFrame other = two_bricks(2).render(3);
+  const double apart = cv::norm(frame.frame.colour, other.frame.colour, cv::NORM_L1) / (640.0 * 480.0 * 3.0);
+  EXPECT_GT(apart, 8.0) << "not only the noise";
+}
+
+/// Median distance of the measured depth from the mesh's at the true pose, metres.
+float median_error(const SceneFrame& view, std::size_t index, const Mesh& mesh) {
+  const cv::Rect all({0, 0}, view.frame.depth.size());
+  const cv::Mat rendered = render_depth(mesh, view.objects[index].T_camera_object, view.frame.camera, all);
+  std::vector<float> errors;
+  for (int y = 0; y < all.height; ++y) {
+    for (int x = 0; x < all.width; ++x) {
+      const float error = std::abs(rendered.at<float>(y, x) - view.frame.depth.at<float>(y, x));
+      if (view.visible_masks[index].at<std::uint8_t>(y, x) != 0 && !std::isnan(error)) errors.push_back(error);
+    }
+  }
+  if (errors.empty()) return NAN;
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  return errors[errors.size() / 2];
+}
+
+TEST(PracticeScenes, TheTruthAgreesWithTheMeasuredDepth) {
+  const std::map<int, Mesh> meshes = {{3, brick(3, {0.08, 0.12, 0.18}, {30, 30, 200}).thing->mesh},
+                                      {8, brick(8, {0.1, 0.1, 0.06}, {200, 60, 20}).thing->mesh}};
+  const PracticeScenes scenes = two_bricks(1);
+  int judged = 0;
+  for (int f = 0; f < kFrames; ++f) {
+    const SceneFrame view = scenes.render(f);
+    check_frame(view.frame, "rendered");
+    for (std::size_t i = 0; i < view.objects.size(); ++i) {
+      if (cv::countNonZero(view.visible_masks[i]) < 300) continue;
+      const float error = median_error(view, i, meshes.at(view.objects[i].object_id));
+      if (std::isnan(error)) continue;
+      ++judged;
+      EXPECT_LT(error, 0.006F) << "frame " << f << " object " << view.objects[i].object_id;
+    }
+  }
+  EXPECT_GE(judged, kFrames);
+}
+
+TEST(PracticeScenes, LookAlikesAreNotNamedInTheTruth) {
+  const PracticeScenes scenes({brick(5, {0.08, 0.12, 0.18}, {30, 30, 200})}, 4);
+  int named = 0;
+  for (int f = 0; f < kFrames; ++f) {
+    const SceneFrame view = scenes.render(f);
+    EXPECT_LE(view.objects.size(), 1U) << "one brick stands in each room, all others are nearly it";
+    for (const TrueObject& object : view.objects) EXPECT_EQ(object.object_id, 5);
+    named += static_cast<int>(view.objects.size());
+  }
+  EXPECT_GE(named, kFrames / 2);
+}
+
+TEST(PracticeScenes, TwoFramesLookAtOneRoom) {
+  const PracticeScenes scenes = two_bricks(1);
+  const SceneFrame first = scenes.render(0);
+  const SceneFrame second = scenes.render(PracticeScenes::kFramesPerRoom - 1);
+  EXPECT_FALSE(identical(first.frame.colour, second.frame.colour));
+  // Where both bricks are seen twice, they stand the same way to each other.
+  ASSERT_EQ(first.objects.size(), 2U);
+  ASSERT_EQ(second.objects.size(), 2U);
+  const auto between = [](const SceneFrame& view) {
+    return (view.objects[0].T_camera_object.inverse() * view.objects[1].T_camera_object).matrix().eval();
+  };
+  EXPECT_LT((between(first) - between(second)).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+}  // namespace
+}  // namespace houghstream::world
