@@ -22,15 +22,36 @@ void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, flo
   }
 }
 
+/// From the view that agrees best to those that look from beside it, as long as one of them agrees better: votes
+/// remember few of the views that would fit.
+void compare_neighbours(const EvidenceInput& input, const Hypothesis& hypothesis, std::vector<PlacedView>& compared) {
+  constexpr int kSteps = 3;
+  const std::vector<std::uint32_t>& excluded = input.excluded_views;
+  const Eigen::Vector3f& centre = hypothesis.centre_camera;
+  std::uint32_t from = best_unaligned(compared).view;
+  for (int step = 0; step < kSteps; ++step) {
+    for (const std::uint32_t view : input.forest.view_neighbours[from]) {
+      const auto is_this = [&](const PlacedView& seen) { return seen.view == view; };
+      if (std::any_of(compared.begin(), compared.end(), is_this)) continue;
+      if (std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
+      compared.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
+    }
+    const std::uint32_t best = best_unaligned(compared).view;
+    if (best == from) break;
+    from = best;
+  }
+}
+
 /// Completes the evidence by the view that agrees best with the frame, aligned with it. What is hopeless where it
 /// stands is left there: most maxima are of that kind, and aligning takes longer than all else about them.
-void add_best_fit(const EvidenceInput& input, const ScoreModel& model, const std::vector<PlacedView>& compared,
+void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, std::vector<PlacedView>& compared,
                   Evidence& evidence) {
   constexpr float kHopeless = 0.05F;  // score
   if (compared.empty()) return;
   const std::vector<TrainedView>& views = input.forest.views;
   evidence.fit = best_unaligned(compared).fit;
-  if (score(model, evidence) < kHopeless) return;
+  if (score(input.forest.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
+  compare_neighbours(input, hypothesis, compared);
   const PlacedView best = best_aligned(views, compared, input.frame);
   evidence.fit = best.fit;
   evidence.other_size = gain_of_other_size(views[best.view], best, input.frame);
@@ -85,7 +106,7 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   detection.score = vote_score(candidate.evidence.mass_share);
   if (input.forest.scoring == Scoring::kEvidence) {
     compare_views(input, hypothesis, spread, own.compared);
-    add_best_fit(input, object.score_model, own.compared, candidate.evidence);
+    add_best_fit(input, hypothesis, own.compared, candidate.evidence);
     detection.score = score(object.score_model, candidate.evidence);
     detection.box_px = visible_box(detection.box_px, candidate.evidence.fit.visible_box_px, camera);
   }
@@ -97,13 +118,6 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   if (detection.score < input.settings.threshold) return candidate;  // most, whose rotations nobody will ask for
   add_rotations(input, hypothesis, weighed_views(hypothesis, spread, own), detection.rotations);
   return candidate;
-}
-
-bool looks_upright(const TrainedView& view) {
-  constexpr float kMostAside = 0.35F;     // 20 degrees of roll
-  constexpr float kMostDownwards = 0.2F;  // from straight above the axis has no direction in the picture
-  const Eigen::Vector3f up_ray = view.R_ray_object * Eigen::Vector3f::UnitZ();
-  return std::abs(up_ray.x()) < kMostAside && up_ray.y() < kMostDownwards;
 }
 
 }  // namespace
@@ -126,17 +140,11 @@ std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vec
 }
 
 float attitude_spread(const Forest& forest, std::uint32_t class_index) {
-  constexpr float kMost = 4.0F;
-  constexpr float kNearlyAll = 0.98F;  // measured turntables have an odd view
-  float all = 0.0F;
-  float upright = 0.0F;
-  for (const TrainedView& view : forest.views) {
-    if (view.class_index != class_index) continue;
-    all += 1.0F;
-    upright += looks_upright(view) ? 1.0F : 0.0F;
-  }
-  if (upright >= kNearlyAll * all) return 1.0F;
-  return upright > 0.0F ? std::min(kMost, all / upright) : kMost;
+  constexpr float kOneAttitude = 150.0F;  // views of a turntable
+  constexpr float kMost = 3.0F;
+  const auto views = std::count_if(forest.views.begin(), forest.views.end(),
+                                   [&](const TrainedView& view) { return view.class_index == class_index; });
+  return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, kMost);
 }
 
 }  // namespace houghstream

@@ -276,6 +276,7 @@ Forest load_forest(const std::filesystem::path& file) {
   check_indices(forest, source);
   check_leaves(forest, source);
   note_leaf_heads(forest);
+  note_view_neighbours(forest);
   pack_trees(forest);
   return forest;
 }

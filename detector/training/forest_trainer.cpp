@@ -143,6 +143,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   forest.views = set.views;
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
   note_leaf_heads(forest);
+  note_view_neighbours(forest);
   pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
   if (settings.scoring == Scoring::kVotes) return forest;
@@ -175,6 +176,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   }
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
   note_leaf_heads(forest);
+  note_view_neighbours(forest);
   pack_trees(forest);
   calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
   if (forest.scoring == Scoring::kEvidence) learn_scores(rooms, profile, forest);

@@ -119,6 +119,7 @@ Forest remove_object(const Forest& forest, const std::string& name) {
   removal.view_numbers = keep_views(forest, removal.object, out);
   for (std::size_t leaf = 0; leaf + 1 < forest.leaves.size(); ++leaf) keep_leaf(forest, leaf, removal, out);
   note_leaf_heads(out);
+  note_view_neighbours(out);
   pack_trees(out);
   return out;
 }
