@@ -209,6 +209,8 @@ Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>
     profile.training.trees = trees;
     profile.training.scoring = scoring;
   }
+  profile.training.other_camera_share = 0.5;
+  profile.training.camera_variation = 0.7;
   profile.training.validation_frames = 0;    // practice tells more
   profile.training.composites_per_view = 1;  // another view tells more than another room
   profile.training.patches_per_view = std::clamp(kPatches / most_views(views), kFewestPatches, kMostPatches);

@@ -88,7 +88,7 @@ struct CameraVariation {
 /// A camera. `strength` 0 = one that changes nothing, 1 = as widely as real ones differ; more is allowed.
 CameraVariation draw_camera(double strength, Random& random);
 
-/// Another camera looks, in a share of all pictures.
+/// Another camera looks, in a share of all pictures: one that differs by anything up to `strength`.
 void look_through_another(double share, double strength, RgbdFrame& frame, Random& random);
 
 /// What the camera makes of a picture, in place: CV_8UC3 BGR. Random gives the noise.
