@@ -45,7 +45,7 @@ struct TrainingSettings {
   int validation_frames = 300;     ///< composed pictures on which the score learns what it is worth
   double dazzled_share = 0.5;      ///< of these, in which what is near has lost most of its depth, see lose_near_depth
   double depth_error = 1.0;        ///< in all of these: strength of the errors of depth, see sensor_errors.hpp
-  double surface_variation = 1.0;  ///< in all of these: strength of the changes of objects' colours, see vary_surface
+  double surface_variation = 1.0;  ///< in all of these: strength of the changes of objects' colours, see resurfaced
   double camera_share = 0.7;       ///< of these, in which another camera looks, see camera_variation.hpp
   double camera_variation = 1.0;   ///< how widely these cameras vary, and those of other_camera_share
   std::uint64_t seed = 1;

@@ -96,7 +96,7 @@ CameraVariation draw_camera(double strength, Random& random) {
 }
 
 void look_through_another(double share, double strength, RgbdFrame& frame, Random& random) {
-  if (strength <= 0.0 || random.uniform() >= share) return;
+  if (share <= 0.0 || strength <= 0.0 || random.uniform() >= share) return;
   const double own = random.uniform();  // most cameras differ little
   const CameraVariation camera = draw_camera(strength * own, random);
   apply_depth(camera, frame.camera, frame.depth, random, frame.colour);
