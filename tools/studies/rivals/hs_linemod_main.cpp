@@ -75,8 +75,10 @@ std::vector<BopScene> open_scenes(const LinemodOptions& options) {
 void evaluate_scenes(const LinemodOptions& options) {
   const std::vector<BopScene> scenes = open_scenes(options);
   const std::vector<TrainingView> views = read_training_sources(options.sources);
+  LinemodTemplateSettings templates = options.templates;
+  templates.focal_px = static_cast<float>(scenes.front().images().front().camera.fx);
   StageClock clock;
-  const LinemodDetector detector(views, options.templates, options.selection);
+  const LinemodDetector detector(views, templates, options.selection);
   clock.mark("train");
   const double train_seconds = static_cast<double>(clock.times().back().duration_us) * 1e-6;
   const LinemodTraining& training = detector.training();

@@ -18,6 +18,7 @@ struct LinemodTemplateSettings {
   float min_distance = 0.35F;   ///< nearest distance taught, metres
   float max_distance = 2.6F;    ///< farthest distance taught, metres
   float distance_step = 1.1F;   ///< from one taught distance to the next, a factor above 1
+  float focal_px = 0.0F;        ///< of the scenes' camera; 0: that of the views
   int threads = 2;              ///< share the templates; any number finds the same
 };
 

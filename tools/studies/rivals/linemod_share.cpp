@@ -35,10 +35,11 @@ std::vector<LinemodTemplate::DepthSample> spread_samples(const ScaledView& view,
 
 }  // namespace
 
-LinemodShare::LinemodShare(const LinemodTemplateSettings& settings) : linemod_(new_linemod(settings)) {}
+LinemodShare::LinemodShare(const LinemodTemplateSettings& settings)
+    : linemod_(new_linemod(settings)), focal_px_(settings.focal_px) {}
 
 bool LinemodShare::add(const TrainingView& view, double distance, int rank) {
-  const std::optional<ScaledView> scaled = scale_view(view, distance);
+  const std::optional<ScaledView> scaled = scale_view(view, distance, focal_px_);
   cv::Rect features_px;
   const auto extract = [&] {
     return linemod_->addTemplate({scaled->colour, scaled->depth_mm}, kOneClass, scaled->mask, &features_px) >= 0;

@@ -27,6 +27,7 @@ class LinemodShare {
   std::vector<LinemodTemplate> templates_;  // by cv::linemod's number
   cv::Size largest_;
   LinemodTraining training_;
+  float focal_px_;
 };
 
 }  // namespace houghstream

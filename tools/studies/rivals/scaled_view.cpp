@@ -31,9 +31,10 @@ cv::Mat with_margin(const cv::Mat& image, int border_type) {
 
 }  // namespace
 
-std::optional<ScaledView> scale_view(const TrainingView& view, double distance) {
+std::optional<ScaledView> scale_view(const TrainingView& view, double distance, double focal_px) {
   const Eigen::Vector3d origin = view.T_camera_object.translation();
-  const double scale = origin.z() / distance;
+  const double zoom = focal_px > 0.0 ? focal_px / view.frame.camera.fx : 1.0;
+  const double scale = zoom * origin.z() / distance;
   const cv::Rect part = surroundings(view, scale);
   if (part.empty()) return std::nullopt;
   const cv::Size size(std::max(1, static_cast<int>(std::lround(part.width * scale))),

@@ -187,6 +187,16 @@ TEST(SelectDetections, ChecksDepthOnlyWhereItIsAskedTo) {
   EXPECT_TRUE(select_detections(matches, far, selection).empty());
 }
 
+TEST(ScaledView, AnotherCameraSeesItInItsOwnSizeAndAsFarAway) {
+  const TrainingView view = toy_views()[0];
+  const std::optional<ScaledView> same = scale_view(view, 0.7);
+  const std::optional<ScaledView> longer = scale_view(view, 1.4, 2.0 * view.frame.camera.fx);
+  ASSERT_TRUE(same && longer);
+  EXPECT_EQ(longer->view_scale, same->view_scale);
+  EXPECT_EQ(longer->colour.size(), same->colour.size());
+  EXPECT_EQ(longer->distance, 1.4);
+}
+
 TEST(ScaledView, ImagesGrowAndDepthIsShifted) {
   const TrainingView view = toy_views()[0];  // 0.7 m away
   const cv::Rect box = cv::boundingRect(view.mask);
