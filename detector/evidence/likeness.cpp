@@ -53,6 +53,21 @@ float Likeness::hue_conflict() const {
   return static_cast<float>(std::max(lacking, 0.0) / std::sqrt((remembered_sq + pale) * (seen_sq + pale)));
 }
 
+float Likeness::contrast() const {
+  constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
+  constexpr double kMost = 2.0;
+  if (count_ < kFewest) return 0.0F;
+  const double count = count_;
+  double remembered = 3.0 * kNoise;
+  double seen = 3.0 * kNoise;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const double mean = channels_[c][0] / count;
+    remembered += channels_[c][2] / count - mean * mean;
+    seen += seen_variance(c);
+  }
+  return static_cast<float>(std::clamp(0.5 * std::log(seen / remembered), -kMost, kMost));
+}
+
 float Likeness::correlation() const {
   constexpr double kNoise = 9.0;  // variance that a plain surface's pixels have
   if (count_ < kFewest) return 0.0F;

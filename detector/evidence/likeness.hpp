@@ -27,6 +27,10 @@ class Likeness {
   /// -1 to 1; near 0 for plain surfaces, whose differences are noise, and 0 for fewer than a dozen pairs.
   float correlation() const;
 
+  /// Logarithm of the contrast of the colours seen over that of the remembered ones, -2 to 2; 0 for fewer than a dozen
+  /// pairs. Dim, hazy and blurred pictures show less than was taught.
+  float contrast() const;
+
   /// How far the mean colour seen is from the remembered one, at any strength that haze or a camera gives it: distance
   /// in the a*b* plane over the spread of the colours seen, at most 4; 0 for fewer than a dozen pairs. Tells plain
   /// surfaces apart, which correlation cannot.

@@ -23,6 +23,7 @@ ScoreTerms score_terms(const Evidence& evidence) {
   const float foreign = std::min(fit.foreign_colour, 1.0F);
   constexpr float kNearest = 0.1F;  // metres, as far as a logarithm means something
   constexpr float kLeast = 1e-4F;   // the same of shares
+  constexpr float kUsualRadius_px = 40.0F;
   const float log_mass = std::log(std::max(evidence.mass_share, kLeast));
   const float log_shown = std::log(1.02F - fit.hidden);
   const float log_certainty = std::log(std::max(evidence.certainty, kLeast));
@@ -48,6 +49,10 @@ ScoreTerms score_terms(const Evidence& evidence) {
   terms.seen_through_certainty = fit.seen_through * log_certainty;
   terms.hue_conflict_foreign_colour = fit.hue_conflict * foreign * foreign;
   terms.unevenness_sq = fit.unevenness * fit.unevenness;
+  terms.extent = std::log(std::max(evidence.radius_px, 1.0F) / kUsualRadius_px);
+  terms.contrast = fit.contrast;
+  terms.extent_likeness = terms.extent * fit.likeness;
+  terms.contrast_likeness = fit.contrast * fit.likeness;
   return terms;
 }
 

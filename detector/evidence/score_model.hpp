@@ -31,9 +31,14 @@ struct ScoreTerms {
   float seen_through_certainty = 0.0F;
   float hue_conflict_foreign_colour = 0.0F;
   float unevenness_sq = 0.0F;
+  // How well the object can be seen: what is small or faint looks less like itself than what is large and clear.
+  float extent = 0.0F;           ///< logarithm of its radius in pixels, over 40
+  float contrast = 0.0F;         ///< see Likeness
+  float extent_likeness = 0.0F;  ///< products
+  float contrast_likeness = 0.0F;
 };
 
-constexpr std::size_t kScoreTerms = 21;
+constexpr std::size_t kScoreTerms = 25;
 
 /// All of them, in the order in which the fit sums them and the forest file holds them.
 constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {&ScoreTerms::constant,
@@ -56,7 +61,11 @@ constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {&ScoreT
                                                                          &ScoreTerms::other_size_sq,
                                                                          &ScoreTerms::seen_through_certainty,
                                                                          &ScoreTerms::hue_conflict_foreign_colour,
-                                                                         &ScoreTerms::unevenness_sq};
+                                                                         &ScoreTerms::unevenness_sq,
+                                                                         &ScoreTerms::extent,
+                                                                         &ScoreTerms::contrast,
+                                                                         &ScoreTerms::extent_likeness,
+                                                                         &ScoreTerms::contrast_likeness};
 static_assert(sizeof(ScoreTerms) == kScoreTerms * sizeof(float), "a term is missing in the list");
 
 /// The weights that are assumed before any example is seen: even odds at about a third of the expected mass.

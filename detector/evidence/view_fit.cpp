@@ -226,6 +226,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   fit.likeness = likeness.correlation();
   fit.foreign_colour = likeness.foreign_colour();
   fit.hue_conflict = likeness.hue_conflict();
+  fit.contrast = likeness.contrast();
   fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
 }

@@ -26,6 +26,7 @@ struct ViewFit {
   float likeness = 0.0F;        ///< of the colours of what is visible or unknown with the remembered ones, -1 to 1
   float foreign_colour = 0.0F;  ///< see Likeness
   float hue_conflict = 0.0F;    ///< see Likeness
+  float contrast = 0.0F;        ///< see Likeness
   cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is
 };
 

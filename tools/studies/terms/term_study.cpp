@@ -37,7 +37,11 @@ constexpr std::array<const char*, kScoreTerms> kNames = {"constant",
                                                          "other_size_sq",
                                                          "seen_through_certainty",
                                                          "hue_conflict_foreign_colour",
-                                                         "unevenness_sq"};
+                                                         "unevenness_sq",
+                                                         "extent",
+                                                         "contrast",
+                                                         "extent_likeness",
+                                                         "contrast_likeness"};
 static_assert(kNames.back() != nullptr, "a term has no name");
 
 Sample sample_of(const Candidate& candidate, const ScoreModel& model) {
