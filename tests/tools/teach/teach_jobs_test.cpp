@@ -9,6 +9,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
+#include "tools/common/stored_quality.hpp"
 
 namespace houghstream::teach {
 namespace {
@@ -27,7 +28,7 @@ TeachOptions quick_options(const fs::path& folder, const std::string& mesh) {
   options.profile.training.tests_per_node = 100;
   options.profile.training.patches_per_view = 60;
   options.profile.training.composites_per_view = 1;
-  options.profile.training.validation_frames = 4;
+  options.practice.frames = 8;
   return options;
 }
 
@@ -58,6 +59,9 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_TRUE(fs::exists(first.contact_sheet()));
   EXPECT_EQ(static_cast<int>(read_bop_training_views(options.dump_views).size()), first.objects[0].views);
 
+  const nlohmann::json learnt = first.objects[0].quality;
+  EXPECT_EQ(stored_quality(first, {}).count("bracket"), 1U);
+
   TeachOptions more = quick_options(folder, "grey.ply");
   more.add = true;
   start_log("teach_tests", LogLevel::kInfo);
@@ -69,6 +73,8 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   ASSERT_EQ(both.objects.size(), 2U);
   EXPECT_FALSE(both.objects[1].coloured);
   EXPECT_EQ(both.objects[1].id, 2);
+  EXPECT_EQ(both.objects[0].quality, learnt) << "what was learnt of an older object stays";
+  EXPECT_EQ(stored_quality(both, {}).count("grey"), 1U);
   EXPECT_EQ(forest_names(options.out), (std::vector<std::string>{"bracket", "grey"}));
   EXPECT_EQ(error_of([&] { teach_meshes(more); }).find((folder / "grey.ply").string()), 0U) << "known already";
 
@@ -78,6 +84,25 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "bracket"); }), "");
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "grey"); }), "") << "the only one";
   EXPECT_EQ(store::read_store(options.out).objects.size(), 1U) << "a refusal loses nothing";
+}
+
+TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
+  const fs::path folder = folder_of_meshes("teach_practise");
+  const TeachOptions options = quick_options(folder, "bracket.ply");
+  teach_meshes(options);
+  const store::ObjectStore before = store::read_store(options.out);
+  PracticeSettings other = options.practice;
+  other.seed = 7;
+  practise_store(options.out, other);
+  const store::ObjectStore after = store::read_store(options.out);
+  ASSERT_EQ(after.objects.size(), 1U);
+  EXPECT_EQ(after.objects[0].name, "bracket");
+  EXPECT_EQ(after.objects[0].views, before.objects[0].views);
+  EXPECT_EQ(stored_quality(after, {}).count("bracket"), 1U);
+  EXPECT_NE(after.objects[0].quality, before.objects[0].quality) << "in other rooms";
+  EXPECT_EQ(forest_names(options.out), std::vector<std::string>{"bracket"});
+  EXPECT_NE(error_of([&] { practise_store(folder / "nowhere", other); }).find("expected an object store"),
+            std::string::npos);
 }
 
 TEST(TeachJobs, ARefusedTeachingLosesNothing) {

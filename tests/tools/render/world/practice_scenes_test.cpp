@@ -14,7 +14,7 @@
 namespace houghstream::world {
 namespace {
 
-constexpr int kFrames = 6;
+constexpr int kFrames = 4;
 
 PracticeObject brick(int id, const Eigen::Vector3d& size, const cv::Vec3b& colour) {
   Mesh mesh = box(size, cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(0)));

@@ -108,7 +108,7 @@ TEST(QualityFit, ExamplesAreJudgedByTheSettingsGiven) {
 }
 
 TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
-  EXPECT_THROW(learn_quality(drawn(8000, 4)), InputError) << "from no quality are 98 % right";
+  EXPECT_THROW(learn_quality(drawn(8000, 4, 0.5)), InputError) << "from no quality are 98 % right";
   Learnt learnt = learn_quality(drawn(8000, 4, 10.0));
   EXPECT_EQ(std::tuple(learnt.scenes, learnt.examples), std::tuple(4, 8000));
   learnt.settings.weights = kWeights;
