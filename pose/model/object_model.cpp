@@ -1,5 +1,6 @@
 #include "pose/model/object_model.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -121,6 +122,28 @@ ModelView make_view(const ObjectModel& model, const SurfaceColour& colour, const
   return view;
 }
 
+/// Of the triangles' centres, weighted by their areas.
+Eigen::Matrix3f principal_axes(const Mesh& mesh) {
+  double area = 0.0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d p = mesh.vertices[a].cast<double>();
+    const Eigen::Vector3d q = mesh.vertices[b].cast<double>();
+    const Eigen::Vector3d r = mesh.vertices[c].cast<double>();
+    const double weight = 0.5 * (q - p).cross(r - p).norm();
+    const Eigen::Vector3d centre = (p + q + r) / 3.0;
+    area += weight;
+    mean += weight * centre;
+    second += weight * centre * centre.transpose();
+  }
+  if (!(area > 0.0)) return Eigen::Matrix3f::Identity();
+  mean /= area;
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(second / area - mean * mean.transpose())
+      .eigenvectors()
+      .cast<float>();
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3f> sphere_directions(int parts) {
@@ -150,6 +173,7 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
   require(std::isfinite(model.radius) && model.radius > 0.001F && model.radius < 10.0F,
           "model {}: radius {} m, expected 0.001 to 10 m", name, model.radius);
   model.middle = surface_median(model.mesh);
+  model.axes = principal_axes(model.mesh);
   const SurfaceColour colour(model.mesh, 2.0 * model.radius / settings.pixels_per_diameter);
   std::uint64_t seed = 0;
   float largest = 0.0F;

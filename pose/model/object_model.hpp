@@ -34,7 +34,8 @@ struct ObjectModel {
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the bounding box, object frame
   /// Median of the surface along each axis, object frame: a handle does not move it.
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-  float radius = 0.0F;  ///< of the sphere about the centre that holds the mesh, metres
+  Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: principal axes of the surface, object frame
+  float radius = 0.0F;                                 ///< of the sphere about the centre that holds the mesh, metres
   std::vector<ModelView> views;
 };
 

@@ -15,7 +15,7 @@ struct InitialSettings {
   double cluster_radius_deg = 25.0;
   int clusters = 6;         ///< at most
   int turned_clusters = 1;  ///< of the heaviest also turned by quarters about the object's z axis
-  float vote_gain = 0.3F;   ///< how much a rotation that the votes agree on is preferred after registration
+  float vote_gain = 0.1F;   ///< how much a rotation that the votes agree on is preferred after registration
 };
 
 /// Coarse choice by depth score: each rotation at several places, the best go to registration.

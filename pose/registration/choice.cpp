@@ -41,6 +41,24 @@ class Choice {
     return best;
   }
 
+  /// The best of `result` and of it turned by half a turn about each principal axis, registered again: a box looks the
+  /// same to depth then, and only its print tells.
+  RegistrationResult best_flip(const RegistrationResult& result) const {
+    RegistrationResult best = result;
+    float best_score = score_of(result);
+    const Eigen::Vector3d middle = seen_.model.middle.cast<double>();
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::AngleAxisd half_turn(M_PI, seen_.model.axes.col(axis).cast<double>());
+      const Eigen::Isometry3d flipped =
+          result.T_camera_object * Eigen::Translation3d(middle) * half_turn * Eigen::Translation3d(-middle);
+      RegistrationResult again =
+          uphill(register_coarsely(seen_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
+      again.iterations += result.iterations;
+      take_better(again, best, best_score);
+    }
+    return best;
+  }
+
  private:
   void take_better(const RegistrationResult& result, RegistrationResult& best, float& best_score) const {
     if (!ends_near(seen_, result, settings_.registration)) return;
@@ -81,7 +99,8 @@ RegistrationResult choose_pose(const SeenObject& seen, const std::vector<Registr
   const RegistrationResult best = choice.best_of(registered);
   if (best.inliers == 0) return best;
   const RegistrationResult settled = register_finely(seen, best, registration);
-  const RegistrationResult turned = choice.best_turn(settled, turn.step_deg, 180.0, turn.registered);
+  const RegistrationResult flipped = choice.best_flip(settled);
+  const RegistrationResult turned = choice.best_turn(flipped, turn.step_deg, 180.0, turn.registered);
   const RegistrationResult fine = register_finely(seen, turned, registration);
   return register_finely(seen, choice.best_turn(fine, turn.fine_step_deg, turn.step_deg, 1), registration);
 }

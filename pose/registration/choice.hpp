@@ -20,9 +20,10 @@ struct TurnSettings {
 };
 
 /// Of the registered candidates the one for which depth, colour and votes speak most is registered finely and turned
-/// about its z axis, where votes err most; of the turns, each registered again and moved a little uphill, the one for
-/// which they speak most goes on; then its print may turn it a little, and registration has the last word. No inliers
-/// where no candidate ended near the detected centre. `votes` are the modes of the detection's rotations.
+/// about its principal axes by half a turn each, and about its z axis, where votes err most; of the turns, each
+/// registered again and moved a little uphill, the one for which they speak most goes on; then its print may turn it a
+/// little, and registration has the last word. No inliers where no candidate ended near the detected centre. `votes`
+/// are the modes of the detection's rotations.
 RegistrationResult choose_pose(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
                                const std::vector<RotationCandidate>& votes, const PoseSettings& settings);
 

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
     catch_stop_signals();
     if (!camera.empty()) options.camera = parse_camera(camera);
     Forest forest = load_taught(forest_file, objects);
+    if (!objects.empty() && !search.threshold) search.threshold = kStoreThreshold;
     const DetectionSettings settings = search.settings_for(forest);
     const Detector detector(std::move(forest), settings);
     for (const ObjectClass& object : detector.forest().classes) {

@@ -28,6 +28,7 @@ struct EvaluateOptions {
   std::string log;
   std::string channel = ".*";
   std::string objects;
+  std::optional<float> operating_score;
   std::map<std::string, QualitySettings> class_quality;  // the store's
   std::string forest;
   std::string models;
@@ -256,15 +257,15 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
                  "folder for summary.json, curves.csv, poses.csv, reliability.png, and bop_results.csv where there are "
                  "poses");
   EvaluationRules& rules = options.rules;
-  rules.operating_score = EvidenceSettings{}.threshold;  // what hs-detect publishes unless told otherwise
   app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection").capture_default_str();
   app.add_option("--min-visible", rules.detection.min_visible, "less visible objects are ignored")
       .capture_default_str();
   app.add_option("--pose-min-visible", rules.pose_min_visible, "less visible objects do not enter the pose recall")
       .capture_default_str();
-  app.add_option("--operating-score", rules.operating_score,
-                 "score from which precision and false detections count; in-process, poses of weaker ones are withheld")
-      .capture_default_str();
+  app.add_option(
+      "--operating-score", options.operating_score,
+      "score from which precision and false detections count; in-process, poses of weaker ones are withheld; "
+      "default: what hs-detect publishes");
   app.add_option("--min-quality", options.min_quality, "in-process: poses of lower quality are withheld, as by hs-pose")
       .range(0.0, 1.0)
       .capture_default_str();
@@ -277,9 +278,12 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 
 }  // namespace
 
-/// A store's forest and models, where one is named.
+/// A store's forest and models, where one is named, and what hs-detect publishes unless told otherwise.
 static EvaluateOptions with_store(EvaluateOptions options) {
+  const float published = options.objects.empty() ? EvidenceSettings{}.threshold : kStoreThreshold;
+  options.rules.operating_score = options.operating_score.value_or(published);
   if (options.objects.empty()) return options;
+  if (!options.search.threshold) options.search.threshold = kStoreThreshold;
   require(options.forest.empty() && options.models.empty(),
           "expected either --objects STORE or --forest FILE and --models FOLDER");
   const store::ObjectStore objects = store::read_store(options.objects);
