@@ -101,8 +101,8 @@ struct Forest {
   std::vector<LeafClass> leaf_classes;
   std::vector<LeafVote> votes;
   std::vector<LeafView> leaf_views;
-  std::vector<LeafHead> leaf_heads;  ///< number of leaves + 1; not in files, see note_leaf_heads
-  PackedTrees packed;                ///< not in files, see pack_trees
+  std::vector<LeafHead> leaf_heads;             ///< number of leaves + 1; not in files, see note_leaf_heads
+  PackedTrees packed;                           ///< not in files, see pack_trees
   std::vector<ViewNeighbours> view_neighbours;  ///< per view; not in files, see note_view_neighbours
 };
 

@@ -15,9 +15,9 @@ namespace houghstream {
 
 /// What would be published of what is found.
 struct PublishingRules {
-  float score = 0.0F;                           ///< least of a detection
-  float quality = QualitySettings{}.least;      ///< least of a pose
-  float pose_score = PoseSettings{}.min_score;  ///< least of a detection whose pose is looked for
+  float score = 0.0F;                                         ///< least of a detection
+  float quality = QualitySettings{}.least;                    ///< least of a pose
+  float pose_score = PoseSettings{}.min_score;                ///< least of a detection whose pose is looked for
   std::map<std::string, QualitySettings> class_quality = {};  ///< see PoseSettings; `least` is that above
 };
 

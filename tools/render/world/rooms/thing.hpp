@@ -13,8 +13,8 @@ namespace houghstream::world {
 struct Thing {
   std::string name;
   Mesh mesh;
-  float gloss = 0.1F;               ///< strength of the mirror-like part of the reflection, 0 = matt to 1
-  float glow = 0.0F;                ///< share of its texture that it emits by itself (screens, windows), 0 to 1
+  float gloss = 0.1F;  ///< strength of the mirror-like part of the reflection, 0 = matt to 1
+  float glow = 0.0F;   ///< share of its texture that it emits by itself (screens, windows), 0 to 1
   /// CV_8UC3: the texture, each level half the size of the one before. Empty where vertices have colours instead.
   std::vector<cv::Mat> mip_levels;
   std::vector<float> texels_per_m;  ///< per triangle, of level 0; empty without texture
