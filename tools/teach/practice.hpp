@@ -21,7 +21,7 @@ struct PractisedObject {
 };
 
 struct PracticeSettings {
-  int frames = 140;
+  int frames = 120;
   double camera_share = 0.9;      ///< of the frames, that another camera sees than the one that taught
   double camera_variation = 1.2;  ///< see detector/training/pictures/camera_variation.hpp
   std::uint64_t seed = 1;

@@ -86,9 +86,18 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
   }
 }
 
+/// So many views of each of so many objects: the fewer, the more there is time and memory for.
+int views_of_each(std::size_t objects) {
+  constexpr int kAll = 6300;
+  constexpr int kFewest = 640;
+  constexpr int kMost = 1100;
+  return std::clamp(kAll / static_cast<int>(objects), kFewest, kMost);
+}
+
 /// Training views of a mesh; those that show no depth of it are left out.
-std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options) {
+std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options, int most) {
   world::MeshViewSettings settings = options.views;
+  settings.most_views = std::min(settings.most_views, most);
   settings.attitudes = world::parse_mesh_attitudes(options.attitudes);
   settings.has_colour = taught.coloured;
   const world::MeshViews rendered(taught.mesh, settings,
@@ -139,7 +148,7 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
                                      ObjectStore& made, const Progress& progress) {
   std::vector<TrainingView> all;
   for (const TaughtMesh& taught : meshes) {
-    std::vector<TrainingView> views = render_views(taught, options);
+    std::vector<TrainingView> views = render_views(taught, options, views_of_each(meshes.size()));
     StoredObject object;
     object.id = taught.id;
     object.name = taught.name;
@@ -197,7 +206,7 @@ int most_views(const std::vector<TrainingView>& views) {
 
 Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>& old, const TeachOptions& options,
              const Progress& progress) {
-  constexpr int kPatches = 32000;  // of an object: what trees are grown of, and how long that takes
+  constexpr int kPatches = 26000;  // of an object: what trees are grown of, and how long that takes
   constexpr int kFewestPatches = 40;
   constexpr int kMostPatches = 250;
   Profile profile = options.profile;
