@@ -122,7 +122,7 @@ ModelView make_view(const ObjectModel& model, const SurfaceColour& colour, const
   return view;
 }
 
-/// Of the triangles' centres, weighted by their areas.
+/// Of the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').
 Eigen::Matrix3f principal_axes(const Mesh& mesh) {
   double area = 0.0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -132,10 +132,10 @@ Eigen::Matrix3f principal_axes(const Mesh& mesh) {
     const Eigen::Vector3d q = mesh.vertices[b].cast<double>();
     const Eigen::Vector3d r = mesh.vertices[c].cast<double>();
     const double weight = 0.5 * (q - p).cross(r - p).norm();
-    const Eigen::Vector3d centre = (p + q + r) / 3.0;
+    const Eigen::Vector3d sum = p + q + r;
     area += weight;
-    mean += weight * centre;
-    second += weight * centre * centre.transpose();
+    mean += weight / 3.0 * sum;
+    second += weight / 12.0 * (p * p.transpose() + q * q.transpose() + r * r.transpose() + sum * sum.transpose());
   }
   if (!(area > 0.0)) return Eigen::Matrix3f::Identity();
   mean /= area;
