@@ -35,7 +35,6 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   terms.seen_through = -std::log(depth.violating / judged + kShare);
   terms.visible = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
   terms.outline = std::log((depth.outline_ends + kCount) / (depth.outline_continues + kCount));
-  terms.extent = std::log(depth.agreeing + kCount);
   if (evidence.colour) {
     terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
     terms.agreement = std::max(kLeastAgreement, static_cast<double>(evidence.colour->agreement));
@@ -52,8 +51,7 @@ float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
 PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings) {
   constexpr std::array<PoseStatus, kQualityTerms.size()> kReasons = {
       PoseStatus::kLowScore,          PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByDepth,
-      PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour,
-      PoseStatus::kTooFewPoints};
+      PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour};
   const auto against = [&](std::size_t i) {
     const auto term = kQualityTerms[i];
     return settings.weights.*term * (settings.typical.*term - terms.*term);

@@ -29,15 +29,14 @@ struct QualityTerms {
   double outline = 0.0;       ///< log of outline ends over outline that goes on
   double chroma_conflict = 0.0;  ///< see ColourComparison (negated)
   double agreement = 0.0;        ///< see ColourComparison, at least -0.5
-  double extent = 0.0;           ///< log of the pixels that agree: what little is seen of may be many things
 };
 
 /// The terms in the order in which they are summed, and their names.
-inline constexpr std::array<double QualityTerms::*, 7> kQualityTerms = {
+inline constexpr std::array<double QualityTerms::*, 6> kQualityTerms = {
     &QualityTerms::detection_log_odds, &QualityTerms::seen_through, &QualityTerms::visible, &QualityTerms::outline,
-    &QualityTerms::chroma_conflict,    &QualityTerms::agreement,    &QualityTerms::extent};
+    &QualityTerms::chroma_conflict,    &QualityTerms::agreement};
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
-    "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "agreement", "extent"};
+    "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "agreement"};
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
 /// (tools/studies/quality) learns these numbers, `least` as the round number from which 98 % of the poses are right in
@@ -46,10 +45,10 @@ inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames
 /// detector's scores as they were then.
 struct QualitySettings {
   double bias = -7.53;
-  QualityTerms weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16, 0.0};
+  QualityTerms weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16};
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {1.63, 3.55, -0.16, 1.48, -0.70, 0.6, 7.0};
+  QualityTerms typical = {1.63, 3.55, -0.16, 1.48, -0.70, 0.6};
   float least = 0.6F;  ///< poses of lower quality are not published
 };
 

@@ -82,18 +82,6 @@ TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
   EXPECT_EQ(quality(evidence), contradicted);
 }
 
-TEST(PoseQuality, LittleThatAgreesSpeaksAgainstAPoseAsLearnt) {
-  QualitySettings settings;
-  settings.weights.extent = 1.0;
-  settings.bias -= settings.weights.extent * settings.typical.extent;
-  PoseEvidence far = good();  // as much of it is seen, in a ninetieth of the pixels
-  far.depth.agreeing /= 90;
-  QualityTerms terms = typical();
-  terms.extent = quality_terms(far, settings).extent;
-  EXPECT_LT(pose_quality(terms, settings), pose_quality(typical(), settings) - 0.1F);
-  EXPECT_EQ(reason_against(terms, settings), PoseStatus::kTooFewPoints);
-}
-
 TEST(PoseQuality, AWeakDetectionSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
   evidence.detection_score = 0.0F;  // no infinite odds

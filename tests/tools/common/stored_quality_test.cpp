@@ -46,7 +46,7 @@ TEST(StoredQuality, ComesBackFromJsonAsItWas) {
 TEST(StoredQuality, TermsAreHeldByTheirNames) {
   nlohmann::json json = quality_to_json(learnt());
   EXPECT_EQ(json["weights"]["outline"], learnt().weights.outline);
-  EXPECT_EQ(json["typical"]["extent"], learnt().typical.extent);
+  EXPECT_EQ(json["typical"]["agreement"], learnt().typical.agreement);
 }
 
 /// One line that names the store, the object and `part`.

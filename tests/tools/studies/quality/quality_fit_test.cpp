@@ -11,7 +11,7 @@
 namespace houghstream::quality {
 namespace {
 
-const QualityTerms kWeights = {1.5, 0.5, 1.0, -0.5, 2.0, 1.0, 0.25};
+const QualityTerms kWeights = {1.5, 0.5, 1.0, -0.5, 2.0, 1.0};
 constexpr double kBias = -1.0;
 
 /// Right as often as kWeights and kBias say, times `certainty`; `scenes` of equal size.
@@ -117,12 +117,11 @@ TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
   learnt.settings.typical = {};
   EXPECT_EQ(to_initialisers(learnt.settings),
             "double bias = -3.71;\n"
-            "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00, 0.25};\n"
-            "QualityTerms typical = {0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 0.00};\n"
+            "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00};\n"
+            "QualityTerms typical = {0.00, 0.00, 0.00, 0.00, 0.00, 0.00};\n"
             "float least = 0.60F;\n");
   const OrderedJson json = to_json(learnt);
   EXPECT_EQ(json["weights"]["chroma_conflict"], 2.0);
-  EXPECT_EQ(json["weights"]["extent"], 0.25);
   EXPECT_EQ(json["weights"]["outline"], -0.5);
   EXPECT_EQ(json["published"].size(), 19U);
   EXPECT_EQ(json["published"][0]["from"], 0.05);
