@@ -39,17 +39,17 @@ inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames
     "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "agreement"};
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
-/// (tools/studies/quality) learns these numbers, `least` as the round number from which 98 % of the poses are right in
-/// scenes that the fit has not seen (a quarter in turn), and tells how those below do. They are of 1482 poses of
-/// detections from score 0.1 on in the scenes development_world_0 to 17, of which 773 were right, and hold for the
-/// detector's scores as they were then.
+/// (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least` on in scenes
+/// that the fit has not seen (a quarter in turn). They are of 1370 poses of detections from score 0.1 on in 14 frames
+/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 673 were right, and of those
+/// from `least` on 546 of 559. What hs-teach learns of an object takes their place.
 struct QualitySettings {
-  double bias = -7.53;
-  QualityTerms weights = {1.53, 1.82, 1.33, 1.15, 1.86, 6.16};
+  double bias = -5.31;
+  QualityTerms weights = {1.05, 0.50, 2.45, 0.77, 2.18, 7.42};
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {1.63, 3.55, -0.16, 1.48, -0.70, 0.6};
-  float least = 0.6F;  ///< poses of lower quality are not published
+  QualityTerms typical = {2.16, 3.05, -0.17, 1.64, -0.23, 0.77};
+  float least = 0.85F;  ///< poses of lower quality are not published
 };
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);

@@ -9,6 +9,10 @@
 
 namespace houghstream {
 
+/// Smallest quality of a published pose of a store's objects: in practice rooms that the fit has not seen 98 % of the
+/// poses from there on were right.
+constexpr float kStoreQuality = 0.6F;
+
 /// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }}.
 nlohmann::json quality_to_json(const QualitySettings& settings);
 

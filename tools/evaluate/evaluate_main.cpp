@@ -37,7 +37,8 @@ struct EvaluateOptions {
   std::vector<std::string> classes;
   EvaluationRules rules;
   SearchOptions search;
-  float min_quality = QualitySettings{}.least;
+  std::optional<float> asked_quality;
+  float min_quality = QualitySettings{}.least;  // that which holds
   int every = 1;
 };
 
@@ -266,9 +267,9 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
       "--operating-score", options.operating_score,
       "score from which precision and false detections count; in-process, poses of weaker ones are withheld; "
       "default: what hs-detect publishes");
-  app.add_option("--min-quality", options.min_quality, "in-process: poses of lower quality are withheld, as by hs-pose")
-      .range(0.0, 1.0)
-      .capture_default_str();
+  app.add_option("--min-quality", options.asked_quality,
+                 "in-process: poses of lower quality are withheld; default: as by hs-pose")
+      .range(0.0, 1.0);
   app.add_flag("--processed-only", rules.processed_only, "leave skipped frames out; default: they count as missed");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
@@ -282,6 +283,8 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 static EvaluateOptions with_store(EvaluateOptions options) {
   const float published = options.objects.empty() ? EvidenceSettings{}.threshold : kStoreThreshold;
   options.rules.operating_score = options.operating_score.value_or(published);
+  const float least = options.objects.empty() ? QualitySettings{}.least : kStoreQuality;
+  options.min_quality = options.asked_quality.value_or(least);
   if (options.objects.empty()) return options;
   if (!options.search.threshold) options.search.threshold = kStoreThreshold;
   require(options.forest.empty() && options.models.empty(),

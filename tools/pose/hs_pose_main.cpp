@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   std::string url;
   std::string output_log;
   PoseSettings settings;
+  std::optional<float> min_quality;
   PoseProcessOptions options;
   app.add_option("--objects", objects, "object store of hs-teach, instead of --models");
   add_model_options(app, models, model_unit_m);
@@ -41,10 +42,11 @@ int main(int argc, char** argv) {
   app.add_option("--min-score", settings.min_score, "poses are looked for from this score of the detection on")
       .range(0.0, 1.0)
       .capture_default_str();
-  app.add_option("--min-quality", settings.quality.least,
-                 "poses that are right with a lower probability are withheld, and it is said why")
-      .range(0.0, 1.0)
-      .capture_default_str();
+  app.add_option("--min-quality", min_quality,
+                 fmt::format("poses that are right with a lower probability are withheld, and it is said why; default: "
+                             "{}, of a store's objects {}",
+                             settings.quality.least, kStoreQuality))
+      .range(0.0, 1.0);
   add_frame_channels_option(app, options.frame_channels);
   app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, url);
@@ -53,6 +55,7 @@ int main(int argc, char** argv) {
     catch_stop_signals();
     if (!camera.empty()) options.camera = parse_camera(camera);
     std::map<std::string, Mesh> meshes = load_models(objects, models, model_unit_m);
+    settings.quality.least = min_quality.value_or(objects.empty() ? settings.quality.least : kStoreQuality);
     if (!objects.empty()) settings.class_quality = stored_quality(store::read_store(objects), settings.quality);
     for (const auto& [name, mesh] : meshes) options.models.insert(name);
     const PoseEstimator estimator(std::move(meshes), settings);

@@ -44,10 +44,10 @@ double way_from_prior(const QualitySettings& settings) {
 }
 
 TEST(QualityTraining, FewExamplesLeaveThePriorLittle) {
-  const double by_few = way_from_prior(fit_quality_settings(drawn(5), QualitySettings{}, 1.0));
+  const double by_few = way_from_prior(fit_quality_settings(drawn(3), QualitySettings{}, 1.0));
   EXPECT_GT(by_few, 0.0);
   EXPECT_LT(by_few, 0.3 * way_from_prior(fit_quality_settings(drawn(20000), QualitySettings{}, 1.0)));
-  EXPECT_LT(way_from_prior(fit_quality_settings(drawn(5), QualitySettings{}, 100.0)), 0.1 * by_few);
+  EXPECT_LT(way_from_prior(fit_quality_settings(drawn(3), QualitySettings{}, 100.0)), 0.1 * by_few);
 }
 
 TEST(QualityTraining, NoExamplesGiveThePrior) {
