@@ -28,6 +28,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   constexpr double kFraction = 0.05;
   constexpr double kCount = 3.0;
   constexpr double kLeastAgreement = -0.5;
+  constexpr double kUnknownColour = 0.6;  // of the usual agreement: no colours are no proof
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
   QualityTerms terms = settings.typical;
@@ -38,6 +39,8 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   if (evidence.colour) {
     terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
     terms.agreement = std::max(kLeastAgreement, static_cast<double>(evidence.colour->agreement));
+  } else {
+    terms.agreement *= kUnknownColour;
   }
   return terms;
 }
