@@ -99,7 +99,7 @@ void verify_one(const PoseSettings& settings, Estimation& it) {
   it.pose.free_space_violation = evidence.depth.free_space_violation();
   it.pose.quality = pose_quality(terms, quality);
   if (it.pose.quality < quality.least) {
-    it.pose.status = reason_against(terms, quality);
+    it.pose.status = reason_against(terms, quality, evidence.colour.has_value());
   } else {
     it.pose.status = PoseStatus::kValid;
     it.pose.T_camera_object = it.chosen.T_camera_object;

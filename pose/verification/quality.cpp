@@ -28,7 +28,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   constexpr double kFraction = 0.05;
   constexpr double kCount = 3.0;
   constexpr double kLeastAgreement = -0.5;
-  constexpr double kUnknownColour = 0.6;  // of the usual agreement: no colours are no proof
+  constexpr double kUnknownColour = 0.8;  // of the usual agreement: no colours are no proof
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
   QualityTerms terms = settings.typical;
@@ -51,7 +51,7 @@ float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
   return static_cast<float>(1.0 / (1.0 + std::exp(-sum)));
 }
 
-PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings) {
+PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {
   constexpr std::array<PoseStatus, kQualityTerms.size()> kReasons = {
       PoseStatus::kLowScore,          PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByDepth,
       PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour};
@@ -61,6 +61,7 @@ PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& sett
   };
   std::size_t worst = 0;
   for (std::size_t i = 1; i < kReasons.size(); ++i) {
+    if (!colours_known && kReasons[i] == PoseStatus::kRejectedByColour) continue;
     if (against(i) > against(worst)) worst = i;
   }
   return kReasons[worst];

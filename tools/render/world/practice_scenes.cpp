@@ -18,8 +18,7 @@ namespace {
 constexpr std::uint64_t kFirstRoom = 1ULL << 44U;  // number of training worlds, far beyond those of other uses
 constexpr int kMostObjects = 7;
 constexpr int kMostDistractors = 12;
-constexpr double kLookAlikes = 0.5;     // share of the rooms that have one: scores say how likely an object is where
-                                        // as many stand about as in a home
+constexpr int kMostLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
 /// Turned hues, darker or brighter.
@@ -41,12 +40,20 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   return out;
 }
 
-/// Nearly the object: of other colours, or clearly smaller or larger.
+/// Nearly the object: of other colours, clearly smaller or larger, or of other proportions, as another package of the
+/// same make is.
 ThingPtr look_alike(const Thing& thing, Random& random) {
   Mesh mesh = thing.mesh;
-  if (chance(random, 0.5)) {
+  const double sort = random.uniform();
+  if (sort < 0.3) {
     const auto size = static_cast<float>(chance(random, 0.5) ? random.uniform(0.55, 0.75) : random.uniform(1.33, 1.7));
     for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= size;
+  } else if (sort < 0.65) {
+    const Eigen::Vector3f sizes(static_cast<float>(random.uniform(0.5, 1.6)),
+                                static_cast<float>(random.uniform(0.5, 1.6)),
+                                static_cast<float>(random.uniform(0.5, 1.6)));
+    for (Eigen::Vector3f& vertex : mesh.vertices) vertex = vertex.cwiseProduct(sizes);
+    compute_normals(mesh);
   } else if (!mesh.texture.empty()) {
     mesh.texture = recoloured(mesh.texture, random);
   } else {
@@ -114,7 +121,7 @@ World PracticeScenes::furnished(int room) const {
     const ThingPtr thing = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
     setter.put(put_down(object, thing, object.id, random), middle);
   }
-  if (chance(random, kLookAlikes)) {
+  for (int i = random.between(0, kMostLookAlikes); i > 0; --i) {
     const PracticeObject& object = pick(random, objects_);
     setter.put(put_down(object, look_alike(*object.thing, random), 0, random), all);
   }
