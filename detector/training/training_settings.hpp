@@ -30,24 +30,23 @@ struct TrainingSettings {
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object
   /// does not depend on how many others were taught.
   float most_background = 4.0F;
-  double in_bag = 0.75;             ///< share of the pictures that a tree sees
-  float min_distance = 0.3F;        ///< nearest distance taught, metres
-  float max_distance = 2.6F;        ///< farthest distance taught, metres
-  double occluded_share = 0.5;      ///< of the composites in which something stands in front of the object
-  double cleared_share = 0.5;       ///< of the composites in which haze is taken from the object, see clear_haze
-  double sharpened_share = 0.5;     ///< of those that trees learn from, in which the object is sharpened, see sharpened
-  double light_variation = 1.0;     ///< strength of the changes of exposure, colour cast and haze, 0 = none
-  double other_camera_share = 0.0;  ///< of those that trees learn from, in which another camera looks
-  int max_leaf_votes = 12;          ///< offsets kept per leaf and class after merging
-  int max_leaf_views = 12;          ///< remembered training views per leaf and class
-  float merge_radius = 0.008F;      ///< offsets nearer than this to each other become one vote, metres
+  double in_bag = 0.75;          ///< share of the pictures that a tree sees
+  float min_distance = 0.3F;     ///< nearest distance taught, metres
+  float max_distance = 2.6F;     ///< farthest distance taught, metres
+  double occluded_share = 0.5;   ///< of the composites in which something stands in front of the object
+  double cleared_share = 0.5;    ///< of the composites in which haze is taken from the object, see clear_haze
+  double sharpened_share = 0.5;  ///< of those that trees learn from, in which the object is sharpened, see sharpened
+  double light_variation = 1.0;  ///< strength of the changes of exposure, colour cast and haze, 0 = none
+  int max_leaf_votes = 12;       ///< offsets kept per leaf and class after merging
+  int max_leaf_views = 12;       ///< remembered training views per leaf and class
+  float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres
   Scoring scoring = Scoring::kEvidence;
   int validation_frames = 300;     ///< composed pictures on which the score learns what it is worth
   double dazzled_share = 0.5;      ///< of these, in which what is near has lost most of its depth, see lose_near_depth
   double depth_error = 1.0;        ///< in all of these: strength of the errors of depth, see sensor_errors.hpp
   double surface_variation = 1.0;  ///< in all of these: strength of the changes of objects' colours, see resurfaced
   double camera_share = 0.7;       ///< of these, in which another camera looks, see camera_variation.hpp
-  double camera_variation = 1.0;   ///< how widely these cameras vary, and those of other_camera_share
+  double camera_variation = 1.0;   ///< how widely these cameras vary
   std::uint64_t seed = 1;
   int threads = 2;
 };

@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "detector/training/pictures/camera_variation.hpp"
 #include "detector/training/pictures/composites.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 
@@ -174,7 +173,6 @@ TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& backgr
     const double farthest = *std::max_element(profile.features.scales.begin(), profile.features.scales.end());
     add_far_noise(distance, std::exp(random.uniform(0.0, std::log(farthest))), composite->frame.depth, random);
   }
-  look_through_another(settings.other_camera_share, settings.camera_variation, composite->frame, random);
   const FeatureLevel level = level_for(distance, profile, random);
   const Canvas canvas = make_canvas(*composite, level, profile);
   const bool needs_depth = !in_scale_space(profile);
@@ -208,10 +206,9 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
   const cv::Rect place = background_window(background, level, profile, random);
   RgbdFrame part;
   part.colour = background.colour(place).clone();
-  part.depth = background.depth(place).clone();
+  part.depth = background.depth(place);
   part.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
   vary_exposure(part.colour, settings.light_variation, random);
-  look_through_another(settings.other_camera_share, settings.camera_variation, part, random);
 
   const WorkingFrame frame = make_working_frame(part, level, profile.features);
   TrainingPicture picture;
