@@ -24,22 +24,21 @@ void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, flo
 
 /// From the view that agrees best to those that look from beside it, as long as one of them agrees better: votes
 /// remember few of the views that would fit.
-void compare_neighbours(const EvidenceInput& input, const Hypothesis& hypothesis, std::vector<PlacedView>& compared) {
-  constexpr int kSteps = 3;
+PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<PlacedView>& compared) {
+  constexpr int kSteps = 6;
   const std::vector<std::uint32_t>& excluded = input.excluded_views;
-  const Eigen::Vector3f& centre = hypothesis.centre_camera;
-  std::uint32_t from = best_unaligned(compared).view;
   for (int step = 0; step < kSteps; ++step) {
+    const std::uint32_t from = best.view;
+    const Eigen::Vector3f centre = best.centre_camera;
     for (const std::uint32_t view : input.forest.view_neighbours[from]) {
-      const auto is_this = [&](const PlacedView& seen) { return seen.view == view; };
-      if (std::any_of(compared.begin(), compared.end(), is_this)) continue;
-      if (std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
+      if (view == from || std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
       compared.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
+      if (agreement(compared.back().fit) > agreement(best.fit)) best = compared.back();
     }
-    const std::uint32_t best = best_unaligned(compared).view;
-    if (best == from) break;
-    from = best;
+    if (best.view == from) break;
+    best = align_view(input.forest.views, best, input.frame);
   }
+  return align_view(input.forest.views, best, input.frame, 0.5F);
 }
 
 /// Completes the evidence by the view that agrees best with the frame, aligned with it. What is hopeless where it
@@ -48,13 +47,11 @@ void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, std:
                   Evidence& evidence) {
   constexpr float kHopeless = 0.05F;  // score
   if (compared.empty()) return;
-  const std::vector<TrainedView>& views = input.forest.views;
   evidence.fit = best_unaligned(compared).fit;
   if (score(input.forest.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
-  compare_neighbours(input, hypothesis, compared);
-  const PlacedView best = best_aligned(views, compared, input.frame);
+  const PlacedView best = climb(input, align_best_few(input.forest.views, input.frame, compared), compared);
   evidence.fit = best.fit;
-  evidence.other_size = gain_of_other_size(views[best.view], best, input.frame);
+  evidence.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
 }
 
 /// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was
@@ -67,6 +64,11 @@ const WeighedViews& weighed_views(const Hypothesis& hypothesis, float spread, Ev
   for (const PlacedView& seen : own.compared) {
     weighed.emplace_back(seen.view, std::exp(kSharpness * agreement(seen.fit)));
   }
+  std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : a.second > b.second;
+  });
+  const auto is_same = [](const auto& a, const auto& b) { return a.first == b.first; };
+  weighed.erase(std::unique(weighed.begin(), weighed.end(), is_same), weighed.end());  // some were compared twice
   std::stable_sort(weighed.begin(), weighed.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return weighed;
 }

@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kFewest = 12;         // pairs from which a comparison means something
 constexpr double kNeutral = 128.0;  // a* and b* of grey
+constexpr double kPale = 120.0;     // squared strength in the a*b* plane about which a hue begins to mean something
 
 }  // namespace
 
@@ -34,23 +35,37 @@ float Likeness::foreign_colour() const {
   return static_cast<float>(std::min(4.0, std::sqrt((a * a + b * b) / (kPlain + seen_variance(1) + seen_variance(2)))));
 }
 
-float Likeness::hue_conflict() const {
-  constexpr double kPale = 120.0;  // squared strength in the a*b* plane about which a hue begins to mean something
-  if (count_ < kFewest) return 0.0F;
+Likeness::Strengths Likeness::strengths() const {
+  Strengths out;
   const double count = count_;
-  double product = 0.0;
-  double remembered_sq = 0.0;
-  double seen_sq = 0.0;
-  for (const std::size_t c : {std::size_t{1}, std::size_t{2}}) {  // about grey, not about the mean
+  for (const std::size_t c : {std::size_t{1}, std::size_t{2}}) {
     const Sums& sums = channels_[c];
     const double offset = count * kNeutral * kNeutral;
-    product += sums[4] - kNeutral * (static_cast<double>(sums[0]) + sums[1]) + offset;
-    remembered_sq += sums[2] - 2.0 * kNeutral * sums[0] + offset;
-    seen_sq += sums[3] - 2.0 * kNeutral * sums[1] + offset;
+    out.product += sums[4] - kNeutral * (static_cast<double>(sums[0]) + sums[1]) + offset;
+    out.remembered_sq += sums[2] - 2.0 * kNeutral * sums[0] + offset;
+    out.seen_sq += sums[3] - 2.0 * kNeutral * sums[1] + offset;
   }
-  const double lacking = std::sqrt(remembered_sq * seen_sq) - product;
-  const double pale = kPale * count;
-  return static_cast<float>(std::max(lacking, 0.0) / std::sqrt((remembered_sq + pale) * (seen_sq + pale)));
+  return out;
+}
+
+float Likeness::hue_conflict() const {
+  if (count_ < kFewest) return 0.0F;
+  const Strengths sum = strengths();
+  const double lacking = std::sqrt(sum.remembered_sq * sum.seen_sq) - sum.product;
+  const double pale = kPale * count_;
+  return static_cast<float>(std::max(lacking, 0.0) / std::sqrt((sum.remembered_sq + pale) * (sum.seen_sq + pale)));
+}
+
+float Likeness::paleness() const {
+  constexpr double kDarkest = 0.1;  // brightness over the remembered one
+  constexpr double kBrightest = 4.0;
+  if (count_ < kFewest) return 0.0F;
+  const Strengths sum = strengths();
+  const double remembered = std::max(static_cast<double>(channels_[0][0]), 1.0);
+  const double brightness = std::clamp(channels_[0][1] / remembered, kDarkest, kBrightest);
+  const double pale = kPale * count_;
+  const double expected = brightness * sum.remembered_sq + pale;
+  return static_cast<float>(std::clamp(std::log(expected / (std::max(sum.product, 0.0) + pale)), -1.0, 2.0));
 }
 
 float Likeness::contrast() const {

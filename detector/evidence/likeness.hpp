@@ -42,11 +42,24 @@ class Likeness {
   /// right angles, at most 2; 0 for fewer than a dozen pairs. A purple can is no red one, however alike their print.
   float hue_conflict() const;
 
+  /// How much weaker the colours seen are than the remembered ones, beyond what their brightness explains: logarithm of
+  /// the expected strength in the a*b* plane over the one seen in the remembered hues, -1 to 2; 0 where no colour is
+  /// remembered, and for fewer than a dozen pairs. A black carton is no dark red one.
+  float paleness() const;
+
  private:
   /// Sums of a, b, a * a, b * b and a * b.
   using Sums = std::array<std::int32_t, 5>;  // exact for 33 000 pairs, many times what a view has
 
+  /// Of the colours in the a*b* plane, about grey and not about their mean: sums over all pairs.
+  struct Strengths {
+    double product = 0.0;
+    double remembered_sq = 0.0;
+    double seen_sq = 0.0;
+  };
+
   double seen_variance(std::size_t channel) const;
+  Strengths strengths() const;
 
   int count_ = 0;
   std::array<Sums, 3> channels_{};

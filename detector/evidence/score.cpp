@@ -53,6 +53,7 @@ ScoreTerms score_terms(const Evidence& evidence) {
   terms.contrast = fit.contrast;
   terms.extent_likeness = terms.extent * fit.likeness;
   terms.contrast_likeness = fit.contrast * fit.likeness;
+  terms.paleness = fit.paleness;
   return terms;
 }
 

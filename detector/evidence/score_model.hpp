@@ -36,9 +36,10 @@ struct ScoreTerms {
   float contrast = 0.0F;         ///< see Likeness
   float extent_likeness = 0.0F;  ///< products
   float contrast_likeness = 0.0F;
+  float paleness = 0.0F;  ///< see Likeness
 };
 
-constexpr std::size_t kScoreTerms = 25;
+constexpr std::size_t kScoreTerms = 26;
 
 /// All of them, in the order in which the fit sums them and the forest file holds them.
 constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {&ScoreTerms::constant,
@@ -65,7 +66,8 @@ constexpr std::array<float ScoreTerms::*, kScoreTerms> kScoreTermList = {&ScoreT
                                                                          &ScoreTerms::extent,
                                                                          &ScoreTerms::contrast,
                                                                          &ScoreTerms::extent_likeness,
-                                                                         &ScoreTerms::contrast_likeness};
+                                                                         &ScoreTerms::contrast_likeness,
+                                                                         &ScoreTerms::paleness};
 static_assert(sizeof(ScoreTerms) == kScoreTerms * sizeof(float), "a term is missing in the list");
 
 /// The weights that are assumed before any example is seen: even odds at about a third of the expected mass.

@@ -10,11 +10,12 @@ float agreement(const ViewFit& fit) {
          0.2F * fit.hue_conflict;
 }
 
-PlacedView align_view(const std::vector<TrainedView>& views, PlacedView placed, const LabFrame& frame) {
+PlacedView align_view(const std::vector<TrainedView>& views, PlacedView placed, const LabFrame& frame,
+                      float step_cells) {
   constexpr int kSteps = 4;
   const TrainedView& view = views[placed.view];
-  const float right = (view.box[2] - view.box[0]) / Appearance::kBoxSide;
-  const float down = (view.box[3] - view.box[1]) / Appearance::kBoxSide;
+  const float right = step_cells * (view.box[2] - view.box[0]) / Appearance::kBoxSide;
+  const float down = step_cells * (view.box[3] - view.box[1]) / Appearance::kBoxSide;
   const std::array<Eigen::Vector3f, 4> moves = {Eigen::Vector3f(right, 0, 0), Eigen::Vector3f(-right, 0, 0),
                                                 Eigen::Vector3f(0, down, 0), Eigen::Vector3f(0, -down, 0)};
   std::size_t back = moves.size();  // the move to where it came from, which was worse; moves lie in opposite pairs
@@ -39,15 +40,15 @@ const PlacedView& best_unaligned(const std::vector<PlacedView>& compared) {
   return *std::max_element(compared.begin(), compared.end(), worse);
 }
 
-PlacedView best_aligned(const std::vector<TrainedView>& views, const std::vector<PlacedView>& compared,
-                        const LabFrame& frame) {
-  constexpr float kFarBehind = 0.3F;  // in agreement: aligning gains less
-  PlacedView best = best_unaligned(compared);
-  const float least = agreement(best.fit) - kFarBehind;
-  for (const PlacedView& seen : compared) {
-    if (agreement(seen.fit) < least) continue;
-    const PlacedView aligned = align_view(views, seen, frame);
-    if (agreement(aligned.fit) > agreement(best.fit)) best = aligned;
+PlacedView align_best_few(const std::vector<TrainedView>& views, const LabFrame& frame,
+                          std::vector<PlacedView>& compared) {
+  constexpr std::size_t kFew = 4;
+  const auto better = [](const PlacedView& a, const PlacedView& b) { return agreement(a.fit) > agreement(b.fit); };
+  std::stable_sort(compared.begin(), compared.end(), better);
+  PlacedView best = compared.front();
+  for (std::size_t i = 0; i < std::min(kFew, compared.size()); ++i) {
+    compared[i] = align_view(views, compared[i], frame);
+    if (agreement(compared[i].fit) > agreement(best.fit)) best = compared[i];
   }
   return best;
 }

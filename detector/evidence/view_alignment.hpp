@@ -17,17 +17,18 @@ struct PlacedView {
   ViewFit fit;
 };
 
-/// Moves the view sideways, cell by cell of its relief and at most a few of them, to where it agrees best: votes meet
-/// within a few centimetres only. The result agrees at least as well.
-PlacedView align_view(const std::vector<TrainedView>& views, PlacedView placed, const LabFrame& frame);
+/// Moves the view sideways, by cells of its relief or parts of them and at most a few times, to where it agrees best:
+/// votes meet within a few centimetres only. The result agrees at least as well.
+PlacedView align_view(const std::vector<TrainedView>& views, PlacedView placed, const LabFrame& frame,
+                      float step_cells = 1.0F);
 
 /// The one that agrees best where it stands; ties go to the first. `compared` is not empty.
 const PlacedView& best_unaligned(const std::vector<PlacedView>& compared);
 
-/// That of the views, each aligned, which then agrees best. Those that agree far worse than the best where they stand
-/// are left out.
-PlacedView best_aligned(const std::vector<TrainedView>& views, const std::vector<PlacedView>& compared,
-                        const LabFrame& frame);
+/// Sorts the views by how they agree where they stand, best first, aligns the first few, and returns that which then
+/// agrees best. `compared` is not empty.
+PlacedView align_best_few(const std::vector<TrainedView>& views, const LabFrame& frame,
+                          std::vector<PlacedView>& compared);
 
 /// How much better the view agrees where it stands if it is taken for one of a smaller or larger object, whichever
 /// agrees better; mostly below 0 if the object has its own size.

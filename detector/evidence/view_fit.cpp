@@ -189,20 +189,30 @@ Tally tally_cells(const Comparison& comparison, float shift, float tolerance) {
   return tally;
 }
 
+/// The level whose pixels show about as much as a cell does: what is finer than what is remembered would be noise.
+std::size_t level_of(float cell_width, const LabLevels& levels) {
+  constexpr float kAveraged = 3.0F;  // pixels of a level: what each of them is the mean of
+  const int level = static_cast<int>(std::lround(std::log2(std::max(cell_width, kAveraged) / kAveraged)));
+  return std::min(static_cast<std::size_t>(level), levels.size() - 1);
+}
+
 /// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
 Likeness compare_colours(const Comparison& comparison, const Tally& tally, const Appearance& appearance,
                          const LabFrame& frame) {
   std::array<int, kSide> x_px{};
   std::array<int, kSide> y_px{};
+  const std::size_t level = level_of(0.5F * (comparison.cell_width + comparison.cell_height) * frame.scale, frame.lab);
+  const cv::Mat& lab = frame.lab[level];
+  const float scale = frame.scale / static_cast<float>(1U << level);
   for (std::size_t i = 0; i < kSide; ++i) {
     const cv::Point2f px = comparison.cell_centre(i, i);
-    x_px[i] = std::min(static_cast<int>(px.x * frame.scale), frame.lab.cols - 1);
-    y_px[i] = std::min(static_cast<int>(px.y * frame.scale), frame.lab.rows - 1);
+    x_px[i] = std::min(static_cast<int>(px.x * scale), lab.cols - 1);
+    y_px[i] = std::min(static_cast<int>(px.y * scale), lab.rows - 1);
   }
   Likeness likeness;
   for (std::size_t i = 0; i < tally.shown; ++i) {
     const Cell cell = tally.shown_cells[i];
-    likeness.add(appearance.lab[cell.index], frame.lab.ptr<cv::Vec3b>(y_px[cell.row])[x_px[cell.column]]);
+    likeness.add(appearance.lab[cell.index], lab.ptr<cv::Vec3b>(y_px[cell.row])[x_px[cell.column]]);
   }
   return likeness;
 }
@@ -226,6 +236,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   fit.likeness = likeness.correlation();
   fit.foreign_colour = likeness.foreign_colour();
   fit.hue_conflict = likeness.hue_conflict();
+  fit.paleness = likeness.paleness();
   fit.contrast = likeness.contrast();
   fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;

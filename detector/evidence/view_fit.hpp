@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/types/frame.hpp"
 
@@ -10,8 +11,8 @@ namespace houghstream {
 /// A frame with its colours as views remember them.
 struct LabFrame {
   const RgbdFrame& frame;
-  cv::Mat lab;         ///< see averaged_lab
-  float scale = 1.0F;  ///< its size over the frame's
+  LabLevels lab;       ///< see averaged_lab
+  float scale = 1.0F;  ///< size of the first level over the frame's
 };
 
 /// How a remembered training view, put at a hypothesis' centre, agrees with the depth image: shares of the view's
@@ -26,6 +27,7 @@ struct ViewFit {
   float likeness = 0.0F;        ///< of the colours of what is visible or unknown with the remembered ones, -1 to 1
   float foreign_colour = 0.0F;  ///< see Likeness
   float hue_conflict = 0.0F;    ///< see Likeness
+  float paleness = 0.0F;        ///< see Likeness
   float contrast = 0.0F;        ///< see Likeness
   cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is
 };

@@ -154,10 +154,15 @@ WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& leve
   return out;
 }
 
-void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, cv::Mat& lab) {
-  forget_shared(lab);
+void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab) {
+  for (cv::Mat& level : lab) forget_shared(level);
   cv::blur(colour, blurred, cv::Size(3, 3));
-  cv::cvtColor(blurred, lab, cv::COLOR_BGR2Lab);
+  cv::cvtColor(blurred, lab[0], cv::COLOR_BGR2Lab);
+  for (std::size_t level = 1; level < lab.size(); ++level) {
+    const cv::Mat& finer = lab[level - 1];
+    const cv::Size half((finer.cols + 1) / 2, (finer.rows + 1) / 2);
+    cv::resize(finer, lab[level], half, 0, 0, cv::INTER_AREA);
+  }
 }
 
 void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings, int threads, WorkingImages& images) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -37,15 +38,18 @@ WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const Featu
 /// The same for a level of a scale space.
 WorkingFrame make_working_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
 
+/// A picture, and this at half the size, a quarter and an eighth.
+using LabLevels = std::array<cv::Mat, 4>;
+
 /// The colours of a BGR image as remembered views are compared with: CV_8UC3, CIE L*a*b*, each pixel the mean of 3x3,
 /// since dim light is noisy. `blurred` is overwritten.
-void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, cv::Mat& lab);
+void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab);
 
 /// The images that the stages of a search look at, with the memory that is kept for the next frame's.
 struct WorkingImages {
   std::vector<FeatureLevel> levels;
   std::vector<WorkingFrame> frames;  ///< one for each level
-  cv::Mat lab;                       ///< averaged_lab of the first level
+  LabLevels lab;                     ///< averaged_lab of the first level
   std::vector<HoleMemory> holes;     ///< one for each level
   cv::Mat blurred;
 };

@@ -58,6 +58,11 @@ void append_tree(const Forest& tree, Forest& forest) {
   forest.leaf_views.insert(forest.leaf_views.end(), tree.leaf_views.begin(), tree.leaf_views.end());
 }
 
+/// Where nothing is to be composed, the score keeps the weights that are assumed before.
+bool learns_scores(const TrainingSettings& settings) {
+  return settings.scoring == Scoring::kEvidence && settings.validation_frames > 0;
+}
+
 /// Who learns from which views: the score must not learn from rooms that the trees know by heart.
 struct Rooms {
   std::vector<const TrainingView*> objects;
@@ -65,20 +70,21 @@ struct Rooms {
   std::vector<const TrainingView*> for_score;  ///< rooms
 };
 
-Rooms share_rooms(const std::vector<TrainingView>& views, Scoring scoring) {
+Rooms share_rooms(const std::vector<TrainingView>& views, const TrainingSettings& settings) {
   constexpr std::size_t kFew = 6;  // rooms for the score, of which trees need twice as many
   const auto is_a_room = [](const TrainingView& view) { return view.class_id == 0; };
   const auto all = static_cast<std::size_t>(std::count_if(views.begin(), views.end(), is_a_room));
   const std::size_t every = std::clamp<std::size_t>(all / kFew, 3, 6);
+  const bool learns_score = learns_scores(settings);
   Rooms rooms;
   std::size_t count = 0;
   for (const TrainingView& view : views) {
     const bool is_room = is_a_room(view);
-    const bool for_score = is_room && scoring == Scoring::kEvidence && ++count % every == 0;
+    const bool for_score = is_room && learns_score && ++count % every == 0;
     if (!is_room) rooms.objects.push_back(&view);
     (for_score ? rooms.for_score : rooms.for_trees).push_back(&view);
   }
-  if (!rooms.for_score.empty()) return rooms;
+  if (!learns_score || !rooms.for_score.empty()) return rooms;
   for (const TrainingView& view : views) {  // too few to share
     if (view.class_id == 0) rooms.for_score.push_back(&view);
   }
@@ -130,7 +136,7 @@ void number_after(const Forest& old, std::vector<TrainingView>& views) {
 Forest train_forest(const std::vector<TrainingView>& views, const Profile& profile, const Progress& progress) {
   require_extensions(profile.features, fmt::format("profile '{}'", profile.name));
   const TrainingSettings& settings = profile.training;
-  const Rooms rooms = share_rooms(views, settings.scoring);
+  const Rooms rooms = share_rooms(views, settings);
   TrainingSet set = make_training_set(rooms.for_trees, profile);
   progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.pictures.size(),
                        set.classes.size(), set.layout.planes()));
@@ -146,7 +152,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   note_view_neighbours(forest);
   pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
-  if (settings.scoring == Scoring::kVotes) return forest;
+  if (!learns_scores(settings)) return forest;
   learn_scores(rooms, profile, forest);
   progress(
       fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
@@ -159,7 +165,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   require(profile.training.trees == static_cast<int>(old.roots.size()),
           "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
   number_after(old, views);
-  const Rooms rooms = share_rooms(views, profile.training.scoring);
+  const Rooms rooms = share_rooms(views, profile.training);
   TrainingSet set = make_training_set(rooms.for_trees, profile);
   set.first_class = static_cast<std::uint16_t>(old.classes.size());
   set.first_view = static_cast<std::uint32_t>(old.views.size());
@@ -179,7 +185,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   note_view_neighbours(forest);
   pack_trees(forest);
   calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
-  if (forest.scoring == Scoring::kEvidence) learn_scores(rooms, profile, forest);
+  if (learns_scores(profile.training)) learn_scores(rooms, profile, forest);
   return forest;
 }
 

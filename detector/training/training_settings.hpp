@@ -26,6 +26,7 @@ struct TrainingSettings {
   int patches_per_view = 250;   ///< of a training view
   int patches_per_room = 250;   ///< of a background frame
   int composites_per_view = 3;  ///< pictures made of one view: other background, distance and light
+  int views_per_picture = 1;    ///< trees see one of so many views; the others are only remembered, for the evidence
   int spare_background = 10;    ///< background patches looked through for each one drawn blindly, see hard_negatives
   /// The background weighs as much as all objects together, but at most as so many: what a patch is worth to an object
   /// does not depend on how many others were taught.

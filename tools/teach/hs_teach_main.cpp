@@ -27,9 +27,9 @@ std::vector<std::string> split(const std::string& list) {
 
 void add_practice_options(CommandLine& command, TeachOptions& options) {
   command
-      .add_option("--practice-frames", options.practice.frames,
-                  "pictures of rooms in which scores and qualities are learnt")
-      .range(10, 10000)
+      .add_option("--practice-rooms", options.practice.rooms,
+                  "rendered rooms in which scores and qualities are learnt, three pictures of each")
+      .range(3, 10000)
       .capture_default_str();
   command.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
   command.add_option("--threads", options.threads, "any number gives the same store")

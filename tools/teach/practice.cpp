@@ -1,9 +1,12 @@
 #include "tools/teach/practice.hpp"
 
+#include <opencv2/imgproc.hpp>
+
 #include "detector/detector.hpp"
 #include "detector/stages.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "detector/training/pictures/camera_variation.hpp"
+#include "detector/training/pictures/sensor_errors.hpp"
 #include "detector/training/score_training.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pose/verification/quality_training.hpp"
@@ -14,19 +17,28 @@ namespace {
 
 constexpr std::uint64_t kCameras = 0x63616D657261ULL;
 
-/// Rendered once, looked at twice.
+/// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
 std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>& objects,
                                              const PracticeSettings& settings) {
   std::vector<world::PracticeObject> in_room;
   for (const PractisedObject& object : objects) in_room.push_back(object.in_room);
   const world::PracticeScenes scenes(std::move(in_room), settings.seed);
-  std::vector<world::SceneFrame> frames(static_cast<std::size_t>(settings.frames));
-  parallel_for(settings.threads, settings.frames, [&](int i) {
-    world::SceneFrame& frame = frames[static_cast<std::size_t>(i)];
-    frame = scenes.render(i);
-    frame.visible_masks.clear();
-    Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(i));
-    training::look_through_another(settings.camera_share, settings.camera_variation, frame.frame, random);
+  constexpr int kEach = world::PracticeScenes::kFramesPerRoom;
+  std::vector<world::SceneFrame> frames(static_cast<std::size_t>(settings.rooms * kEach));
+  parallel_for(settings.threads, settings.rooms, [&](int room) {
+    int index = room * kEach;
+    for (world::SceneFrame& frame : scenes.render(room)) {
+      Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(index));
+      for (const cv::Mat& mask : frame.visible_masks) {
+        const cv::Rect part = cv::boundingRect(mask);
+        cv::Mat colour = frame.frame.colour(part);
+        training::resurface(mask(part), settings.surface_variation, random, colour);
+      }
+      frame.visible_masks.clear();
+      training::look_through_another(settings.camera_share, settings.camera_variation, frame.frame, random);
+      frames[static_cast<std::size_t>(index)] = std::move(frame);
+      ++index;
+    }
   });
   return frames;
 }

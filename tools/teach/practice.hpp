@@ -21,9 +21,10 @@ struct PractisedObject {
 };
 
 struct PracticeSettings {
-  int frames = 120;
-  double camera_share = 0.9;      ///< of the frames, that another camera sees than the one that taught
-  double camera_variation = 1.2;  ///< see detector/training/pictures/camera_variation.hpp
+  int rooms = 60;                  ///< each is looked at world::PracticeScenes::kFramesPerRoom times
+  double surface_variation = 0.6;  ///< strength of the changes of objects' colours, see training::resurface
+  double camera_share = 0.8;       ///< of the frames, that another camera sees than the one that taught
+  double camera_variation = 0.8;   ///< see detector/training/pictures/camera_variation.hpp
   std::uint64_t seed = 1;
   int threads = 2;
 };

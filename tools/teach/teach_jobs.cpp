@@ -88,9 +88,9 @@ void require_new(const ObjectStore& old, const std::vector<TaughtMesh>& meshes) 
 
 /// So many views of each of so many objects: the fewer, the more there is time and memory for.
 int views_of_each(std::size_t objects) {
-  constexpr int kAll = 6300;
-  constexpr int kFewest = 640;
-  constexpr int kMost = 1100;
+  constexpr int kAll = 12600;
+  constexpr int kFewest = 1280;
+  constexpr int kMost = 2200;
   return std::clamp(kAll / static_cast<int>(objects), kFewest, kMost);
 }
 
@@ -209,6 +209,7 @@ Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>
   constexpr int kPatches = 26000;  // of an object: what trees are grown of, and how long that takes
   constexpr int kFewestPatches = 40;
   constexpr int kMostPatches = 250;
+  constexpr int kViewsPerPicture = 2;  // a remembered view costs a tenth of one that trees learn from
   Profile profile = options.profile;
   if (old) {
     profile = training::profile_of(*old);
@@ -220,7 +221,9 @@ Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>
   }
   profile.training.validation_frames = 0;    // practice tells more
   profile.training.composites_per_view = 1;  // another view tells more than another room
-  profile.training.patches_per_view = std::clamp(kPatches / most_views(views), kFewestPatches, kMostPatches);
+  profile.training.views_per_picture = kViewsPerPicture;
+  const int pictures = std::max(most_views(views) / kViewsPerPicture, 1);
+  profile.training.patches_per_view = std::clamp(kPatches / pictures, kFewestPatches, kMostPatches);
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
   const auto report = [&](const std::string& line) { progress(line); };
@@ -297,7 +300,7 @@ void teach_meshes(const TeachOptions& options) {
   practice.seed = options.seed;
   practice.threads = options.threads;
   practise_all(models, new_ids, practice, forest, made);
-  progress(fmt::format("scores and qualities learnt in {} pictures of rooms", options.practice.frames));
+  progress(fmt::format("scores and qualities learnt in {} rooms", options.practice.rooms));
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
   write_store(made, models, forest);
   build.publish();
@@ -339,7 +342,7 @@ void practise_store(const fs::path& folder, const PracticeSettings& settings) {
   practise_all(models, ids, settings, forest, made);
   write_store(made, models, forest);
   build.publish();
-  progress(fmt::format("scores and qualities learnt in {} pictures of rooms", settings.frames));
+  progress(fmt::format("scores and qualities learnt in {} rooms", settings.rooms));
 }
 
 }  // namespace houghstream::teach

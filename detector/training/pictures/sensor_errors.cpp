@@ -87,12 +87,12 @@ TrainingView bent(const TrainingView& view, double strength, Random& random) {
   return out;
 }
 
-TrainingView resurfaced(const TrainingView& view, double strength, Random& random) {
+void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour) {
   constexpr double kCast = 0.15;        // stops, each channel
   constexpr double kGamma = 0.3;        // powers of two
   constexpr double kUneven = 0.35;      // stops, deviation
   constexpr double kMostBlur_px = 1.5;  // standard deviation
-  if (strength <= 0.0) return view;
+  if (strength <= 0.0) return;
   const double saturation = std::exp2(strength * random.uniform(-0.8, 0.5));
   const double gamma = std::exp2(strength * kGamma * random.uniform(-1.0, 1.0));
   std::array<double, 3> gain{};
@@ -104,21 +104,19 @@ TrainingView resurfaced(const TrainingView& view, double strength, Random& rando
       coarse.at<float>(y, x) = static_cast<float>(std::exp2(uneven * random.normal()));
   }
   cv::Mat light;
-  cv::resize(coarse, light, view.mask.size(), 0, 0, cv::INTER_CUBIC);
+  cv::resize(coarse, light, mask.size(), 0, 0, cv::INTER_CUBIC);
   const double blur_px = strength * kMostBlur_px * random.uniform(-1.0, 1.0);
-  TrainingView out = view;
-  out.frame.colour = view.frame.colour.clone();  // the view's own pixels stay as they are
   if (blur_px > 0.2) {
     cv::Mat blurred;
-    cv::GaussianBlur(view.frame.colour, blurred, {0, 0}, blur_px);
-    blurred.copyTo(out.frame.colour, view.mask);
+    cv::GaussianBlur(colour, blurred, {0, 0}, blur_px);
+    blurred.copyTo(colour, mask);
   }
   std::array<double, 256> tone{};
   for (std::size_t v = 0; v < tone.size(); ++v) tone[v] = 255.0 * std::pow(static_cast<double>(v) / 255.0, gamma);
-  for (int y = 0; y < view.mask.rows; ++y) {
-    for (int x = 0; x < view.mask.cols; ++x) {
-      if (view.mask.at<std::uint8_t>(y, x) == 0) continue;
-      cv::Vec3b& pixel = out.frame.colour.at<cv::Vec3b>(y, x);
+  for (int y = 0; y < mask.rows; ++y) {
+    for (int x = 0; x < mask.cols; ++x) {
+      if (mask.at<std::uint8_t>(y, x) == 0) continue;
+      cv::Vec3b& pixel = colour.at<cv::Vec3b>(y, x);
       std::array<double, 3> bgr{};
       for (std::size_t c = 0; c < 3; ++c) bgr[c] = light.at<float>(y, x) * gain[c] * tone[pixel[static_cast<int>(c)]];
       const double grey = 0.114 * bgr[0] + 0.587 * bgr[1] + 0.299 * bgr[2];  // ITU-R BT.601
@@ -126,6 +124,12 @@ TrainingView resurfaced(const TrainingView& view, double strength, Random& rando
         pixel[static_cast<int>(c)] = cv::saturate_cast<std::uint8_t>(grey + saturation * (bgr[c] - grey));
     }
   }
+}
+
+TrainingView resurfaced(const TrainingView& view, double strength, Random& random) {
+  TrainingView out = view;
+  out.frame.colour = view.frame.colour.clone();  // the view's own pixels stay as they are
+  resurface(out.mask, strength, random, out.frame.colour);
   return out;
 }
 

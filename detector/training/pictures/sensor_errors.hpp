@@ -25,6 +25,9 @@ TrainingView bent(const TrainingView& view, double strength, Random& random);
 /// and it may be less sharp. More or less with `strength`, 0 = none.
 TrainingView resurfaced(const TrainingView& view, double strength, Random& random);
 
+/// The same, in a picture: `colour` is CV_8UC3, `mask` CV_8UC1 of its size and not 0 on the object.
+void resurface(const cv::Mat& mask, double strength, Random& random, cv::Mat& colour);
+
 /// What a structured-light camera makes of what stands too near: its own pattern dazzles it. Surfaces nearer than
 /// `limit` metres keep their depth in patches only, of random size and together a share of `kept`, 0 to 1. `depth` is
 /// CV_32FC1, metres, NaN = none.

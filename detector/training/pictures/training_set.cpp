@@ -51,6 +51,16 @@ std::vector<ObjectClass> list_classes(const std::vector<const TrainingView*>& vi
   return classes;
 }
 
+/// One of `every` views of each class, whose labels these are.
+std::vector<std::size_t> views_in_pictures(const std::vector<int>& labels, int every) {
+  std::map<int, int> counts;
+  std::vector<std::size_t> chosen;
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    if (counts[labels[v]]++ % every == 0) chosen.push_back(v);
+  }
+  return chosen;
+}
+
 void measure_classes(const std::vector<TrainingPicture>& pictures, TrainingSet& set) {
   for (std::size_t c = 0; c < set.classes.size(); ++c) {
     std::vector<float> distances;
@@ -110,7 +120,8 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
   }
   const std::vector<FeatureLevel> levels = feature_levels(profile.features);
   const int copies = settings.composites_per_view;
-  const int object_count = static_cast<int>(objects.size()) * copies;
+  const std::vector<std::size_t> pictured = views_in_pictures(labels, settings.views_per_picture);
+  const int object_count = static_cast<int>(pictured.size()) * copies;
   const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundPictures;
   std::vector<TrainingPicture> pictures(static_cast<std::size_t>(total));
   PerWorker<PictureWorkspace> workspaces;
@@ -119,7 +130,7 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     Random random = Random::for_item(settings.seed, static_cast<std::uint64_t>(i));
     auto& picture = pictures[static_cast<std::size_t>(i)];
     if (i < object_count) {
-      const auto v = static_cast<std::size_t>(i / copies);
+      const std::size_t v = pictured[static_cast<std::size_t>(i / copies)];
       const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
       picture = object_picture({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, profile,
                                random, workspaces[worker]);

@@ -68,6 +68,25 @@ float hue_conflict(cv::Point remembered, cv::Point seen) {
   return of_plain(remembered, seen).hue_conflict();
 }
 
+/// Of a plain colour, remembered with L* 120 and seen in another brightness.
+float paleness(cv::Point remembered, int seen_brightness, cv::Point seen) {
+  Likeness likeness;
+  for (int i = 0; i < 100; ++i) {
+    likeness.add({120, static_cast<std::uint8_t>(128 + remembered.x), static_cast<std::uint8_t>(128 + remembered.y)},
+                 {static_cast<std::uint8_t>(seen_brightness), static_cast<std::uint8_t>(128 + seen.x),
+                  static_cast<std::uint8_t>(128 + seen.y)});
+  }
+  return likeness.paleness();
+}
+
+TEST(Paleness, IsWhatBrightnessDoesNotExplain) {
+  EXPECT_NEAR(paleness({40, 30}, 60, {20, 15}), 0.0F, 1e-3F) << "half the light";
+  EXPECT_NEAR(paleness({40, 30}, 120, {20, 15}), std::log(2620.0F / 1370.0F), 1e-3F) << "half the colour";
+  EXPECT_GT(paleness({40, 30}, 40, {1, 1}), 1.5F) << "black instead of red";
+  EXPECT_NEAR(paleness({0, 0}, 200, {10, 0}), 0.0F, 1e-3F) << "no colour remembered";
+  EXPECT_LT(paleness({20, 0}, 120, {40, 0}), -0.2F) << "stronger";
+}
+
 TEST(ForeignColour, IsTheDistanceInTensThatNoStrengthExplains) {
   EXPECT_NEAR(between_plain({0, 0}, {30, 0}), 3.0F, 1e-3F);
   EXPECT_NEAR(between_plain({20, 0}, {20, 10}), 1.0F, 1e-3F);

@@ -26,7 +26,7 @@ inline TrainedView remembered_view() {
 /// The frame with another picture's colours, `scale` times its size, as views are compared with it.
 inline LabFrame lab_frame(const RgbdFrame& frame, const cv::Mat& colour, float scale) {
   cv::Mat blurred;
-  cv::Mat lab;
+  LabLevels lab;
   averaged_lab(colour, blurred, lab);
   return {frame, lab, scale};
 }

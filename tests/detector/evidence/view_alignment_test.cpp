@@ -49,13 +49,14 @@ TEST(ViewAlignment, TheViewThatAgreesBestOnceAlignedIsTaken) {
   wrong.box[2] -= cell;
   for (auto& lab : wrong.appearance.lab) lab = {128, 128, 128};
   const std::vector<TrainedView> views = {right, wrong};
-  const std::vector<PlacedView> compared = {{0, beside, fit_view(right, beside, frame)},
-                                            {1, beside, fit_view(wrong, beside, frame)}};
+  std::vector<PlacedView> compared = {{0, beside, fit_view(right, beside, frame)},
+                                      {1, beside, fit_view(wrong, beside, frame)}};
   ASSERT_EQ(best_unaligned(compared).view, 1U);
-  const PlacedView aligned = best_aligned(views, compared, frame);
+  const std::vector<PlacedView> before = compared;
+  const PlacedView aligned = align_best_few(views, frame, compared);
   EXPECT_EQ(aligned.view, 0U);
-  EXPECT_EQ(agreement(aligned.fit), agreement(align_view(views, compared[0], frame).fit));
-  EXPECT_GT(agreement(aligned.fit), agreement(align_view(views, compared[1], frame).fit));
+  EXPECT_EQ(agreement(aligned.fit), agreement(align_view(views, before[0], frame).fit));
+  EXPECT_GT(agreement(aligned.fit), agreement(align_view(views, before[1], frame).fit));
 }
 
 TEST(ViewAlignment, AnObjectOfAnotherSizeAgreesBetterInThatSize) {

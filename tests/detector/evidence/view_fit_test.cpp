@@ -17,9 +17,7 @@ using toy::kDistance;
 const Eigen::Vector3f kCentre(0.0F, 0.0F, kDistance);
 
 ViewFit fit(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
-  cv::Mat lab;
-  cv::cvtColor(frame.colour, lab, cv::COLOR_BGR2Lab);
-  return fit_view(toy::remembered_view(), centre, {frame, lab, 1.0F});
+  return fit_view(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
 }
 
 RgbdFrame tile_frame() {
@@ -154,9 +152,27 @@ TEST(ViewFit, ColoursAreAveragedOverNeighbours) {
   const LabFrame in_lab = toy::lab_frame(frame, speck, 0.5F);
   cv::Mat lab;
   cv::cvtColor(cv::Mat(1, 1, CV_8UC3, cv::Scalar(100, 100, 100)), lab, cv::COLOR_BGR2Lab);
-  EXPECT_EQ(in_lab.lab.at<cv::Vec3b>(4, 4), lab.at<cv::Vec3b>(0, 0));
-  EXPECT_EQ(in_lab.lab.at<cv::Vec3b>(3, 5), lab.at<cv::Vec3b>(0, 0));
+  EXPECT_EQ(in_lab.lab[0].at<cv::Vec3b>(4, 4), lab.at<cv::Vec3b>(0, 0));
+  EXPECT_EQ(in_lab.lab[0].at<cv::Vec3b>(3, 5), lab.at<cv::Vec3b>(0, 0));
   EXPECT_EQ(in_lab.scale, 0.5F);
+}
+
+TEST(ViewFit, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
+  constexpr int kLarger = 4;
+  RgbdFrame frame = tile_frame();
+  const float of_itself = fit(frame).likeness;
+  cv::resize(frame.colour.clone(), frame.colour, {}, kLarger, kLarger, cv::INTER_NEAREST);
+  cv::resize(frame.depth.clone(), frame.depth, {}, kLarger, kLarger, cv::INTER_NEAREST);
+  Camera& camera = frame.camera;
+  camera = {kLarger * camera.width, kLarger * camera.height,           kLarger * camera.fx,
+            kLarger * camera.fy,    kLarger * (camera.cx + 0.5) - 0.5, kLarger * (camera.cy + 0.5) - 0.5};
+  for (int y = 0; y < frame.colour.rows; ++y) {
+    for (int x = 0; x < frame.colour.cols; ++x) {
+      cv::Vec3b& pixel = frame.colour.at<cv::Vec3b>(y, x);
+      for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<std::uint8_t>(pixel[c] + (x / 3 % 2 == 0 ? 60 : -60));
+    }
+  }
+  EXPECT_GT(fit(frame).likeness, of_itself - 0.15F);
 }
 
 TEST(ViewFit, OutsideTheFrameNothingIsCompared) {

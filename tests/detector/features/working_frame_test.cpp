@@ -48,11 +48,11 @@ TEST(WorkingImages, MemoryIsUsedAgainButNeverThatOfTheFrameItself) {
   EXPECT_EQ(images.frames[0].colour.at<cv::Vec3b>(3, 3), cv::Vec3b(90, 90, 90));
   const auto* colour = images.frames[0].colour.data;
   const auto* depth = images.frames[0].filled_depth.data;
-  const auto* lab = images.lab.data;
+  const auto* lab = images.lab[0].data;
   make_working_images(large, half, 1, images);
   EXPECT_EQ(images.frames[0].colour.data, colour);
   EXPECT_EQ(images.frames[0].filled_depth.data, depth);
-  EXPECT_EQ(images.lab.data, lab);
+  EXPECT_EQ(images.lab[0].data, lab);
 }
 
 TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
@@ -71,9 +71,9 @@ TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
       EXPECT_EQ(cv::norm(images.frames[l].filled_depth, expected.filled_depth, cv::NORM_INF), 0.0);
     }
     cv::Mat blurred;
-    cv::Mat lab;
+    LabLevels lab;
     averaged_lab(images.frames[0].colour, blurred, lab);
-    EXPECT_EQ(cv::norm(images.lab, lab, cv::NORM_INF), 0.0);
+    for (std::size_t l = 0; l < lab.size(); ++l) EXPECT_EQ(cv::norm(images.lab[l], lab[l], cv::NORM_INF), 0.0);
   }
 }
 

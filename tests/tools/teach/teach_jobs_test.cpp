@@ -28,7 +28,7 @@ TeachOptions quick_options(const fs::path& folder, const std::string& mesh) {
   options.profile.training.tests_per_node = 100;
   options.profile.training.patches_per_view = 60;
   options.profile.training.composites_per_view = 1;
-  options.practice.frames = 8;
+  options.practice.rooms = 3;
   return options;
 }
 

@@ -21,17 +21,24 @@ constexpr int kMostDistractors = 12;
 constexpr int kMostLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
-/// Turned hues, darker or brighter.
+/// Turned hues, or next to none; darker or brighter.
 cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
+  constexpr double kGreyed = 0.35;
   cv::Mat hsv_image;
   cv::cvtColor(bgr, hsv_image, cv::COLOR_BGR2HSV);
+  const bool is_grey = chance(random, kGreyed);
   const int turn = random.between(40, 140);
-  const double lightness = random.uniform(0.5, 1.2);
+  const double strength = random.uniform(0.0, 0.4);
+  const double lightness = random.uniform(is_grey ? 0.15 : 0.5, 1.2);
   for (int y = 0; y < hsv_image.rows; ++y) {
     for (int x = 0; x < hsv_image.cols; ++x) {
       cv::Vec3b& pixel = hsv_image.at<cv::Vec3b>(y, x);
-      pixel[0] = static_cast<std::uint8_t>((pixel[0] + turn) % 180);
-      pixel[1] = std::max<std::uint8_t>(pixel[1], 60);  // what is grey takes on a colour
+      if (is_grey) {
+        pixel[1] = cv::saturate_cast<std::uint8_t>(strength * pixel[1]);
+      } else {
+        pixel[0] = static_cast<std::uint8_t>((pixel[0] + turn) % 180);
+        pixel[1] = std::max<std::uint8_t>(pixel[1], 60);  // what is grey takes on a colour
+      }
       pixel[2] = cv::saturate_cast<std::uint8_t>(lightness * pixel[2]);
     }
   }
@@ -40,26 +47,50 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   return out;
 }
 
-/// Nearly the object: of other colours, clearly smaller or larger, or of other proportions, as another package of the
-/// same make is.
+/// The same picture, begun elsewhere: its colours stay, what is printed where does not.
+cv::Mat moved_round(const cv::Mat& picture, Random& random) {
+  const int right = static_cast<int>(picture.cols * random.uniform(0.2, 0.8));
+  const int down = static_cast<int>(picture.rows * random.uniform(0.2, 0.8));
+  cv::Mat out(picture.size(), picture.type());
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x)
+      out.at<cv::Vec3b>((y + down) % picture.rows, (x + right) % picture.cols) = picture.at<cv::Vec3b>(y, x);
+  }
+  return out;
+}
+
+/// The mesh with another print or in other colours.
+void repaint(bool other_print, bool other_colours, Random& random, Mesh& mesh) {
+  const auto painted = [&](cv::Mat picture) {
+    if (other_print) picture = moved_round(picture, random);
+    return other_colours ? recoloured(picture, random) : picture;
+  };
+  if (!mesh.texture.empty()) {
+    mesh.texture = painted(mesh.texture);
+    return;
+  }
+  const cv::Mat colours = painted(cv::Mat(1, static_cast<int>(mesh.colours.size()), CV_8UC3, mesh.colours.data()));
+  std::copy_n(colours.clone().ptr<cv::Vec3b>(), mesh.colours.size(), mesh.colours.begin());
+}
+
+/// Nearly the object: clearly smaller or larger, of other proportions, in other colours, or with another print, as
+/// other packages are.
 ThingPtr look_alike(const Thing& thing, Random& random) {
   Mesh mesh = thing.mesh;
   const double sort = random.uniform();
-  if (sort < 0.3) {
+  if (sort < 0.2) {
     const auto size = static_cast<float>(chance(random, 0.5) ? random.uniform(0.55, 0.75) : random.uniform(1.33, 1.7));
     for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= size;
-  } else if (sort < 0.65) {
+  } else if (sort < 0.4) {
     const Eigen::Vector3f sizes(static_cast<float>(random.uniform(0.5, 1.6)),
                                 static_cast<float>(random.uniform(0.5, 1.6)),
                                 static_cast<float>(random.uniform(0.5, 1.6)));
     for (Eigen::Vector3f& vertex : mesh.vertices) vertex = vertex.cwiseProduct(sizes);
     compute_normals(mesh);
-  } else if (!mesh.texture.empty()) {
-    mesh.texture = recoloured(mesh.texture, random);
+  } else if (sort < 0.55) {
+    repaint(false, true, random, mesh);
   } else {
-    const cv::Mat colours(1, static_cast<int>(mesh.colours.size()), CV_8UC3, mesh.colours.data());
-    const cv::Mat other = recoloured(colours, random);
-    std::copy_n(other.ptr<cv::Vec3b>(), mesh.colours.size(), mesh.colours.begin());
+    repaint(true, chance(random, 0.6), random, mesh);
   }
   return make_thing(thing.name, std::move(mesh), thing.gloss);
 }
@@ -82,15 +113,25 @@ Group put_down(const PracticeObject& object, const ThingPtr& thing, int id, Rand
   return {placed};
 }
 
+/// With the field of view of any camera in use: 33 to 67 degrees wide.
+Camera draw_camera(Random& random) {
+  Camera camera = synthetic_camera();
+  camera.fx = std::exp(random.uniform(std::log(480.0), std::log(1080.0)));
+  camera.fy = camera.fx;
+  return camera;
+}
+
 /// Looks at one of the objects, from anywhere above the table.
-Eigen::Isometry3d draw_camera(const World& world, Random& random) {
+Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   std::vector<Eigen::Vector3d> places;
   for (const Placed& item : world.items) {
     if (item.object_id != 0) places.push_back(item.T_world_object.translation());
   }
   Eigen::Vector3d target = places.empty() ? Eigen::Vector3d(0.0, 0.0, 0.05) : pick(random, places);
   target += Eigen::Vector3d(random.uniform(-0.2, 0.2), random.uniform(-0.15, 0.15), random.uniform(-0.05, 0.1));
-  const double distance = std::exp(random.uniform(std::log(0.5), std::log(1.8)));
+  // A narrower view is used from farther away, and yet shows everything larger.
+  const double narrower = std::pow(world.camera.fx / synthetic_camera().fx, 0.4);
+  const double distance = narrower * std::exp(random.uniform(std::log(0.5), std::log(1.8)));
   const double elevation = random.uniform(0.22, 1.25);
   const double azimuth = random.uniform(-0.9, 0.9);
   const Eigen::Vector3d eye =
@@ -109,6 +150,8 @@ World PracticeScenes::furnished(int room) const {
   Room walls = make_room(static_cast<RoomStyle>(room % kRoomStyles), aspect_seed(own, 1));
   world.items = std::move(walls.items);
   set_light_and_photo(world, room % 3 == 2 ? TimeOfDay::kEvening : TimeOfDay::kDay, aspect_seed(own, 2));
+  Random lens(aspect_seed(own, 4));
+  world.camera = draw_camera(lens);
   TableSetter setter(world, walls.table_half, aspect_seed(own, 3));
   Random& random = setter.random();
   const double reach = random.uniform(0.35, 0.8);  // near together they hide one another
@@ -133,13 +176,16 @@ World PracticeScenes::furnished(int room) const {
   return world;
 }
 
-SceneFrame PracticeScenes::render(int index) const {
-  const int room = index / kFramesPerRoom;
-  const LitWorld lit_world = light_world(furnished(room));
-  const std::uint64_t own =
-      aspect_seed(world_seed(WorldUse::kTraining, seed_), kFirstRoom + static_cast<std::uint64_t>(index));
-  Random random(own);
-  return render_frame(lit_world, draw_camera(lit_world.world, random), aspect_seed(own, 1));
+std::array<SceneFrame, PracticeScenes::kFramesPerRoom> PracticeScenes::render(int room) const {
+  const LitWorld lit_world = light_world(furnished(room));  // takes as long as a frame
+  std::array<SceneFrame, kFramesPerRoom> frames;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::uint64_t index = frames.size() * static_cast<std::uint64_t>(room) + i;
+    const std::uint64_t own = aspect_seed(world_seed(WorldUse::kTraining, seed_), kFirstRoom + index);
+    Random random(own);
+    frames[i] = render_frame(lit_world, draw_viewpoint(lit_world.world, random), aspect_seed(own, 1));
+  }
+  return frames;
 }
 
 }  // namespace houghstream::world

@@ -22,14 +22,14 @@ struct PracticeObject {
 /// from views never are. Rooms of training seeds that neither views nor backgrounds use.
 class PracticeScenes {
  public:
+  static constexpr int kFramesPerRoom = 3;
+
   /// `objects` is not empty.
   PracticeScenes(std::vector<PracticeObject> objects, std::uint64_t seed) : objects_(std::move(objects)), seed_(seed) {}
 
-  /// Frame `index`, from 0: kFramesPerRoom of them look at one room, from different sides and distances. The truth
-  /// names objects by PracticeObject::id. Same arguments, same frame; thread-safe.
-  SceneFrame render(int index) const;
-
-  static constexpr int kFramesPerRoom = 2;
+  /// Looks at room `room`, from 0, from different sides and distances. The truth names objects by PracticeObject::id.
+  /// Same arguments, same frames; thread-safe.
+  std::array<SceneFrame, kFramesPerRoom> render(int room) const;
 
  private:
   World furnished(int room) const;

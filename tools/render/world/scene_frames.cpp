@@ -51,10 +51,6 @@ void add_truth(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_worl
 
 }  // namespace
 
-Camera synthetic_camera() {
-  return {640, 480, 525.0, 525.0, 319.5, 239.5};
-}
-
 SensorKind parse_sensor(const std::string& name) {
   if (name == "structured_light") return SensorKind::kStructuredLight;
   if (name == "time_of_flight") return SensorKind::kTimeOfFlight;
@@ -64,7 +60,7 @@ SensorKind parse_sensor(const std::string& name) {
 SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
                         SensorKind sensor) {
   SceneFrame result;
-  result.frame.camera = synthetic_camera();
+  result.frame.camera = lit_world.world.camera;
   const ShadedView view = shade_view(lit_world, result.frame.camera, T_camera_world);
   result.frame.colour = take_photo(view.radiance, lit_world.world.photo, aspect_seed(noise_seed, 1));
   const SensorView seen{view.geometry.depth, view.cos_incidence, view.reflectance, view.gloss};

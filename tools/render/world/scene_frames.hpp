@@ -10,9 +10,6 @@
 
 namespace houghstream::world {
 
-/// The camera of everything rendered: 640x480, as the usual structured-light cameras.
-Camera synthetic_camera();
-
 /// A rendered frame with the truth about the taught objects in it.
 struct SceneFrame {
   RgbdFrame frame;

@@ -2,6 +2,10 @@
 
 namespace houghstream::world {
 
+Camera synthetic_camera() {
+  return {640, 480, 525.0, 525.0, 319.5, 239.5};
+}
+
 Eigen::Isometry3d look_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world) {
   const Eigen::Vector3d forward = (target_world - eye_world).normalized();
   Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());

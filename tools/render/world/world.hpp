@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "pipeline/types/camera.hpp"
 #include "tools/render/world/rooms/thing.hpp"
 
 // A world to be photographed. World frame: z up, metres, origin on the middle of the table top (or turntable).
@@ -36,12 +37,16 @@ struct PhotoSettings {
   Eigen::Vector3f white_balance_bgr = Eigen::Vector3f::Ones();
 };
 
+/// The camera of nearly everything rendered: 640x480, as the usual structured-light cameras.
+Camera synthetic_camera();
+
 struct World {
   std::vector<Placed> items;
   std::vector<Light> lights;
   Eigen::Vector3f ambient_bgr = Eigen::Vector3f::Constant(0.3F);  ///< linear light from everywhere
   double focus_radius_m = 1.2;  ///< shadows are kept within this distance of the origin
   PhotoSettings photo;
+  Camera camera = synthetic_camera();
 };
 
 /// Camera at `eye` looking at `target` with the picture upright.

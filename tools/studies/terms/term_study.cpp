@@ -41,7 +41,8 @@ constexpr std::array<const char*, kScoreTerms> kNames = {"constant",
                                                          "extent",
                                                          "contrast",
                                                          "extent_likeness",
-                                                         "contrast_likeness"};
+                                                         "contrast_likeness",
+                                                         "paleness"};
 static_assert(kNames.back() != nullptr, "a term has no name");
 
 Sample sample_of(const Candidate& candidate, const ScoreModel& model) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
@@ -116,6 +117,24 @@ TEST(TrainingSet, AnyNumberOfThreadsGivesTheSameSamples) {
   ASSERT_EQ(serial.classes.size(), 2U);
   EXPECT_EQ(serial.classes[0].name, "stripes");
   EXPECT_EQ(serial.classes[1].name, "rings");
+}
+
+TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
+  const std::vector<TrainingView> views = toy::training_views();
+  Profile profile = toy::quick_profile();
+  profile.training.views_per_picture = 2;
+  std::vector<const TrainingView*> pointers;
+  for (const TrainingView& view : views) pointers.push_back(&view);
+  const TrainingSet set = make_training_set(pointers, profile);
+  EXPECT_EQ(set.views.size(), teach(views, 0.8F).views.size());
+  std::set<std::uint32_t> with_patches;
+  for (const TrainingSample& sample : set.samples) {
+    if (sample.label != 0) with_patches.insert(sample.view);
+  }
+  EXPECT_EQ(with_patches.size(), (set.views.size() + 1) / 2);
+  std::set<std::uint32_t> classes;
+  for (const std::uint32_t view : with_patches) classes.insert(set.views[view].class_index);
+  EXPECT_EQ(classes.size(), 2U);
 }
 
 TEST(TrainingSet, WhatCannotBeTaughtIsRefused) {

@@ -110,12 +110,15 @@ Support TippingBody::support(const Eigen::Vector3d& down) const {
 Eigen::Vector3d TippingBody::tipped(const Eigen::Vector3d& down, const Support& support, const Eigen::Vector2d& pivot,
                                     const Eigen::Vector2d& towards) const {
   const Eigen::Vector3d forward = support.in_object(towards);
-  double least = M_PI;
+  const double pivot_ahead = pivot.dot(towards);
+  double steepest =
+      -std::numeric_limits<double>::infinity();  // cotangent of the turn: an angle for each point takes long
   for (const Eigen::Vector3d& point : points_) {
     const double above = support.height_m - down.dot(point);
-    const double ahead = forward.dot(point) - pivot.dot(towards);
-    if (above > kTouchM) least = std::min(least, std::atan2(above, ahead));
+    const double ahead = forward.dot(point) - pivot_ahead;
+    if (above > kTouchM) steepest = std::max(steepest, ahead / above);
   }
+  const double least = std::atan2(1.0, steepest);
   return (std::cos(least) * down + std::sin(least) * forward).normalized();
 }
 
