@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "tools/common/tool_main.hpp"
+#include "tools/teach/store_rename.hpp"
 #include "tools/teach/teach_jobs.hpp"
 
 // hs-teach: objects are taught from their meshes, into an object store.
@@ -68,6 +69,7 @@ int main(int argc, char** argv) {
   Lists lists;
   std::filesystem::path folder;
   std::string name;
+  std::string new_name;
   cv::setNumThreads(1);  // views are rendered in parallel, each on one thread
   CommandLine app("Teaches objects from their meshes, into an object store for hs-detect and hs-pose", "hs-teach");
   app.require_subcommand();
@@ -77,6 +79,10 @@ int main(int argc, char** argv) {
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
   remove.add_option("name", name, "of the object").required();
+  CommandLine rename = app.add_subcommand("rename", "gives an object of a store another name");
+  rename.add_option("store", folder, "object store").required();
+  rename.add_option("name", name, "of the object").required();
+  rename.add_option("new-name", new_name, "that it gets").required();
   CommandLine practise = app.add_subcommand("practise", "learns anew what detections and poses of a store are worth");
   practise.add_option("store", folder, "object store").required();
   add_practice_options(practise, options);
@@ -93,6 +99,8 @@ int main(int argc, char** argv) {
       practise_store(folder, options.practice);
     } else if (list.given()) {
       list_store(folder);
+    } else if (rename.given()) {
+      rename_in_store(folder, name, new_name);
     } else {
       remove_from_store(folder, name);
     }

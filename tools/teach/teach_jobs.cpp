@@ -138,11 +138,6 @@ std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes) {
   return models;
 }
 
-std::string title_of(const StoredObject& object) {
-  return fmt::format("{} (object {}): {} views, {}{}", object.name, object.id, object.views, object.attitudes,
-                     object.coloured ? "" : ", colour unknown");
-}
-
 /// Views of all objects, in order; their pictures go to the store, and to the dump where one is wanted.
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
                                      ObjectStore& made, const Progress& progress) {
