@@ -24,16 +24,28 @@ ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& cam
   return viewed;
 }
 
+std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
+  require(settings.models.empty() || settings.objects.empty(), "expected either --objects STORE or --models FOLDER");
+  ClassModels models;
+  if (!settings.models.empty()) models = load_class_models(settings.models, settings.model_unit_m);
+  return std::make_shared<const ClassModels>(std::move(models));
+}
+
 }  // namespace
 
 FrameShow::FrameShow(const ShowSettings& settings)
-    : models_(settings.models.empty() ? ClassModels() : load_class_models(settings.models, settings.model_unit_m)),
+    : models_(load_models(settings)),
       window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
       outputs_(settings.outputs),
       camera_(settings.camera),
       picture_settings_(settings.picture),
       preview_(settings.preview) {
   picture_settings_.show_keys = window_ != nullptr;
+  if (settings.objects.empty()) return;
+  store_ = std::make_unique<store::StoreWatch<ClassModels>>(settings.objects, [](const store::ObjectStore& store) {
+    return std::make_shared<const ClassModels>(store::load_store_meshes(store));
+  });
+  store_->follow();
 }
 
 void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
@@ -74,7 +86,7 @@ std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher&
 }
 
 cv::Mat FrameShow::draw(const ViewedFrame& viewed) const {
-  return draw_frame_view(viewed, models_, picture_settings_, stream_);
+  return draw_frame_view(viewed, *models(), picture_settings_, stream_);
 }
 
 void FrameShow::remember(const ViewedFrame& viewed) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "drivers/store/store_watch.hpp"
 #include "tools/view/bus_watcher.hpp"
 #include "tools/view/drawing/frame_view.hpp"
 #include "tools/view/view_outputs.hpp"
@@ -16,6 +17,7 @@ struct ShowSettings {
   std::optional<Camera> camera;  ///< of frames that carry none of their own
   std::string models;            ///< folder of models for outlines; "" = none
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
+  std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
   FrameViewSettings picture;
   bool preview = false;  ///< send each picture on the preview channel
   OutputSettings outputs;
@@ -29,7 +31,7 @@ struct ShowSettings {
 /// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
 class FrameShow {
  public:
-  /// Throws InputError where there are no models, no display or no folder to write to.
+  /// Throws InputError where there are no models, a store and a folder of models, no display or no folder to write to.
   explicit FrameShow(const ShowSettings& settings);
 
   /// Shows a frame, unless paused or another camera is shown by now. One that cannot be understood is reported to
@@ -46,9 +48,11 @@ class FrameShow {
  private:
   std::optional<cv::Mat> drawn(const MatchedFrame& matched, BusWatcher& watcher);
   cv::Mat draw(const ViewedFrame& viewed) const;
+  std::shared_ptr<const ClassModels> models() const { return store_ ? store_->current() : models_; }
   void remember(const ViewedFrame& viewed);
 
-  ClassModels models_;
+  std::shared_ptr<const ClassModels> models_;
+  std::unique_ptr<store::StoreWatch<ClassModels>> store_;
   std::unique_ptr<ViewWindow> window_;
   ViewOutputs outputs_;
   std::optional<Camera> camera_;

@@ -4,9 +4,12 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "pipeline/types/teaching.hpp"
 
 namespace houghstream::view {
 
@@ -25,6 +28,7 @@ struct ProcessState {
 struct StreamState {
   double frames_hz = 0.0;               ///< frames of the camera that arrive here per second
   std::vector<ProcessState> processes;  ///< those heard of late, by name
+  std::optional<Teaching> teaching;     ///< of an object that is shown just now
 };
 
 /// Keeps the rates of a stream. Every function may be called from any thread; times are microseconds of one clock.
@@ -32,14 +36,17 @@ class StreamWatch {
  public:
   void note_frame(std::int64_t now_us);
   void note_process(ProcessState process);
+  void note_teaching(Teaching teaching, std::int64_t now_us);
 
-  /// A process that has been silent for five seconds is gone.
+  /// A process that has been silent for five seconds is gone, and so is a teaching.
   StreamState state(std::int64_t now_us);
 
  private:
   std::mutex mutex_;
   std::deque<std::int64_t> arrivals_us_;
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
+  std::optional<Teaching> teaching_;
+  std::int64_t taught_us_ = 0;  // when it was heard
 };
 
 }  // namespace houghstream::view
