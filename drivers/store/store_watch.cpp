@@ -87,7 +87,7 @@ KnownObjects StoreFollower::known() const {
 }
 
 void StoreFollower::live(std::chrono::milliseconds period) {
-  constexpr int kPolite = 19;  // on Linux of this thread only: frames go first
+  constexpr int kPolite = 10;  // on Linux of this thread only: frames go first, and still it gets its turn
   if (nice(kPolite) == -1) log_warning("{}: is loaded at full priority: it cannot be lowered", folder_.string());
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, period, [this] { return ending_; })) {
