@@ -11,7 +11,6 @@
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "tools/view/match_queue.hpp"
-#include "tools/view/shown_camera.hpp"
 #include "tools/view/stream_watch.hpp"
 
 namespace houghstream::view {

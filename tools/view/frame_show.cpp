@@ -33,7 +33,7 @@ std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
 
 }  // namespace
 
-FrameShow::FrameShow(const ShowSettings& settings)
+FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
     : models_(load_models(settings)),
       window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
       outputs_(settings.outputs),
@@ -46,6 +46,10 @@ FrameShow::FrameShow(const ShowSettings& settings)
     return std::make_shared<const ClassModels>(store::load_store_meshes(store));
   });
   store_->follow();
+  picture_settings_.can_teach = true;
+  order_.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  order_.store = settings.objects;
+  order_.lcm_url = lcm_url;
 }
 
 void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
@@ -64,8 +68,22 @@ bool FrameShow::handle_keys(BusWatcher& watcher) {
   if (!window_) return true;
   const KeyAction action = window_->handle_keys(picture_settings_);
   if (action == KeyAction::kNextCamera) watcher.cameras().next();
+  if (action == KeyAction::kTeach) teach();
+  starter_.runs();
   if (action == KeyAction::kRedraw && viewed_) window_->show(draw(*viewed_), viewed_->frame.id);
   return action != KeyAction::kEnd;
+}
+
+void FrameShow::teach() {
+  if (!store_ || !viewed_) return;
+  std::vector<std::string> known;
+  for (const KnownObject& object : store_->known().objects) known.push_back(object.name);
+  order_.name = free_name(known);
+  order_.channel = viewed_->frame.id.channel;
+  const cv::Rect box = picture_settings_.box & cv::Rect({}, viewed_->frame.colour.size());
+  order_.box = box.empty() ? std::nullopt : std::optional<cv::Rect>(box);
+  picture_settings_.box = {};
+  starter_.press(order_);
 }
 
 std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher& watcher) {

@@ -7,6 +7,7 @@
 #include "drivers/store/store_watch.hpp"
 #include "tools/view/bus_watcher.hpp"
 #include "tools/view/drawing/frame_view.hpp"
+#include "tools/view/teaching_starter.hpp"
 #include "tools/view/view_outputs.hpp"
 #include "tools/view/view_window.hpp"
 
@@ -31,8 +32,9 @@ struct ShowSettings {
 /// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
 class FrameShow {
  public:
+  /// A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the store, if there is one.
   /// Throws InputError where there are no models, a store and a folder of models, no display or no folder to write to.
-  explicit FrameShow(const ShowSettings& settings);
+  explicit FrameShow(const ShowSettings& settings, const std::string& lcm_url = "");
 
   /// Shows a frame, unless paused or another camera is shown by now. One that cannot be understood is reported to
   /// `watcher` and passed over. Throws InputError where a file cannot be written.
@@ -48,6 +50,7 @@ class FrameShow {
  private:
   std::optional<cv::Mat> drawn(const MatchedFrame& matched, BusWatcher& watcher);
   cv::Mat draw(const ViewedFrame& viewed) const;
+  void teach();
   std::shared_ptr<const ClassModels> models() const { return store_ ? store_->current() : models_; }
   void remember(const ViewedFrame& viewed);
 
@@ -60,6 +63,8 @@ class FrameShow {
   bool preview_;
   std::optional<ViewedFrame> viewed_;
   StreamView stream_;
+  TeachingOrder order_;
+  TeachingStarter starter_;
 };
 
 }  // namespace houghstream::view

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,28 @@ class StreamWatch {
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
   std::optional<Teaching> teaching_;
   std::int64_t taught_us_ = 0;  // when it was heard
+};
+
+/// Which camera's frames are shown, of those that are on the bus: the first that is heard until another one is asked
+/// for. May be used from any thread.
+class ShownCamera {
+ public:
+  /// A frame of this camera has come.
+  void note(const std::string& channel);
+
+  /// The next camera in the order of their names.
+  void next();
+
+  /// While none was heard, each one is.
+  bool is_shown(const std::string& channel) const;
+
+  /// The channels of all cameras that were heard, in order.
+  std::vector<std::string> heard() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<std::string> heard_;
+  std::string shown_;
 };
 
 }  // namespace houghstream::view
