@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -58,6 +59,14 @@ std::string changed(const char* what, const std::vector<KnownObject>& objects, c
 StoreFollower::StoreFollower(fs::path folder, Load load) : folder_(std::move(folder)), load_(std::move(load)) {
   known_.store = folder_.string();
   taken_ = state_of_store(folder_);  // what changes while it is read is noticed when it is followed
+  if (!fs::exists(folder_)) {
+    const fs::path beside = fs::absolute(folder_ / "").lexically_normal().parent_path().parent_path();
+    require(fs::is_directory(beside),
+            "{}: no such folder, expected an object store of hs-teach, or where it can make one", folder_.string());
+    refused_ = std::exchange(taken_, "");
+    set_problem(fmt::format("{}: not there yet, nothing is known until hs-teach makes it", folder_.string()));
+    return;
+  }
   const ObjectStore store = read_store(folder_);
   take_over(store, load_(store));
 }
@@ -134,8 +143,8 @@ void StoreFollower::take_over(const ObjectStore& store, std::shared_ptr<const vo
                                     [&](const KnownObject& earlier) { return earlier.name == object.name; });
     objects.push_back({object.name, known == known_.objects.end() ? now : known->since_utime});
   }
-  if (current_) {
-    retired_.push_back(std::move(current_));
+  if (current_) retired_.push_back(std::move(current_));
+  if (current_ || !known_.problem.empty()) {
     log_info("{}: {} objects from here on{}{}", known_.store, objects.size(), changed("new:", objects, known_.objects),
              changed("gone:", known_.objects, objects));
   }
@@ -148,7 +157,7 @@ void StoreFollower::set_problem(const std::string& problem) {
   const std::lock_guard lock(mutex_);
   if (problem == known_.problem) return;
   known_.problem = problem;
-  if (!problem.empty()) log_warning("{}; what was known stays", problem);
+  if (!problem.empty()) log_warning("{}{}", problem, current_ ? "; what was known stays" : "");
 }
 
 }  // namespace houghstream::store

@@ -23,7 +23,8 @@ class StoreFollower {
   using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
 
   /// Loads the store at once. `load` throws where its parts are bad; it may be called again later, from another thread.
-  /// Throws InputError as read_store() and `load` do.
+  /// Where there is no folder of this name yet, but one that it could be made in, nothing is known so far, and the log
+  /// says so. Throws InputError as read_store() and `load` do.
   StoreFollower(std::filesystem::path folder, Load load);
   ~StoreFollower();  ///< waits for a load that is under way
   StoreFollower(const StoreFollower&) = delete;
@@ -33,7 +34,7 @@ class StoreFollower {
   /// copies into it is at work for a while.
   void follow(std::chrono::milliseconds period);
 
-  /// What was loaded last.
+  /// What was loaded last; null while there is no store yet.
   std::shared_ptr<const void> current() const;
 
   KnownObjects known() const;

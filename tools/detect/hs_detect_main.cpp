@@ -52,10 +52,14 @@ void run_with_store(DetectOptions options) {
       options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options.search); });
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);
-  if (!bus.is_log()) watch.follow();  // all of a log is searched by the same
+  if (!bus.is_log()) watch.follow();  // all of a log goes by the same
+  require(!bus.is_log() || watch.current(), "{}: no such folder, expected an object store of hs-teach",
+          options.objects);
   DetectorWorkspace workspace;
-  run_detect_process(bus, options.process,
-                     [&](const RgbdFrame& frame) { return watch.current()->detect(frame, workspace); });
+  run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
+    const std::shared_ptr<const Detector> detector = watch.current();
+    return detector ? detector->detect(frame, workspace) : Detections{frame.id, {}, frame.stages};
+  });
 }
 
 }  // namespace
@@ -66,7 +70,8 @@ int main(int argc, char** argv) {
       "hs-detect");
   DetectOptions options;
   std::string camera;
-  app.add_option("--objects", options.objects, "object store of hs-teach; what it becomes meanwhile is taken over");
+  app.add_option("--objects", options.objects,
+                 "object store of hs-teach; it may be made, and changed, while this runs");
   app.add_option("--forest", options.forest_file, "forest file of hs-train, instead of --objects");
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   add_search_options(app, options.search);

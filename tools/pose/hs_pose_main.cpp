@@ -59,10 +59,16 @@ void run_with_store(PoseOptions options) {
     return std::make_shared<const PoseEstimator>(store::load_store_meshes(store), settings);
   };
   store::StoreWatch<PoseEstimator> watch(options.objects, load);
+  const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);
-  if (!bus.is_log()) watch.follow();  // all of a log by the same
-  run(bus, options.process, [&] { return watch.current(); });
+  if (!bus.is_log()) watch.follow();  // all of a log goes by the same
+  require(!bus.is_log() || watch.current(), "{}: no such folder, expected an object store of hs-teach",
+          options.objects);
+  run(bus, options.process, [&] {
+    std::shared_ptr<const PoseEstimator> estimator = watch.current();
+    return estimator ? estimator : without_models;
+  });
 }
 
 }  // namespace
@@ -72,7 +78,7 @@ int main(int argc, char** argv) {
   PoseOptions options;
   std::string camera;
   app.add_option("--objects", options.objects,
-                 "object store of hs-teach, instead of --models; what it becomes meanwhile is taken over");
+                 "object store of hs-teach, instead of --models; it may be made, and changed, while this runs");
   add_model_options(app, options.models, options.model_unit_m);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("--threads", options.settings.threads, "threads").range(1, 64).capture_default_str();

@@ -74,11 +74,17 @@ bool FrameShow::handle_keys(BusWatcher& watcher) {
   return action != KeyAction::kEnd;
 }
 
+std::shared_ptr<const ClassModels> FrameShow::models() const {
+  const std::shared_ptr<const ClassModels> of_store = store_ ? store_->current() : nullptr;
+  return of_store ? of_store : models_;
+}
+
 void FrameShow::teach() {
   if (!store_ || !viewed_) return;
   std::vector<std::string> known;
   for (const KnownObject& object : store_->known().objects) known.push_back(object.name);
   order_.name = free_name(known);
+  order_.joins_others = !known.empty();
   order_.channel = viewed_->frame.id.channel;
   const cv::Rect box = picture_settings_.box & cv::Rect({}, viewed_->frame.colour.size());
   order_.box = box.empty() ? std::nullopt : std::optional<cv::Rect>(box);

@@ -51,7 +51,7 @@ class FrameShow {
   std::optional<cv::Mat> drawn(const MatchedFrame& matched, BusWatcher& watcher);
   cv::Mat draw(const ViewedFrame& viewed) const;
   void teach();
-  std::shared_ptr<const ClassModels> models() const { return store_ ? store_->current() : models_; }
+  std::shared_ptr<const ClassModels> models() const;
   void remember(const ViewedFrame& viewed);
 
   std::shared_ptr<const ClassModels> models_;

@@ -18,9 +18,9 @@ std::vector<std::string> teaching_command(const TeachingOrder& order) {
                                     order.name,
                                     "--out",
                                     order.store,
-                                    "--add",
                                     "--channel",
                                     order.channel};
+  if (order.joins_others) words.emplace_back("--add");
   if (!order.lcm_url.empty()) words.insert(words.end(), {"--lcm-url", order.lcm_url});
   if (order.box) {
     words.insert(words.end(), {"--box", fmt::format("{},{},{},{}", order.box->x, order.box->y, order.box->width,

@@ -14,7 +14,8 @@ namespace houghstream::view {
 /// What is to be taught of the stream that is shown.
 struct TeachingOrder {
   std::filesystem::path executables;  ///< folder of hs-teach
-  std::string store;                  ///< that the object joins
+  std::string store;                  ///< that the object joins,
+  bool joins_others = true;           ///< or that is made for it
   std::string name;                   ///< that it gets
   std::string channel;                ///< of the frames
   std::string lcm_url;                ///< "" = LCM's default

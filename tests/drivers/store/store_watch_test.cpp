@@ -107,6 +107,21 @@ TEST(StoreWatch, ABadOneKeepsTheOldAndIsSaidOnce) {
   EXPECT_EQ(lines_with("2 objects from here on; new: bowl; gone: brick"), 1) << said;
 }
 
+TEST(StoreWatch, OneThatIsNotThereYetIsAwaited) {
+  const fs::path folder = fresh_folder("watch_awaited") / "store";
+  Second watch(folder, load_second);
+  watch.follow(kPeriod);
+  EXPECT_EQ(watch.current(), nullptr);
+  EXPECT_TRUE(watch.known().objects.empty());
+  EXPECT_NE(watch.known().problem.find("not there yet"), std::string::npos) << watch.known().problem;
+  exchange(folder, "bowl");
+  ASSERT_TRUE(comes_true([&] { return watch.current() != nullptr; }));
+  EXPECT_EQ(*watch.current(), "bowl");
+  ASSERT_TRUE(comes_true([&] { return watch.known().problem.empty(); }));
+  EXPECT_EQ(names_of(watch.known()), (std::vector<std::string>{"mug", "bowl"}));
+  EXPECT_NE(error_of([&] { const Second none(folder / "no" / "such", load_second); }), "") << "nor could it be made";
+}
+
 TEST(StoreWatch, OfTwoStoresAtOnceNothingIsTaken) {
   const fs::path folder = whole_store("watch_mixed");
   std::atomic<bool> exchanges{false};

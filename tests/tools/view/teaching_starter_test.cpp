@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -13,12 +14,15 @@ namespace {
 using Words = std::vector<std::string>;
 
 TEST(TeachingStarter, TheCommandNamesStreamStoreAndObject) {
-  TeachingOrder order{"/bin", "my.store", "object_3", "LEFT", "", std::nullopt};
+  TeachingOrder order{"/bin", "my.store", true, "object_3", "LEFT", "", std::nullopt};
   EXPECT_EQ(teaching_command(order), (Words{"/bin/hs-teach", "show", "--from-stream", "--name", "object_3", "--out",
-                                            "my.store", "--add", "--channel", "LEFT"}));
+                                            "my.store", "--channel", "LEFT", "--add"}));
   order.lcm_url = "udpm://x";
   order.box = cv::Rect(1, 2, 30, 40);
   const Words words = teaching_command(order);
+  order.joins_others = false;
+  const Words first = teaching_command(order);
+  EXPECT_EQ(std::count(first.begin(), first.end(), "--add"), 0) << "the first object makes the store";
   EXPECT_EQ(Words(words.end() - 4, words.end()), (Words{"--lcm-url", "udpm://x", "--box", "1,2,30,40"}));
 }
 
@@ -41,7 +45,7 @@ TEST(TeachingStarter, TheKeyStartsItAndEndsItsTakeOnce) {
              "while :; do sleep 0.05; done\n");
   std::filesystem::permissions(folder / "hs-teach", std::filesystem::perms::owner_all);
   const std::filesystem::path said = folder / "said";
-  const TeachingOrder order{folder, said.string(), "object_1", "LEFT", "", std::nullopt};
+  const TeachingOrder order{folder, said.string(), true, "object_1", "LEFT", "", std::nullopt};
   TeachingStarter starter;
   EXPECT_FALSE(starter.runs());
   starter.press(order);
@@ -55,7 +59,7 @@ TEST(TeachingStarter, TheKeyStartsItAndEndsItsTakeOnce) {
   starter.press(order);
   ASSERT_TRUE(comes_true([&] { return read_text(said) == "start\ntake\ntaught\nstart\n"; })) << "the next one";
   TeachingStarter without;
-  without.press({folder / "nowhere", "", "", "", "", std::nullopt});
+  without.press({folder / "nowhere", "", false, "", "", "", std::nullopt});
   EXPECT_FALSE(without.runs());
 }
 
