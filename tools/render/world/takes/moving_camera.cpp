@@ -62,35 +62,34 @@ void smear(const cv::Mat& ways, cv::Mat& radiance) {
   radiance = result;
 }
 
-/// One below the other.
-class Bands {
- public:
-  void add(const ShadedView& view, const cv::Mat& ways) {
-    depth_.push_back(view.geometry.depth);
-    id_.push_back(view.geometry.id);
-    triangle_.push_back(view.geometry.triangle);
-    bary_.push_back(view.geometry.bary);
-    radiance_.push_back(view.radiance);
-    cos_incidence_.push_back(view.cos_incidence);
-    reflectance_.push_back(view.reflectance);
-    gloss_.push_back(view.gloss);
-    ways_.push_back(ways);
-  }
+/// A view of the whole image, without contents.
+ShadedView empty_view(const cv::Size& size) {
+  ShadedView view;
+  view.geometry = {cv::Mat(size, CV_32FC1), cv::Mat(size, CV_16UC1), cv::Mat(size, CV_32SC1), cv::Mat(size, CV_32FC2)};
+  view.radiance.create(size, CV_32FC3);
+  view.cos_incidence.create(size, CV_32FC1);
+  view.reflectance.create(size, CV_32FC1);
+  view.gloss.create(size, CV_32FC1);
+  return view;
+}
 
-  ShadedView joined() && {
-    smear(ways_, radiance_);
-    return {{depth_, id_, triangle_, bary_}, radiance_, cos_incidence_, reflectance_, gloss_};
-  }
-
- private:
-  cv::Mat depth_, id_, triangle_, bary_, radiance_, cos_incidence_, reflectance_, gloss_, ways_;
-};
+void copy_band(const ShadedView& band, const cv::Range& rows, const ShadedView& whole) {
+  band.geometry.depth.copyTo(whole.geometry.depth.rowRange(rows));
+  band.geometry.id.copyTo(whole.geometry.id.rowRange(rows));
+  band.geometry.triangle.copyTo(whole.geometry.triangle.rowRange(rows));
+  band.geometry.bary.copyTo(whole.geometry.bary.rowRange(rows));
+  band.radiance.copyTo(whole.radiance.rowRange(rows));
+  band.cos_incidence.copyTo(whole.cos_incidence.rowRange(rows));
+  band.reflectance.copyTo(whole.reflectance.rowRange(rows));
+  band.gloss.copyTo(whole.gloss.rowRange(rows));
+}
 
 }  // namespace
 
 ShadedView expose(LitWorld lit_world, const Camera& camera, const Motion& motion, double seconds,
                   const Shutter& shutter) {
-  Bands bands;
+  ShadedView whole = empty_view({camera.width, camera.height});
+  cv::Mat ways(whole.radiance.size(), CV_32FC2);
   for (int band = 0; band < kBands; ++band) {
     const int first = camera.height * band / kBands;
     const int last = camera.height * (band + 1) / kBands;
@@ -102,9 +101,11 @@ ShadedView expose(LitWorld lit_world, const Camera& camera, const Motion& motion
       T_later_now[i] = T_later_now[i] * (T_camera_world * lit_world.world.items[i].T_world_object).inverse();
     }
     const ShadedView view = shade_view(lit_world, camera, T_camera_world, {0, first, camera.width, last - first});
-    bands.add(view, half_ways(view, camera, first, T_later_now));
+    copy_band(view, {first, last}, whole);
+    half_ways(view, camera, first, T_later_now).copyTo(ways.rowRange(first, last));
   }
-  return std::move(bands).joined();
+  smear(ways, whole.radiance);
+  return whole;
 }
 
 }  // namespace houghstream::world

@@ -29,7 +29,7 @@ constexpr double kTallestBesideM = 0.13;  // what stands about must not hide the
 constexpr double kComeShare = 0.18;
 constexpr double kTurnShare = 0.5;
 constexpr double kGoShare = 0.18;
-constexpr double kAwayM = 0.45;
+constexpr double kAwayM = 0.6;
 
 double eased(double share) {
   const double t = std::clamp(share, 0.0, 1.0);
@@ -93,7 +93,7 @@ void TakeStage::put_object(const TakePlan& plan) {
   } else {
     placed.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, 0.5 * height(*object.thing)));
   }
-  if (kind_ == TakeKind::kTurntable) add_turntable();
+  if (kind_ == TakeKind::kTurntable) add_turntable(plan);
   const double aside = kind_ == TakeKind::kTurntable ? 0.01 : 0.03;
   Eigen::Isometry3d T_world_place = Eigen::Isometry3d::Identity();
   T_world_place.translate(Eigen::Vector3d(random.uniform(-aside, aside), random.uniform(-aside, aside),
@@ -104,8 +104,8 @@ void TakeStage::put_object(const TakePlan& plan) {
   world_.items.push_back(placed);
 }
 
-void TakeStage::add_turntable() {
-  Random random(aspect_seed(seed_, kTurning));
+void TakeStage::add_turntable(const TakePlan& plan) {
+  Random random(aspect_seed(world_seed(plan.use, kFirstWorld + plan.number), kTurning));
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
   const ThingPtr disc = make_thing("turntable", turned_mesh({{0.16, 0.0}, {0.16, kDiscM}}, cover), 0.08F);
   turntable_ = world_.items.size();
@@ -138,7 +138,6 @@ Eigen::Isometry3d TakeStage::object_at(double turned_rad) const {
 }
 
 void TakeStage::add_hands() {
-  Random random(aspect_seed(seed_, kTurning));
   const Eigen::Vector3d eye = T_still_world_.inverse().translation();
   HeldPlace place;
   place.views = {T_still_world_};
@@ -151,6 +150,7 @@ void TakeStage::add_hands() {
     object.T_world_object = object_at(stroke.start_rad);
     // From the camera's right, or its left.
     place.arm_azimuth_rad = std::atan2(eye.y(), eye.x()) + (i % 2 == 0 ? 1.2 : -1.2);
+    Random random(aspect_seed(seed_, kTurning));  // the same skin and sleeve each time
     const Placed hand = take_hold(object, place, random);
     stroke.T_object_hand = object.T_world_object.inverse() * hand.T_world_object;
     stroke.hand = world_.items.size();

@@ -61,7 +61,7 @@ class TakeStage {
 
   void furnish(const TakePlan& plan);
   void put_object(const TakePlan& plan);
-  void add_turntable();
+  void add_turntable(const TakePlan& plan);
   void add_hands();
   void choose_camera(const TakePlan& plan);
   Eigen::Isometry3d object_at(double turned_rad) const;
