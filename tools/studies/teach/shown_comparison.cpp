@@ -11,7 +11,7 @@
 namespace houghstream::studies {
 namespace {
 
-constexpr int kPoints = 20000;
+constexpr int kPoints = 6000;
 constexpr std::uint64_t kSeed = 1;
 constexpr double kMissing_m = 0.005;
 constexpr double kDegrees = 180.0 / M_PI;
@@ -96,11 +96,12 @@ std::vector<double> distances(const std::vector<Eigen::Vector3f>& points, const 
 
 /// Points of the true surface that some frames saw, nothing of the object itself before them.
 std::vector<Eigen::Vector3f> seen_points(const TrueTakes& takes, const std::vector<Eigen::Vector3f>& points) {
-  constexpr std::size_t kEvery = 6;  // frames
+  constexpr std::size_t kFrames = 40;  // of each scene
   constexpr double kBehind_m = 0.003;
   std::vector<bool> seen(points.size(), false);
   for (std::size_t s = 0; s < takes.scenes.size(); ++s) {
-    for (std::size_t f = 0; f < takes.scenes[s].images().size(); f += kEvery) {
+    const std::size_t step = std::max<std::size_t>(1, takes.scenes[s].images().size() / kFrames);
+    for (std::size_t f = 0; f < takes.scenes[s].images().size(); f += step) {
       const TrueObject* object = true_object(takes, s, f);
       if (object == nullptr) continue;
       const Camera& camera = takes.scenes[s].images()[f].camera;
