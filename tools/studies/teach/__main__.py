@@ -5,13 +5,15 @@ import pathlib
 import sys
 
 from studies.command import Options, die, positive, prepare, step
+from studies.stream import enter_private_network
 from studies.work import UnitFailed, locked
 
 # As hs-render takes orders them; those of the scenes objects_20_b, _d and _f.
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can", "teapot", "tumbler", "shampoo_bottle", "food_tin", "tea_box",
            "office_stapler", "toy_truck", "flashlight")  # fmt: skip
 QUICK = ("cereal_box", "coffee_mug")
-TARGETS = ("hs-render", "hs-teach", "hs-evaluate", "hs-compare-shown", "hs-capture", "hs-detect", "hs-pose")
+TARGETS = ("hs-render", "hs-teach", "hs-evaluate", "hs-compare-shown", "hs-capture", "hs-detect", "hs-pose",
+           "hs-observe")  # fmt: skip
 
 
 def known_objects(text):
@@ -52,6 +54,8 @@ def parse(words):
 def main():
     options = parse(sys.argv[1:])
     options.programs = pathlib.Path(prepare(options, TARGETS))
+    if options.stream:
+        enter_private_network()
     from studies.teach import report  # needs what has been installed
 
     try:

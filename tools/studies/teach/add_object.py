@@ -2,7 +2,7 @@
 afterwards, the one before where the object was refused; OUT/taught.json says how it went.
 
 Usage: add_object.py --program HS_TEACH --out DIR [--before STORE] -- WORDS OF HS-TEACH
-In the words, {store} and {kept} become OUT/store and OUT/kept; --add is given where there is a store before."""
+The words name OUT/store as hs-teach's --out; --add is given where there is a store before."""
 
 import argparse
 import json
@@ -18,11 +18,9 @@ SAID = 40  # lines
 
 def teach(program, out, before, words):
     """What hs-teach answered; raises where it ended otherwise."""
-    store, kept = out / "store", out / "kept"
     if before and before.is_dir():
-        shutil.copytree(before, store)
+        shutil.copytree(before, out / "store")
         words = [*words, "--add"]
-    words = [word.replace("{store}", str(store)).replace("{kept}", str(kept)) for word in words]
     begin = time.monotonic()
     done = subprocess.run([program, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     seconds = time.monotonic() - begin

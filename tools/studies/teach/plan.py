@@ -12,6 +12,9 @@ SCENES = ("objects_20_b", "objects_20_d")  # they hold the twelve objects, no ot
 DEVELOPMENT_SCENES = ("development_objects_20_b",)
 FRAMES = 120  # of a scene
 FPS = 15.0
+CAMERA_FPS = 30.0  # of the stream in which an object is taught
+STILL_CAMERA = ("teapot", "food_tin", "tea_box", "toy_truck")  # their takes have no camera that is carried
+STREAM_PROGRAMS = ("hs-teach", "hs-detect", "hs-pose")
 
 
 @dataclasses.dataclass
@@ -67,14 +70,14 @@ class Plan:
         """An object that joins the store which unit `before` has left, or begins one."""
         joins = ("--before", f"{{{before}}}/store") if before else ()
         return units.add(f"{kind}/{name}", "", "studies.teach.add_object", "--program", self.teach, "--out", "{out}",
-                         *joins, "--", *words, "--out", "{store}", "--seed", 1, "--threads", threads(),
+                         *joins, "--", *words, "--out", "{out}/store", "--seed", 1, "--threads", threads(),
                          of=self.teach_digest)  # fmt: skip
 
     def units_of_objects(self):
         units, shown, true = Units(), None, None
         for name in self.options.objects:
             takes = self.add_takes(units, name)
-            show = ("show", *self.sources(name), "--name", name, "--keep", "{kept}")
+            show = ("show", *self.sources(name), "--name", name, "--keep", "{out}/kept")
             shown = self.add_taught(units, name, "shown", shown, show)
             model = f"{{{takes}}}/models"
             true = self.add_taught(units, name, "true", true, ("mesh", model))
@@ -112,8 +115,37 @@ class Plan:
                           "{out}", *RANKED, of=made)  # fmt: skip
         return units
 
+    def taught_in_stream(self):
+        """(who is known before, who is taught), or None where too few are asked for."""
+        first, *others = self.options.objects
+        shown = [name for name in others if name not in STILL_CAMERA]
+        return (first, shown[-1]) if shown and self.options.stream else None
+
+    def units_of_stream(self, store, before, name):
+        """A take of thirty seconds at a camera's rate, then a scene that holds the object, to programs that run."""
+        units, options = Units(), self.options
+        number = 2 * self.all_objects().index(name) + 1
+        development = ("--development",) if options.development else ()
+        frames = round(CAMERA_FPS * (10 if options.quick else 30))
+        take = units.add("stream/take", "", "hs-render", "takes", "--objects", name, "--take", 1, "--frames", frames, "--fps",
+                         CAMERA_FPS, "--world", options.world, *development, "--threads", threads(), "--out",
+                         "{out}")  # fmt: skip
+        scene = units.add("stream/scene", "", "hs-render", "scene", self.scenes[0], "--frames", 2 * FRAMES, "--every", 2,
+                          "--threads", threads(), "--out", "{out}")  # fmt: skip
+        logs = {}
+        for what, folder in (("take", f"{{{take}}}/test/{number:06}"), ("scene", f"{{{scene}}}")):
+            logs[what] = units.add(f"stream/{what}.lcmlog", "", "hs-capture", "--source", f"bop:{folder}", "--rate",
+                                   CAMERA_FPS, "--jpeg-quality", 85, "--log", "{out}")  # fmt: skip
+        of = [sha256_of_file(options.programs / program) for program in STREAM_PROGRAMS]
+        of.append(store.record(store.units[f"true/{before}"])["made"])
+        units.add("stream/live", "", "studies.teach.live_teaching", "--programs", options.programs, "--store",
+                  store.path(f"true/{before}") / "store", "--name", name, "--take", f"{{{logs['take']}}}", "--after",
+                  f"{{{logs['scene']}}}", "--out", "{out}", of=" ".join(of))  # fmt: skip
+        return units
+
     def run(self):
-        """The folders of each object, by name, and the summaries of hs-evaluate by kind: shown, true."""
+        """The folders of each object, by name, the summaries of hs-evaluate by kind (shown, true), and how the teaching in
+        a stream went, or None."""
         store = self.make(self.units_of_objects())
         comparisons = self.make(self.units_of_comparisons(store))
         compared = {unit.name.split("/")[1]: comparisons.file(unit) for unit in comparisons.units.values()}
@@ -125,4 +157,8 @@ class Plan:
                                           read_json_if_any(shown / "kept" / "report.json"), compared.get(name))  # fmt: skip
         summaries = {kind: read_json(found.path(f"found/{kind}") / "summary.json")
                      for kind in ("shown", "true") if f"found/{kind}" in found.units}  # fmt: skip
-        return folders, summaries
+        return folders, summaries, self.run_stream(store)
+
+    def run_stream(self, store):
+        pair = self.taught_in_stream()
+        return read_json(self.make(self.units_of_stream(store, *pair)).path("stream/live") / "live.json") if pair else None

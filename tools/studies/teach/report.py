@@ -99,12 +99,19 @@ def least(values):
     return min(known) if known else None
 
 
-def summarise(options, folders, summaries):
+def stream_figures(live):
+    """What is said of the teaching in a stream."""
+    if live is None:
+        return {"seconds_to_found": None, "stream": None}
+    kept = ("name", "seconds_to_taught", "frames", "lost", "skipped", "frame_rate_hz")
+    return {"seconds_to_found": live["seconds_to_found"], "stream": {key: live[key] for key in kept}}
+
+
+def summarise(options, folders, summaries, live):
     objects = figures(folders, summaries)
     return rounded({
         "objects": objects,
-        "seconds_to_found": None,
-        "stream": None,
+        **stream_figures(live),
         "tracking_hz": least(one["tracking_hz"] for one in objects.values()),
         "judged": judged(objects),
         **about("tools/bench teach"),
@@ -124,12 +131,13 @@ def glance(summary):
 def run(options):
     plan = Plan(options)
     step("show, teach and compare")
-    folders, summaries = plan.run()
+    folders, summaries, live = plan.run()
     step("report")
-    summary = summarise(options, folders, summaries)
+    summary = summarise(options, folders, summaries, live)
     write_json(options.out / "summary.json", summary)
     (options.out / "report.html").write_text(page(summary, folders))
     print(glance(summary))
     for words, names in summary["judged"].items():
         print(f"{words}: {', '.join(names) or 'none'}")
+    print(f"found in the running stream: {show(summary['seconds_to_found'], '{:.1f}')} s after the take")
     print(f"{options.out}/report.html, {options.out}/summary.json")
