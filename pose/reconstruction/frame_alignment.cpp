@@ -59,6 +59,8 @@ double tukey(double r) {
 }
 
 class Look {
+  static constexpr double kNear_m = 0.6;  // of the world's origin, at which the object stands
+
  public:
   Look(const FrameLevel& frame, const Eigen::Isometry3d& T, int level, const AlignmentLimits& limits)
       : frame_(frame),
@@ -110,7 +112,9 @@ class Look {
     const Eigen::Vector3f in_world = R_.transpose() * Eigen::Vector3f(a, b, -(a * p.x() + b * p.y()) / p.z());
     Vector6 row;
     row << in_world.cast<double>(), point.point.cross(in_world).cast<double>();
-    sums.add(row, residual, weight / (limits_.light_sigma * limits_.light_sigma));
+    // What is far from the object says little of it, and repeats itself: wallpaper, tiles.
+    const double far = point.point.norm() / kNear_m;
+    sums.add(row, residual, weight / (limits_.light_sigma * limits_.light_sigma * (1.0 + far * far)));
   }
 
   const FrameLevel& frame_;

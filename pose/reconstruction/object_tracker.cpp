@@ -65,8 +65,6 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
       note_lost(levels);
     }
   }
-  if (getenv("HSDBG")) { const auto& f = take_.frames.back(); const Alignment a = map_.empty()?Alignment():dbg_; fprintf(stderr,"DBG %d st %d mot %d left %d kf %zu pairs %d inl %.2f seen %.2f light %.2f drms %.4f\n",(int)take_.frames.size()-1,(int)state_.state,(int)motion_,(int)f.left_out,map_.keyframes().size(),a.pairs,a.inlier_share,a.seen_share,a.light_rms,a.depth_rms_m);
-    if(f.tracked){ fprintf(stderr,"POSE %d",(int)take_.frames.size()-1); for(int r=0;r<3;r++)for(int c=0;c<4;c++)fprintf(stderr," %.7f",T_last_.matrix()(r,c)); fprintf(stderr,"\n"); } }
   describe();
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return state_;
@@ -123,8 +121,10 @@ bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
   return !blurred;
 }
 
-Alignment ObjectTracker::lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start) {
-  return align_frame(map_.local_map(T_start), levels, T_start, map_.settings().plane, {});
+Alignment ObjectTracker::lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest) {
+  AlignmentLimits limits;
+  limits.coarsest = coarsest;
+  return align_frame(map_.local_map(T_start), levels, T_start, map_.settings().plane, limits);
 }
 
 std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
@@ -133,13 +133,19 @@ std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
   const LevelPoints& points = map_.local_map(T_last_);
   const bool goes_on =
       agreement_of(look_at(points, levels, T_goes_on, 2)) > agreement_of(look_at(points, levels, T_last_, 2));
-  const Alignment first = lay_on_map(levels, goes_on ? T_goes_on : T_last_);
-  dbg_ = first;
-  if (map_.is_good(first)) return first;
-  const Alignment second = lay_on_map(levels, goes_on ? T_last_ : T_goes_on);
-  dbg_ = second;
-  if (map_.is_good(second)) return second;
-  return std::nullopt;
+  const Eigen::Isometry3d& T_likely = goes_on ? T_goes_on : T_last_;
+  Alignment best = lay_on_map(levels, T_likely, 2);
+  // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
+  if (!map_.is_good(best) || best.light_rms > 1.4 * usual_light_rms_ + 0.03) {
+    for (const Alignment& other :
+         {lay_on_map(levels, T_likely, 0), lay_on_map(levels, goes_on ? T_last_ : T_goes_on, 2),
+          lay_on_map(levels, goes_on ? T_last_ : T_goes_on, 1)}) {
+      if (agreement_of(other) > agreement_of(best)) best = other;
+    }
+  }
+  if (!map_.is_good(best)) return std::nullopt;
+  usual_light_rms_ += 0.2 * (best.light_rms - usual_light_rms_);
+  return best;
 }
 
 std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels) {

@@ -88,7 +88,7 @@ class ObjectTracker {
 
  private:
   void choose(const RgbdFrame& frame);
-  Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start);
+  Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest);
   std::optional<Alignment> follow(const FrameLevels& levels);
   std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels);
   void accept(const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
@@ -117,8 +117,8 @@ class ObjectTracker {
   Take take_;
   std::vector<bool> round_;  ///< each ten degrees of the turn
   double seconds_ = 0.0;
+  double usual_light_rms_ = 0.3;
   std::size_t next_to_try_ = 0;
-  Alignment dbg_;
 };
 
 }  // namespace houghstream::reconstruction

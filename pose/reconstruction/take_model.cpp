@@ -81,12 +81,15 @@ struct Filled {
   }
 };
 
-/// Parts that hang together of what is inside and seen; 0 = none.
-std::vector<int> label_parts(const DistanceGrid& grid, int& parts) {
+/// Parts that hang together of what is inside, seen, and not lower than the table's depth can reach; 0 = none.
+std::vector<int> label_parts(const DistanceGrid& grid, double lowest, int& parts) {
   std::vector<int> labels(grid.distance.size(), 0);
   parts = 0;
   std::vector<std::size_t> open;
-  const auto is_solid = [&](std::size_t at) { return grid.weight[at] > 0.0F && grid.distance[at] < 0.0F; };
+  const int bottom = static_cast<int>(std::ceil((lowest - grid.origin.z()) / grid.voxel));
+  const auto is_solid = [&](std::size_t at) {
+    return at >= grid.index(0, 0, bottom) && grid.weight[at] > 0.0F && grid.distance[at] < 0.0F;
+  };
   for (std::size_t start = 0; start < labels.size(); ++start) {
     if (labels[start] != 0 || !is_solid(start)) continue;
     labels[start] = ++parts;
@@ -139,7 +142,7 @@ Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ModelMaking&
   filled.grid = fusion::fuse_box(views_about(take, box, settings.threads), box,
                                  grid_settings(settings.coarse_voxel_m, settings.threads));
   int parts = 0;
-  const std::vector<int> labels = label_parts(filled.grid, parts);
+  const std::vector<int> labels = label_parts(filled.grid, box.min().z(), parts);
   const int part = chosen_part(take, filled.grid, labels, parts);
   if (part == 0) return filled;
   const DistanceGrid& grid = filled.grid;
