@@ -75,8 +75,8 @@ std::optional<std::vector<std::uint8_t>> StreamTake::take() {
   }
   ended_ = ended_ || stop_requested() || (first_ && Clock::now() > *first_ + settings_.longest);
   require(failure_.empty(), "{}", failure_);
-  require(first_ || stop_requested(), "{}: no frame on {} within {:.0f} s, expected a stream that runs", bus_.url(),
-          settings_.channel, std::chrono::duration<double>(settings_.patience).count());
+  require(first_ || stop_requested(), "no frame within {:.0f} s on {} at {}, expected a stream that runs",
+          std::chrono::duration<double>(settings_.patience).count(), settings_.channel, bus_.url());
   if (ended_ || waiting_.empty()) return std::nullopt;
   std::optional<std::vector<std::uint8_t>> bytes = std::move(waiting_.front());
   waiting_.pop_front();

@@ -82,7 +82,7 @@ TEST(StreamTake, WhatComesTooFastGoesWithACount) {
 TEST(StreamTake, WithoutAStreamOrWithRubbishOneLineSaysSo) {
   LcmBus bus("memq://");
   StreamTake take(bus, quick());
-  EXPECT_NE(error_of([&] { take.next(); }).find("no frame on OPENNI_FRAME within 0 s"), std::string::npos);
+  EXPECT_NE(error_of([&] { take.next(); }).find("no frame within 0 s on OPENNI_FRAME at memq://"), std::string::npos);
   const std::vector<std::uint8_t> rubbish(20, 7);
   bus.publish(channel::kFrame, {rubbish.data(), rubbish.size()}, 0);
   LcmBus second("memq://");
