@@ -59,6 +59,7 @@ double tukey(double r) {
 }
 
 class Look {
+  static constexpr double kShade = 0.15;  // of light a pixel
   static constexpr double kNear_m = 0.6;  // of the world's origin, at which the object stands
 
  public:
@@ -114,7 +115,10 @@ class Look {
     row << in_world.cast<double>(), point.point.cross(in_world).cast<double>();
     // What is far from the object says little of it, and repeats itself: wallpaper, tiles.
     const double far = point.point.norm() / kNear_m;
-    sums.add(row, residual, weight / (limits_.light_sigma * limits_.light_sigma * (1.0 + far * far)));
+    // Faint slopes are shade and shine, which do not move with the surface.
+    const double slope_sq = seen.slope_u * seen.slope_u + seen.slope_v * seen.slope_v;
+    const double edge = slope_sq / (slope_sq + kShade * kShade);
+    sums.add(row, residual, edge * weight / (limits_.light_sigma * limits_.light_sigma * (1.0 + far * far)));
   }
 
   const FrameLevel& frame_;

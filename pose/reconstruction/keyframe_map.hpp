@@ -29,7 +29,7 @@ struct MapSettings {
   double loop_alike = 0.35;  ///< radians between views: a loop may be closed
   int loop_steps = 8;        ///< keyframes in between that make a loop
   int references = 3;        ///< keyframes of the local map
-  double least_inlier_share = 0.6;
+  double least_inlier_share = 0.75;
   double least_seen_share = 0.25;
   double most_light_rms = 0.62;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame

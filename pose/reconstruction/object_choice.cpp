@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -121,7 +122,6 @@ struct Cluster {
   int pixels = 0;
   double lowest = 1e9, highest = 0.0;  ///< above the plane, metres
   double to_middle_px = 1e9;           ///< of its nearest pixel
-  int in_box = 0;                      ///< pixels
   cv::Rect cells;
 };
 
@@ -136,15 +136,17 @@ cv::Point2d meant_place(const RgbdFrame& frame, const ChoiceSettings& settings) 
 }
 
 /// Where each pixel above the plane falls on it; (-1,-1) for the others.
-cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, double farthest_m,
-                        cv::Mat& grid) {
+cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes,
+                        const ChoiceSettings& settings, cv::Mat& grid) {
   constexpr double kHighest_m = 0.75;
+  const cv::Rect whole({0, 0}, frame.depth.size());
+  const cv::Rect where = settings.box_px.value_or(whole) & whole;
   cv::Mat cells(frame.depth.size(), CV_32SC2, cv::Scalar(-1, -1));
   grid = cv::Mat::zeros(PlaneAxes::cells(), PlaneAxes::cells(), CV_8UC1);
-  for (int y = 0; y < frame.depth.rows; ++y) {
-    for (int x = 0; x < frame.depth.cols; ++x) {
+  for (int y = where.y; y < where.br().y; ++y) {
+    for (int x = where.x; x < where.br().x; ++x) {
       const float z = frame.depth.at<float>(y, x);
-      if (!(z > 0.1F && z < farthest_m)) continue;
+      if (!(z > 0.1F && z < settings.farthest_m)) continue;
       const Eigen::Vector3d p = frame.camera.backproject(x, y, z);
       const double height = plane.height(p);
       if (height < std::max(kLowest_m, 3.0 * depth_sigma(z)) || height > kHighest_m) continue;
@@ -160,7 +162,7 @@ cv::Mat cells_of_pixels(const RgbdFrame& frame, const Plane& plane, const PlaneA
 Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes,
                        const ChoiceSettings& settings) {
   cv::Mat grid, joined, labels;
-  const cv::Mat cells = cells_of_pixels(frame, plane, axes, settings.farthest_m, grid);
+  const cv::Mat cells = cells_of_pixels(frame, plane, axes, settings, grid);
   cv::dilate(grid, joined, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
   Clusters clusters;
   clusters.list.resize(static_cast<std::size_t>(cv::connectedComponents(joined, labels, 8, CV_32S)));
@@ -178,7 +180,6 @@ Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAx
       cluster.lowest = std::min(cluster.lowest, height);
       cluster.highest = std::max(cluster.highest, height);
       cluster.to_middle_px = std::min(cluster.to_middle_px, std::hypot(x - meant.x, y - meant.y));
-      cluster.in_box += settings.box_px && settings.box_px->contains({x, y}) ? 1 : 0;
       cluster.cells =
           cluster.cells.empty() ? cv::Rect(cell[0], cell[1], 1, 1) : cluster.cells | cv::Rect(cell[0], cell[1], 1, 1);
     }
@@ -195,9 +196,8 @@ int meant_cluster(const Clusters& clusters, const RgbdFrame& frame, const Choice
   for (std::size_t i = 1; i < clusters.list.size(); ++i) {
     const Cluster& cluster = clusters.list[i];
     if (cluster.pixels < kFewestPixels || cluster.lowest > kHighestFoot_m) continue;
-    if (settings.box_px && cluster.in_box < kFewestPixels) continue;
     if (!settings.box_px && cluster.to_middle_px > settings.farthest_share * frame.depth.cols) continue;
-    const double rank = settings.box_px ? -cluster.in_box : cluster.to_middle_px - 1e-6 * cluster.pixels;
+    const double rank = settings.box_px ? -cluster.pixels : cluster.to_middle_px - 1e-6 * cluster.pixels;
     if (rank >= best_rank) continue;
     best_rank = rank;
     best = static_cast<int>(i);
@@ -218,12 +218,6 @@ std::string fault_of(const ChosenObject& object, const RgbdFrame& frame, const C
   const cv::Rect inner(2, 2, frame.depth.cols - 4, frame.depth.rows - 4);
   if ((object.box_px & inner) != object.box_px)
     return "what is meant is cut by the picture's edge, expected the whole object in the first picture";
-  if (settings.box_px) {
-    const int inside = cv::countNonZero(object.mask(*settings.box_px & cv::Rect({0, 0}, object.mask.size())));
-    if (inside < 0.5 * cv::countNonZero(object.mask))
-      return "the box holds less than half of what hangs together there, expected a box about an object that stands "
-             "apart from others";
-  }
   return {};
 }
 
@@ -243,6 +237,85 @@ ChosenObject make_object(const RgbdFrame& frame, const Plane& plane, const Plane
   object.T_camera_stand.linear() << x, z.cross(x), z;
   object.T_camera_stand.translation() = middle - object.plane.height(middle) * z;
   return object;
+}
+
+/// Whether the surface about a pixel is level.
+bool is_level(const RgbdFrame& frame, const Plane& plane, int x, int y) {
+  constexpr int kApart_px = 3;
+  constexpr double kCosine = 0.9;
+  if (x < kApart_px || y < kApart_px || x + kApart_px >= frame.depth.cols || y + kApart_px >= frame.depth.rows)
+    return false;
+  const auto point = [&](int u, int v) { return frame.camera.backproject(u, v, frame.depth.at<float>(v, u)); };
+  const Eigen::Vector3d normal =
+      (point(x + kApart_px, y) - point(x - kApart_px, y)).cross(point(x, y + kApart_px) - point(x, y - kApart_px));
+  return normal.allFinite() && std::abs(normal.normalized().dot(plane.normal)) > kCosine;
+}
+
+/// What looks like one thing may be a thing on a disc, a book or a box lid: a wide level that carries something
+/// smaller.
+std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& object) {
+  constexpr double kBin_m = 0.002;
+  constexpr double kHighest_m = 0.06;
+  constexpr double kAbove_m = 0.012;
+  constexpr double kLeastShare = 0.25;
+  std::array<int, 31> levels{};
+  int all = 0;
+  for (int y = 0; y < object.mask.rows; ++y) {
+    for (int x = 0; x < object.mask.cols; ++x) {
+      if (object.mask.at<std::uint8_t>(y, x) == 0) continue;
+      ++all;
+      const double height = object.plane.height(frame.camera.backproject(x, y, frame.depth.at<float>(y, x)));
+      if (height < kHighest_m && is_level(frame, object.plane, x, y))
+        ++levels[static_cast<std::size_t>(height / kBin_m)];
+    }
+  }
+  std::size_t best = 1;
+  const auto about = [&](std::size_t i) { return levels[i - 1] + levels[i] + levels[i + 1]; };
+  for (std::size_t i = 1; i + 1 < levels.size(); ++i) best = about(i) > about(best) ? i : best;
+  if (about(best) < kLeastShare * all) return std::nullopt;
+  const double level = kBin_m * (static_cast<double>(best) + 0.5);
+  cv::Mat on_level = cv::Mat::zeros(object.mask.size(), CV_8UC1);
+  Eigen::AlignedBox2d level_box, above_box;
+  const Eigen::Isometry3d T_stand_camera = object.T_camera_stand.inverse();
+  for (int y = 0; y < object.mask.rows; ++y) {
+    for (int x = 0; x < object.mask.cols; ++x) {
+      if (object.mask.at<std::uint8_t>(y, x) == 0) continue;
+      const Eigen::Vector3d p = T_stand_camera * frame.camera.backproject(x, y, frame.depth.at<float>(y, x));
+      if (std::abs(p.z() - level) < 2.0 * kBin_m) {
+        on_level.at<std::uint8_t>(y, x) = 255;
+        level_box.extend(p.head<2>());
+      } else if (p.z() > level + kAbove_m) {
+        above_box.extend(p.head<2>());
+      }
+    }
+  }
+  if (above_box.isEmpty() || above_box.diagonal().norm() > 0.85 * level_box.diagonal().norm()) return std::nullopt;
+  Plane plane = object.plane;
+  plane.offset -= level;
+  const cv::Mat elsewhere = on_level == 0;
+  return refine_plane(frame, elsewhere, plane, object.T_camera_stand.translation(), 0.5);
+}
+
+/// What stands on this plane and is meant.
+Choice choose_on(const RgbdFrame& frame, const Plane& plane, const ChoiceSettings& settings) {
+  const cv::Point2d meant = meant_place(frame, settings);
+  const PlaneAxes axes(plane, frame.camera.backproject(meant.x, meant.y, 1.0));
+  const Clusters clusters = find_clusters(frame, plane, axes, settings);
+  const int chosen = meant_cluster(clusters, frame, settings);
+  if (chosen == 0) {
+    return {{},
+            settings.box_px ? "nothing with depth stands in the box, expected an object on the table there"
+                            : "nothing with depth stands near the picture's middle, expected an object there (or "
+                              "--box; what is transparent has no depth)"};
+  }
+  ChosenObject object = make_object(frame, plane, axes, clusters, chosen);
+  object.boxed = settings.box_px.has_value();
+  if (const std::optional<Plane> carrier = carried_by(frame, object)) {
+    if (Choice carried = choose_on(frame, *carrier, settings); carried.object) return carried;
+  }
+  std::string fault = fault_of(object, frame, settings);
+  if (!fault.empty()) return {{}, std::move(fault)};
+  return {std::move(object), {}};
 }
 
 }  // namespace
@@ -293,29 +366,18 @@ Plane refine_plane(const RgbdFrame& frame, const cv::Mat& mask, const Plane& pla
 }
 
 Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
+  const cv::Rect whole({0, 0}, frame.depth.size());
+  if (settings.box_px && (*settings.box_px & whole) != *settings.box_px)
+    return {{}, fmt::format("the box lies not within the picture, which has {}x{} pixels", whole.width, whole.height)};
   const std::vector<Plane> planes = find_planes(frame, settings);
-  Choice choice;
-  choice.reason = "no table or other level surface is seen, expected one on which the object stands";
-  const cv::Point2d meant = meant_place(frame, settings);
-  const Eigen::Vector3d ray = frame.camera.backproject(meant.x, meant.y, 1.0);
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    const PlaneAxes axes(planes[i], ray);
-    const Clusters clusters = find_clusters(frame, planes[i], axes, settings);
-    const int chosen = meant_cluster(clusters, frame, settings);
-    if (chosen == 0) {
-      if (i == 0)
-        choice.reason = settings.box_px
-                            ? "nothing with depth stands in the box, expected an object on the table there"
-                            : "nothing with depth stands near the picture's middle, expected an object there "
-                              "(or --box; what is transparent has no depth)";
-      continue;
-    }
-    ChosenObject object = make_object(frame, planes[i], axes, clusters, chosen);
-    const std::string fault = fault_of(object, frame, settings);
-    if (fault.empty()) return {std::move(object), {}};
-    if (i == 0 || choice.reason.rfind("nothing", 0) == 0) choice.reason = fault;
+  if (planes.empty()) return {{}, "no table or other level surface is seen, expected one on which the object stands"};
+  Choice first;
+  for (const Plane& plane : planes) {
+    Choice choice = choose_on(frame, plane, settings);
+    if (choice.object) return choice;
+    if (first.reason.empty()) first = std::move(choice);
   }
-  return choice;
+  return first;
 }
 
 }  // namespace houghstream::reconstruction

@@ -26,6 +26,7 @@ struct ChosenObject {
   double height_m = 0.0;                                             ///< above the plane
   cv::Mat mask;                                                      ///< CV_8UC1, 255 on it, size of the frame
   cv::Rect box_px;                                                   ///< of the mask
+  bool boxed = false;  ///< by a person: what touches it there is not of it
 };
 
 /// The object, or in words why there is none.

@@ -48,6 +48,7 @@ Eigen::Isometry3d Take::pose_of(const FrameTrack& frame) const {
 }
 
 const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
+  constexpr std::size_t kMostUnplaced = 100;
   const auto begin = std::chrono::steady_clock::now();
   take_.frames.push_back({frame.id, false, false, -1, Eigen::Isometry3d::Identity()});
   ++state_.frames;
@@ -58,11 +59,12 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
     if (state_.state == TrackState::kTracking) found = follow(levels);
-    if (!found) found = find_again(frame, levels);
+    if (!found) found = find_again(frame, levels, false);
     if (found) {
-      accept(frame, std::move(levels), *found);
+      accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
     } else {
       note_lost(levels);
+      if (unplaced_.size() < kMostUnplaced) unplaced_.emplace_back(static_cast<int>(take_.frames.size()) - 1, frame);
     }
   }
   describe();
@@ -74,7 +76,7 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   Choice choice = choose_object(frame, settings_.choice);
   if (!choice.object) {
     state_.message = choice.reason;
-    require(state_.frames < settings_.most_frames_to_choose, "{}", choice.reason);
+    require(state_.frames < settings_.most_frames_to_choose && !settings_.choice.box_px, "{}", choice.reason);
     return;
   }
   chosen_ = std::move(*choice.object);
@@ -102,7 +104,7 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   first_rest_ = to_world(choose_points(levels, on_it == 0, {}));
   Alignment at_start;
   at_start.T_camera_world = chosen_.T_camera_stand;
-  accept(frame, std::move(levels), at_start);
+  accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
 }
 
 bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
@@ -148,9 +150,11 @@ std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
   return best;
 }
 
-std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels) {
+std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere) {
   constexpr std::size_t kTriedByPose = 4;
-  constexpr std::size_t kTriedByLandmarks = 12;
+  constexpr double kSure = 0.85;  // share of inliers: a plane and a pattern on it may agree with a wrong pose by half
+  const int fewest_inliers = motion_ == Motion::kObject ? 12 : 30;
+  const std::size_t tried_by_landmarks = everywhere ? map_.keyframes().size() : 12;
   const std::vector<Keyframe>& keyframes = map_.keyframes();
   std::vector<std::pair<double, int>> by_distance;
   for (std::size_t k = 0; k < keyframes.size(); ++k)
@@ -160,33 +164,34 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
     const int k = by_distance[i].second;
     const Alignment found = align_frame(
         map_.points_of({k}), levels, keyframes[static_cast<std::size_t>(k)].T_camera_world, map_.settings().plane, {});
-    if (map_.is_good(found)) return found;
+    if (map_.is_good(found) && found.inlier_share > kSure) return found;
   }
   const Landmarks seen = find_landmarks(frame, landmark_mask(frame, T_last_));
   std::optional<LandmarkMatch> best;
   int best_keyframe = -1;
-  for (std::size_t i = 0; i < std::min(kTriedByLandmarks, by_distance.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(tried_by_landmarks, by_distance.size()); ++i) {
     // The nearest half, and the others in turn.
-    const std::size_t at = i < kTriedByLandmarks / 2 ? i : next_to_try_++ % by_distance.size();
+    const std::size_t at = i < tried_by_landmarks / 2 ? i : next_to_try_++ % by_distance.size();
     const int k = by_distance[at].second;
     const auto match = match_landmarks(keyframes[static_cast<std::size_t>(k)].landmarks, seen);
     if (!match || (best && best->inliers >= match->inliers)) continue;
     best = match;
     best_keyframe = k;
   }
-  if (!best) return std::nullopt;
+  if (!best || best->inliers < fewest_inliers) return std::nullopt;
   const Eigen::Isometry3d T = best->T_b_a * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
   const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, map_.settings().plane, {});
-  if (map_.is_good(found)) return found;
+  if (map_.is_good(found) && found.inlier_share > kSure) return found;
   return std::nullopt;
 }
 
-void ObjectTracker::accept(const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
   const bool was_lost = state_.state == TrackState::kLost;
   state_.state = TrackState::kTracking;
   T_before_ = was_lost ? alignment.T_camera_world : T_last_;
   T_last_ = alignment.T_camera_world;
-  const bool fit = !take_.frames.back().left_out;
+  FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
+  const bool fit = !track.left_out;
   if (motion_ == Motion::kUnknown && !map_.empty()) see_what_moves(levels, alignment);
   if (state_.state != TrackState::kTracking) return;
   const int nearest = map_.nearest(T_last_);
@@ -195,9 +200,8 @@ void ObjectTracker::accept(const RgbdFrame& frame, FrameLevels levels, const Ali
   if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
     Alignment laid = alignment;
     if (nearest >= 0) map_.local_map(T_last_);
-    add_keyframe(frame, std::move(levels), laid);
+    add_keyframe(number, frame, std::move(levels), laid);
   }
-  FrameTrack& track = take_.frames.back();
   track.tracked = true;
   track.keyframe = map_.nearest(T_last_);
   track.T_camera_keyframe =
@@ -231,7 +235,7 @@ void ObjectTracker::follow_object_only() {
   map.plane = PlaneKnown();
   map.plane->normal = chosen_.plane.normal;
   map.plane->offset = chosen_.plane.offset;
-  map.least_inlier_share = 0.5;
+  map.least_inlier_share = 0.6;
   const cv::Rect& box = chosen_.box_px;
   const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
   levels_.region_px =
@@ -242,7 +246,7 @@ void ObjectTracker::follow_object_only() {
   for (FrameTrack& track : take_.frames) track.tracked = false;
   T_last_ = T_before_ = chosen_.T_camera_stand;
   FrameLevels levels = make_levels(first_frame_, levels_);
-  add_keyframe(first_frame_, std::move(levels), {});
+  add_keyframe(first_number_, first_frame_, std::move(levels), {});
   state_.state = TrackState::kLost;  // until the next frame is laid on the object alone
 }
 
@@ -270,12 +274,12 @@ cv::Mat ObjectTracker::landmark_mask(const RgbdFrame& frame, const Eigen::Isomet
   return object_pixels({frame.camera, {}, frame.depth}, T_camera_world);
 }
 
-void ObjectTracker::add_keyframe(const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+void ObjectTracker::add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
   constexpr double kTableRadius_m = 0.7;
   constexpr float kTableHeight_m = 0.01F;
   Keyframe keyframe;
   keyframe.frame = frame;
-  keyframe.number = map_.empty() ? first_number_ : static_cast<int>(take_.frames.size()) - 1;
+  keyframe.number = number;
   keyframe.T_camera_world = T_last_;
   const bool object_only = motion_ == Motion::kObject;
   PointSettings points;
@@ -329,8 +333,39 @@ void ObjectTracker::describe() {
   state_.message = describe_seen(state_.seen, chosen_.T_camera_stand.inverse().translation());
 }
 
+/// What was lost when it came may be found now that more of the surroundings is known.
+void ObjectTracker::place_the_lost() {
+  for (bool any = true; any;) {
+    any = false;
+    for (auto at = unplaced_.begin(); at != unplaced_.end();) {
+      FrameLevels levels = make_levels(at->second, levels_);
+      const std::optional<Alignment> found = find_again(at->second, levels, true);
+      if (!found) {
+        ++at;
+        continue;
+      }
+      accept(at->first, at->second, std::move(levels), *found);
+      at = unplaced_.erase(at);
+      any = true;
+    }
+  }
+  std::vector<LostSpan> still;
+  for (const LostSpan& span : take_.lost) {
+    for (int i = span.from; i <= span.to; ++i) {
+      if (take_.frames[static_cast<std::size_t>(i)].tracked) continue;
+      if (!still.empty() && still.back().to == i - 1 && i != span.from) {
+        still.back().to = i;
+      } else {
+        still.push_back({i, i, span.why});
+      }
+    }
+  }
+  take_.lost = std::move(still);
+}
+
 Take ObjectTracker::finish() {
   require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
+  place_the_lost();
   map_.refine(3);
   take_.chosen = chosen_;
   take_.motion = motion_;

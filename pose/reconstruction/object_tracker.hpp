@@ -90,13 +90,14 @@ class ObjectTracker {
   void choose(const RgbdFrame& frame);
   Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest);
   std::optional<Alignment> follow(const FrameLevels& levels);
-  std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels);
-  void accept(const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
+  std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere);
+  void place_the_lost();
+  void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
   bool is_fit_for_model(const PictureQuality& quality);
   void see_what_moves(const FrameLevels& levels, const Alignment& alignment);
   void follow_object_only();
-  void add_keyframe(const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
+  void add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
   cv::Mat object_pixels(const FrameLevel& level, const Eigen::Isometry3d& T_camera_world) const;
   void describe();
@@ -113,6 +114,7 @@ class ObjectTracker {
   int object_moves_ = 0;  ///< frames in which it did
   Eigen::Isometry3d T_last_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_before_ = Eigen::Isometry3d::Identity();
+  std::vector<std::pair<int, RgbdFrame>> unplaced_;  ///< lost frames, with their numbers
   std::deque<double> sharpness_;
   Take take_;
   std::vector<bool> round_;  ///< each ten degrees of the turn

@@ -164,7 +164,8 @@ Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ModelMaking&
 /// The object's voxels in a box that holds all of it.
 Filled find_object(const Take& take, const ModelMaking& settings) {
   constexpr double kWidest_m = 0.45;
-  double half = std::min(1.4 * take.chosen.radius_m + 0.03, kWidest_m);
+  double half =
+      std::min(take.chosen.boxed ? 1.1 * take.chosen.radius_m + 0.01 : 1.4 * take.chosen.radius_m + 0.03, kWidest_m);
   for (;;) {
     const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, settings.foot_m + settings.coarse_voxel_m),
                                   Eigen::Vector3d(half, half, 1.1 * take.chosen.height_m + 0.02));
@@ -172,7 +173,7 @@ Filled find_object(const Take& take, const ModelMaking& settings) {
     require(!filled.slices.empty(),
             "nothing is left of the object when all views are put together, expected one thing "
             "that stays together");
-    if (!filled.touches_side || half >= kWidest_m) return filled;
+    if (!filled.touches_side || half >= kWidest_m || take.chosen.boxed) return filled;
     half = std::min(1.5 * half, kWidest_m);
   }
 }

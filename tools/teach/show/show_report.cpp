@@ -60,6 +60,7 @@ std::string span_text(const Take& take, const LostSpan& span) {
 /// What speaks against a take.
 void judge_take(const Take& take, std::vector<std::string>& reasons) {
   constexpr int kNearlyRound = 300;
+  constexpr int kRound = 350;
   constexpr double kMostLost = 0.15;
   constexpr double kMostGap_m = 0.03;
   constexpr double kMostGapTurn = 0.12;
@@ -69,6 +70,9 @@ void judge_take(const Take& take, std::vector<std::string>& reasons) {
         "object that turns by itself looks as if it stood still)");
   if (take.degrees_round < kNearlyRound)
     reasons.push_back(fmt::format("too short: seen from {} degrees of the turn, expected all 360", take.degrees_round));
+  else if (take.degrees_round >= kRound && !take.gap)
+    reasons.emplace_back(
+        "it came round, and did not find its beginning again: nothing tells how it turned, or the way was lost");
   if (lost_frames(take) > kMostLost * static_cast<double>(take.frames.size())) {
     for (const LostSpan& span : take.lost) {
       if (reasons.size() < 8) reasons.push_back(span_text(take, span));
