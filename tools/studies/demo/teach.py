@@ -42,7 +42,7 @@ def start_stream(running, programs, out, store, scene):
     script, shutter = out / "camera_script", out / "shutter.txt"
     script.write_text(f"scene {scene}\nrate_hz {TAKE_HZ}\nshutter_file {shutter}\n")
     camera = {"LD_LIBRARY_PATH": str(programs.parent / "virtual_camera"), "HOUGHSTREAM_VIRTUAL_CAMERA": str(script)}
-    running.start("capture", programs / "hs-capture", "--source", "openni2", **camera)
+    running.start("capture", programs / "hs-capture", "--source", "openni2", "--mode", f"640x480@{TAKE_HZ}", **camera)
 
 
 def await_frames(capture, shutter, seconds=120):
