@@ -60,7 +60,6 @@ def stream(programs, out, scene):
     with Processes(out / "log") as running:
         start_stream(running, programs, out, store, scene)
         await_frames(running.by_name["capture"], out / "shutter.txt")
-        time.sleep(3)  # of a stream in which nothing is known
         step(f"the object is shown: {TAKE_HZ} frames a second, while hs-detect and hs-pose work on them")
         teach = running.start("teach", programs / "hs-teach", "show", "--from-stream", "--name", NAME, "--out", store,
                               "--seconds", LONGEST_S, "--keep", out / "shown")  # fmt: skip
@@ -236,20 +235,22 @@ def summarise(out, scene, story):
     }, found, posed
 
 
-def picture_near(out, utime):
-    """hs-view's picture of the frame that is nearest in time."""
-    pictures = {int(file.stem): file for file in (out / "pictures").glob("*.jpg")}
-    return pictures[min(pictures, key=lambda taken: abs(taken - utime))]
+def drawn(out):
+    """hs-view's pictures by the frame's utime, in order."""
+    return dict(sorted((int(file.stem), file) for file in (out / "pictures").glob("*.jpg")))
 
 
 def steps(out, story, found, posed):
-    """(what, picture) of each step."""
+    """(what, picture) of each step; hs-view drew a few of the frames."""
+    pictures = drawn(out)
+    found = [one for one in found if one[0] in pictures] or found
+    posed = [one for one in posed if one[0] in pictures] or posed
     take, fused = story.begin("tracking")[1], story.begin("fusing")[1]
     half = take.utime + (fused.utime - take.utime) // 2
     training = story.begin("training")[0] // 2 + story.last("training")[0] // 2
     surest = max(posed, key=lambda one: one[1]["pose"]["quality"])
     views = [
-        ("Nobody has seen the object: nothing is found", min(int(file.stem) for file in (out / "pictures").glob("*.jpg"))),
+        ("Nobody has seen the object: nothing is found", min(pictures)),
         ("Shown: what stands nearest to the middle is meant", take.utime + 500_000),
         ("Followed while the camera moves around it; the sphere fills", half),
         ("Seen from all sides that can be seen: the take ends", fused.utime - 300_000),
@@ -257,9 +258,10 @@ def steps(out, story, found, posed):
         ("Found", found[0][0]),
         ("Found and posed, with the outline of the model that was made of it", surest[0]),
     ]
-    pictures = [(words, embedded(picture_near(out, utime), "jpeg")) for words, utime in views]
-    pictures.insert(4, ("What was kept of the take, and the model", embedded(out / "shown" / "contact_sheet.jpg", "jpeg")))
-    return pictures
+    told = [(words, embedded(pictures[min(pictures, key=lambda drawn_us: abs(drawn_us - utime))], "jpeg"))
+            for words, utime in views]  # fmt: skip
+    told.insert(4, ("What was kept of the take, and the model", embedded(out / "shown" / "contact_sheet.jpg", "jpeg")))
+    return told
 
 
 def rows(summary):

@@ -89,11 +89,13 @@ void TeachingPublisher::repeat() noexcept {
 }
 
 bool EnoughSeen::operator()(const ShowProgress& now) {
-  constexpr std::int64_t kNothingNew_us = 6'000'000;
+  constexpr std::int64_t kLeast_us = 6'000'000;
   const int seen = static_cast<int>(std::count(now.seen.begin(), now.seen.end(), true));
-  if (seen != seen_ || since_us_ == 0) since_us_ = now.frame.utime;
+  if (begin_us_ == 0) begin_us_ = now.frame.utime;
+  if (seen != seen_) since_us_ = now.frame.utime;
   seen_ = seen;
-  return 2 * seen > ShowProgress::kDirections && now.frame.utime - since_us_ > kNothingNew_us;
+  const std::int64_t nothing_new_us = now.frame.utime - since_us_;
+  return 2 * seen > ShowProgress::kDirections && nothing_new_us > std::max(kLeast_us, (since_us_ - begin_us_) / 2);
 }
 
 }  // namespace houghstream::teach

@@ -47,13 +47,15 @@ class TeachingPublisher : public ShowObserver {
 };
 
 /// Tells when a take shows nothing new any more: more than half of the directions were seen, and for some seconds of
-/// the frames' time no further one.
+/// the frames' time, or half as long as that took, no further one. Over the last third of a turn nothing new is seen,
+/// and still it has to be closed.
 class EnoughSeen {
  public:
   bool operator()(const ShowProgress& now);
 
  private:
   int seen_ = 0;
+  std::int64_t begin_us_ = 0;
   std::int64_t since_us_ = 0;
 };
 
