@@ -26,10 +26,10 @@ constexpr int kStrokes = 6;
 constexpr double kTallestBesideM = 0.13;  // what stands about must not hide the object
 
 // Parts of a stroke: the hand comes, turns the object, goes, and is away.
-constexpr double kComeShare = 0.18;
-constexpr double kTurnShare = 0.5;
-constexpr double kGoShare = 0.18;
-constexpr double kAwayM = 0.6;
+constexpr double kComeShare = 0.15;
+constexpr double kTurnShare = 0.6;
+constexpr double kGoShare = 0.15;
+constexpr double kAwayM = 0.5;
 
 double eased(double share) {
   const double t = std::clamp(share, 0.0, 1.0);
