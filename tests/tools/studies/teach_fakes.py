@@ -64,8 +64,8 @@ def teach(words, out):
     if name == os.environ.get("TEACH_FAKE_CRASHES"):
         os.abort()
     if name == os.environ.get("TEACH_FAKE_REFUSED"):
-        print("hs-teach: bop:x: no plane, expected a table")
-        sys.exit(1)
+        print("the words of a table")
+        sys.exit("hs-teach: bop:x: no plane, expected a table")
     poor = name == os.environ.get("TEACH_FAKE_POOR")
     if words[0] == "show":
         keep(pathlib.Path(value_of(words, "--keep")), name, "poor" if poor else "good")

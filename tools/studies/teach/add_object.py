@@ -13,7 +13,7 @@ import sys
 import time
 
 POOR, BAD_INPUT = 3, 1  # exit statuses of hs-teach that are an answer
-SAID = 40  # lines
+SAID = 10  # lines of stderr
 
 
 def teach(program, out, before, words):
@@ -22,13 +22,13 @@ def teach(program, out, before, words):
         shutil.copytree(before, out / "store")
         words = [*words, "--add"]
     begin = time.monotonic()
-    done = subprocess.run([program, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    done = subprocess.run([program, *words], capture_output=True, text=True, check=False)
     seconds = time.monotonic() - begin
-    print(done.stdout, flush=True)
+    print(done.stderr, done.stdout, sep="\n", flush=True)
     if done.returncode not in (0, POOR, BAD_INPUT):
         sys.exit(f"{program}: exit status {done.returncode}")
-    lines = [line.rpartition("\r")[2] for line in done.stdout.splitlines() if line.strip()]
-    return {"status": done.returncode, "seconds": round(seconds, 2), "said": lines[-SAID:]}
+    last = [line.rpartition("\r")[2] for line in done.stderr.splitlines() if line.strip()]
+    return {"status": done.returncode, "seconds": round(seconds, 2), "said": last[-SAID:]}
 
 
 def main():

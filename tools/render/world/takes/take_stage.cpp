@@ -26,10 +26,10 @@ constexpr int kStrokes = 6;
 constexpr double kTallestBesideM = 0.13;  // what stands about must not hide the object
 
 // Parts of a stroke: the hand comes, turns the object, goes, and is away.
-constexpr double kComeShare = 0.18;
-constexpr double kTurnShare = 0.5;
-constexpr double kGoShare = 0.18;
-constexpr double kAwayM = 0.6;
+constexpr double kComeShare = 0.15;
+constexpr double kTurnShare = 0.6;
+constexpr double kGoShare = 0.15;
+constexpr double kAwayM = 0.5;
 
 double eased(double share) {
   const double t = std::clamp(share, 0.0, 1.0);
@@ -126,7 +126,7 @@ void TakeStage::choose_camera(const TakePlan& plan) {
   }
   settings.turn_rad = 0.0;
   T_still_world_ = HandPath(settings, aspect_seed(seed_, kPath)).T_camera_world(0.0);
-  turning_.emplace(kind_ == TakeKind::kTurntable ? plan.seconds : 1.0, aspect_seed(seed_, kTurning));
+  if (kind_ == TakeKind::kTurntable) turning_.emplace(plan.seconds, aspect_seed(seed_, kTurning));
 }
 
 // About where it stands; a turntable turns about its own middle.
@@ -160,7 +160,7 @@ void TakeStage::add_hands() {
 }
 
 double TakeStage::turned_rad(double seconds) const {
-  if (kind_ == TakeKind::kTurntable) return kTurnRad * turning_->at(seconds);
+  if (turning_) return kTurnRad * turning_->at(seconds);
   double turned = 0.0;
   for (const Stroke& stroke : strokes_)
     turned += eased(((seconds - stroke.start_s) / stroke.seconds - kComeShare) / kTurnShare) * kTurnRad / kStrokes;

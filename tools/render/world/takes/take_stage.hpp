@@ -76,7 +76,7 @@ class TakeStage {
   std::optional<std::size_t> turntable_;
   std::optional<HandPath> path_;                                     ///< of a camera that is carried
   Eigen::Isometry3d T_still_world_ = Eigen::Isometry3d::Identity();  ///< of one that stands
-  std::optional<UnevenProgress> turning_;
+  std::optional<UnevenProgress> turning_;                            ///< of a turntable
   std::vector<Stroke> strokes_;
 };
 
