@@ -85,6 +85,10 @@ void check_models(const ObjectStore& store, const BopModels& models) {
 
 }  // namespace
 
+fs::path ObjectStore::json_file() const {
+  return folder / kJsonFile;
+}
+
 fs::path ObjectStore::forest_file() const {
   return folder / "forest";
 }
@@ -162,7 +166,7 @@ void require_same_objects(const ObjectStore& store, const std::vector<std::strin
   for (const StoredObject& object : store.objects) listed.insert(object.name);
   const std::set<std::string> known(forest_names.begin(), forest_names.end());
   require(known == listed, "{}: knows {}, expected the objects of {}: {}", store.forest_file().string(),
-          fmt::join(known, ", "), (store.folder / kJsonFile).string(), fmt::join(listed, ", "));
+          fmt::join(known, ", "), store.json_file().string(), fmt::join(listed, ", "));
 }
 
 void write_store_json(const ObjectStore& store) {
@@ -181,7 +185,7 @@ void write_store_json(const ObjectStore& store) {
     json["objects"].push_back(entry);
   }
   json["settings"] = store.settings;
-  write_json(json, store.folder / kJsonFile);
+  write_json(json, store.json_file());
 }
 
 bool may_be_replaced(const fs::path& folder) {

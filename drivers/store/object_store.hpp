@@ -33,6 +33,7 @@ struct ObjectStore {
   std::vector<StoredObject> objects;                 ///< by id
   OrderedJson settings;                              ///< of the last teaching, for people
   std::map<int, Symmetries> symmetries;              ///< by id, of models_info.json; empty for an object without any
+  std::filesystem::path json_file() const;           ///< the list
   std::filesystem::path forest_file() const;         ///< of the detector
   std::filesystem::path models_folder() const;       ///< a BOP models folder
   std::filesystem::path view_picture(int id) const;  ///< some of its views, side by side

@@ -4,11 +4,13 @@
 
 namespace houghstream::channel {
 
-inline const std::string kFrame = "OPENNI_FRAME";                 ///< images_t
-inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";  ///< detections_t
-inline const std::string kPoses = "HOUGHSTREAM_POSES";            ///< object_poses_t
-inline const std::string kStatus = "HOUGHSTREAM_STATUS";          ///< status_t, 1 Hz, every process
-inline const std::string kPreview = "HOUGHSTREAM_PREVIEW";        ///< image_t, MJPEG below 100 kB
+inline const std::string kFrame = "OPENNI_FRAME";                      ///< images_t
+inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";       ///< detections_t
+inline const std::string kPoses = "HOUGHSTREAM_POSES";                 ///< object_poses_t
+inline const std::string kStatus = "HOUGHSTREAM_STATUS";               ///< status_t, 1 Hz, every process
+inline const std::string kKnownObjects = "HOUGHSTREAM_KNOWN_OBJECTS";  ///< known_objects_t, 1 Hz, who has a store
+inline const std::string kTeaching = "HOUGHSTREAM_TEACHING";           ///< teaching_t, while an object is shown
+inline const std::string kPreview = "HOUGHSTREAM_PREVIEW";             ///< image_t, MJPEG below 100 kB
 
 /// The channel of an object's rigid_transform_t: "cereal_box" -> "CEREAL_BOX_TO_CAMERA" where there is one camera, and
 /// with the channel of the camera's frames, where there are several, "cereal_box", "left-cam" ->

@@ -8,6 +8,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/percentiles.hpp"
+#include "pipeline/messages/messages.hpp"
 
 namespace houghstream {
 namespace {
@@ -92,13 +93,26 @@ status_t StatusReporter::message() const {
   return status;
 }
 
+void StatusReporter::publish(LcmBus& bus) {
+  if (!objects_) return bus.publish(channel::kStatus, message());
+  const KnownObjects known = objects_();
+  if (!known.problem.empty()) remember_error(known.problem);
+  const status_t status = message();
+  known_objects_t objects = to_message(known);
+  objects.utime = status.utime;
+  objects.process = status.process;
+  objects.pid = status.pid;
+  bus.publish(channel::kStatus, status);
+  bus.publish(channel::kKnownObjects, objects);
+}
+
 void StatusReporter::publish_if_due(LcmBus& bus) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (Clock::now() - last_published_ < kPeriod) return;
     last_published_ = Clock::now();
   }
-  bus.publish(channel::kStatus, message());
+  publish(bus);
 }
 
 std::string StatusReporter::summary() const {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <houghstream/status_t.hpp>
 #include <map>
 #include <mutex>
@@ -11,6 +12,7 @@
 
 #include "pipeline/base/limited_lines.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/types/known_objects.hpp"
 
 namespace houghstream {
 
@@ -36,10 +38,14 @@ class StatusReporter {
   void note_bad_message(const std::string& reason);
   /// Remembers the last error, which somebody else has logged.
   void remember_error(const std::string& reason);
+  /// Asked for each status from here on: it goes out beside it, and what is wrong with the store is the last error.
+  void tell_objects(std::function<KnownObjects()> objects) { objects_ = std::move(objects); }
 
   status_t message() const;
 
-  /// Publishes the status when a second has passed since the last time.
+  /// Publishes the status, and the objects that are known where it was told of any.
+  void publish(LcmBus& bus);
+  /// The same when a second has passed since the last time.
   void publish_if_due(LcmBus& bus);
 
   /// The account in one line.
@@ -63,6 +69,7 @@ class StatusReporter {
   std::int64_t bad_messages_ = 0;
   std::map<std::string, std::int64_t> last_sequences_;  // by source
   std::string last_error_;
+  std::function<KnownObjects()> objects_;
   std::deque<Finished> recent_;  // of the last few seconds
   Clock::time_point last_published_ = Clock::now();
   LimitedLines complaints_;

@@ -246,8 +246,13 @@ RenderedGeometry Rasteriser::geometry() const {
 }  // namespace
 
 RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Camera& camera) {
+  return render_geometry(items, camera, cv::Rect(0, 0, camera.width, camera.height));
+}
+
+RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Camera& camera,
+                                 const cv::Rect& region_px) {
   check_camera(camera, "rendering camera");
-  Rasteriser rasteriser(camera, cv::Rect(0, 0, camera.width, camera.height), true);
+  Rasteriser rasteriser(camera, region_px, true);
   for (const RenderItem& item : items) rasteriser.draw(item);
   return rasteriser.geometry();
 }

@@ -2,14 +2,18 @@
 
 #include <houghstream/detections_t.hpp>
 #include <houghstream/images_t.hpp>
+#include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
+#include <houghstream/teaching_t.hpp>
 #include <optional>
 #include <string>
 
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
+#include "pipeline/types/known_objects.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "pipeline/types/teaching.hpp"
 
 // Plain structs to LCM messages and back. Everything that comes off the wire is checked here, once:
 // functions that read throw InputError and never return a made-up value.
@@ -61,5 +65,11 @@ houghstream::object_poses_t to_message(const ObjectPoses& poses);
 ObjectPoses poses_from_message(const houghstream::object_poses_t& message);
 
 houghstream::rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object);
+
+/// Who sends it, and when, is left to the sender.
+houghstream::known_objects_t to_message(const KnownObjects& known);
+
+houghstream::teaching_t to_message(const Teaching& teaching);
+Teaching teaching_from_message(const houghstream::teaching_t& message);
 
 }  // namespace houghstream

@@ -3,9 +3,11 @@
 #include <charconv>
 #include <houghstream/detections_t.hpp>
 #include <houghstream/images_t.hpp>
+#include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
+#include <houghstream/teaching_t.hpp>
 
 #include "pipeline/bus/channels.hpp"
 
@@ -23,6 +25,9 @@ constexpr std::size_t kVote = 4 * 4 + 4;
 constexpr std::size_t kDetectionNumbers = 5 * 4 + 3 * 4 + 4 + 4;  // score to n_votes_total
 constexpr std::size_t kPoseNumbers = 4 + 4 + 1 + 3 * 8 + 4 * 8 + 1 + 4 + 4 + 5 * 4;
 constexpr std::size_t kStatusNumbers = 4 + 4 + 5 * 8 + 3 * 4;
+constexpr std::size_t kKnownObject = 5 + 8;
+constexpr std::size_t kTeachingNumbers = 4 + 4 + 4 + 4 * 4 + 3 * 8 + 4 * 8;  // progress to quat
+constexpr std::size_t kSeenDirection = 3 * 4 + 1;
 
 void walk_image(WireReader& reader, std::optional<std::int64_t>& sequence) {
   reader.skip(8 + 4 * 4);  // utime, width, height, row_stride, pixelformat
@@ -78,6 +83,28 @@ void walk_status(WireReader& reader) {
   reader.read_string();
   reader.skip(kStatusNumbers);
   reader.read_string();
+}
+
+void walk_known_objects(WireReader& reader) {
+  reader.skip(8);
+  reader.read_string();
+  reader.skip(4);
+  reader.read_string();
+  reader.skip(8);
+  const std::size_t objects = reader.read_count(kKnownObject);
+  for (std::size_t left = objects; left > 0; --left) reader.read_string();
+  reader.skip(8 * objects);
+  reader.read_string();
+}
+
+void walk_teaching(WireReader& reader) {
+  reader.skip(8);
+  reader.read_string();
+  reader.read_string();
+  reader.skip(1);
+  reader.read_string();
+  reader.skip(kTeachingNumbers);
+  reader.skip(kSeenDirection * reader.read_count(kSeenDirection));
 }
 
 WireReader open_message(ByteView bytes, std::int64_t fingerprint, const std::string& type) {
@@ -144,6 +171,10 @@ void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& typ
     walk_poses(reader);
   } else if (fingerprint == status_t::getHash()) {
     walk_status(reader);
+  } else if (fingerprint == known_objects_t::getHash()) {
+    walk_known_objects(reader);
+  } else if (fingerprint == teaching_t::getHash()) {
+    walk_teaching(reader);
   } else if (fingerprint == rigid_transform_t::getHash()) {
     reader.skip(8 + 3 * 8 + 4 * 8);
   } else {

@@ -36,7 +36,7 @@ bool is_frame_message(ByteView bytes);
 std::int64_t parse_sequence(ByteView text);
 
 /// Throws InputError unless the bytes are one whole message of the type with this fingerprint. Types known here:
-/// images_t, detections_t, object_poses_t, status_t, rigid_transform_t.
+/// images_t, detections_t, object_poses_t, status_t, known_objects_t, teaching_t, rigid_transform_t.
 void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type);
 
 /// Decodes one whole message. Throws InputError.

@@ -45,6 +45,7 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   require(!options.keep_frames || bus.is_log(), "frames are kept of a log (-l file://LOG), not of {}", bus.url());
   const ChannelPattern channels(options.frame_channels);
   StatusReporter status(options.process);
+  status.tell_objects(options.objects);
   NewestOfEach<EncodedFrame> newest;
   bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;

@@ -8,6 +8,7 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
+#include "pipeline/types/known_objects.hpp"
 
 namespace houghstream {
 
@@ -16,6 +17,7 @@ struct DetectProcessOptions {
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
   std::optional<Camera> camera;                  ///< for frames that do not bring their own
   bool keep_frames = false;                      ///< of a log: copies the frames' events to the output log too
+  std::function<KnownObjects()> objects;         ///< what its store holds, for the status; empty = no store
 };
 
 /// Receives frames and publishes `detect`'s result for each one that is worked on: on a network always the newest of

@@ -15,6 +15,12 @@ class ModelCheck {
   /// `models`: classes that have one. Without any nothing is noticed; there is nothing to compare with.
   explicit ModelCheck(std::set<std::string> models) : models_(std::move(models)) {}
 
+  /// A class that has one from here on.
+  void add_model(const std::string& name) { models_.insert(name); }
+
+  /// Nothing more will be said.
+  bool settled() const { return settled_; }
+
   /// A warning that names both sides' classes, once, where the first ten detections_t that hold something hold no class
   /// with a model.
   std::optional<std::string> note(const Detections& detections);

@@ -52,6 +52,7 @@ class PoseProcess {
         several_cameras_(!channels_.is_name()) {}
 
   void run() {
+    status_.tell_objects(options_.objects);
     bus_.subscribe(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
     bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
     log_info("ready: frames from {}, detections from {} at {}", options_.frame_channels, channel::kDetections,
@@ -135,11 +136,18 @@ class PoseProcess {
     const bool is_ahead = ahead != ahead_.end() && ahead->second.frame.id == pair.id;
     const DecodedFrame decoded = is_ahead ? ahead->second : decode(pair.frame, pair.id.channel, options_.camera);
     detections.stages.push_back(decoded.decoding);
+    note_models();
     warn(models_.note(detections));
     ObjectPoses poses = estimate_(decoded.frame, detections, memory_.before(detections));
     poses.frame = pair.id;
     memory_.keep(poses);
     return poses;
+  }
+
+  // A store's objects may have become others meanwhile.
+  void note_models() {
+    if (!options_.objects || models_.settled()) return;
+    for (const KnownObject& object : options_.objects().objects) models_.add_model(object.name);
   }
 
   void publish(const ObjectPoses& poses) {

@@ -9,6 +9,7 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
+#include "pipeline/types/known_objects.hpp"
 #include "pipeline/types/object_pose.hpp"
 
 namespace houghstream {
@@ -18,6 +19,7 @@ struct PoseProcessOptions {
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
   std::optional<Camera> camera;                  ///< for frames that do not bring their own
   std::set<std::string> models;                  ///< classes that have one; where none is detected, it warns
+  std::function<KnownObjects()> objects;         ///< what its store holds, for the status; they have models too
 };
 
 /// The poses of a frame's detections; the third argument is what was given for this camera's frame before, to start

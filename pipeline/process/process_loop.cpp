@@ -6,7 +6,6 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/bus/channels.hpp"
 
 namespace houghstream {
 namespace {
@@ -79,11 +78,11 @@ void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work)
   }
 }
 
-void end_process(LcmBus& bus, const StatusReporter& status) {
+void end_process(LcmBus& bus, StatusReporter& status) {
   if (bus.is_log()) {
     bus.close();
   } else {
-    bus.publish(channel::kStatus, status.message());
+    status.publish(bus);
   }
   log_info("ends: {}", status.summary());
 }

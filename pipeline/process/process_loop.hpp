@@ -18,6 +18,6 @@ using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work);
 
 /// Says the last word: publishes the final status for whoever adds up, or ends the output log, and logs the account.
-void end_process(LcmBus& bus, const StatusReporter& status);
+void end_process(LcmBus& bus, StatusReporter& status);
 
 }  // namespace houghstream

@@ -134,11 +134,8 @@ void finish_slice(const Extent& extent, const GridSettings& settings, double few
   }
 }
 
-}  // namespace
-
-DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings) {
+DistanceGrid fuse_extent(const std::vector<DepthView>& views, const Extent& extent, const GridSettings& settings) {
   require(settings.voxel > 0.0, "voxels of {} m, expected more than 0", settings.voxel);
-  const Extent extent = find_extent(views);
   DistanceGrid grid = make_grid(extent, settings);
   const double fewest = std::max(1.0, settings.fewest_share * static_cast<double>(views.size()));
   parallel_for(settings.threads, grid.nz, [&](int k) {
@@ -146,6 +143,20 @@ DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSetti
     finish_slice(extent, settings, fewest, k, grid);
   });
   return grid;
+}
+
+}  // namespace
+
+DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings) {
+  return fuse_extent(views, find_extent(views), settings);
+}
+
+DistanceGrid fuse_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
+                      const GridSettings& settings) {
+  Extent extent;
+  extent.low = box.min();
+  extent.high = box.max();
+  return fuse_extent(views, extent, settings);
 }
 
 }  // namespace houghstream::fusion

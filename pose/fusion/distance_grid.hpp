@@ -40,4 +40,9 @@ struct GridSettings {
 /// `most_voxels`.
 DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings);
 
+/// The same in a box of the object frame, metres, whatever else the views show there: what no view has seen is inside,
+/// with weight 0. Throws InputError where the box needs more than `most_voxels`.
+DistanceGrid fuse_box(const std::vector<DepthView>& views, const Eigen::AlignedBox3d& box,
+                      const GridSettings& settings);
+
 }  // namespace houghstream::fusion

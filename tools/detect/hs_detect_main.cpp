@@ -1,7 +1,7 @@
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
-#include "drivers/store/object_store.hpp"
+#include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -13,16 +13,53 @@ namespace {
 
 using namespace houghstream;
 
-/// The forest of a file, or of an object store.
-Forest load_taught(const std::string& forest_file, const std::string& objects) {
-  require(forest_file.empty() != objects.empty(), "expected either --objects STORE or --forest FILE");
-  if (objects.empty()) return load_forest(forest_file);
-  const store::ObjectStore store = store::read_store(objects);
+Detector make_detector(Forest forest, const SearchOptions& search) {
+  const DetectionSettings settings = search.settings_for(forest);
+  for (const ObjectClass& object : forest.classes) log_debug("class {}: {}", object.class_id, object.name);
+  return Detector(std::move(forest), settings);
+}
+
+std::shared_ptr<const Detector> load_detector(const store::ObjectStore& store, const SearchOptions& search) {
   Forest forest = load_forest(store.forest_file());
   std::vector<std::string> names;
   for (const ObjectClass& object : forest.classes) names.push_back(object.name);
   store::require_same_objects(store, names);
-  return forest;
+  return std::make_shared<const Detector>(make_detector(std::move(forest), search));
+}
+
+/// What a command line asks for.
+struct DetectOptions {
+  std::string objects;
+  std::string forest_file;
+  std::string url;
+  std::string output_log;
+  SearchOptions search;
+  DetectProcessOptions process;
+};
+
+/// A forest stays what it is.
+void run_with_forest(const DetectOptions& options) {
+  const Detector detector = make_detector(load_forest(options.forest_file), options.search);
+  LcmBus bus(options.url, options.output_log);
+  DetectorWorkspace workspace;
+  run_detect_process(bus, options.process, [&](const RgbdFrame& frame) { return detector.detect(frame, workspace); });
+}
+
+/// A store may change while frames go by: each frame is searched by what is there when its turn comes.
+void run_with_store(DetectOptions options) {
+  if (!options.search.threshold) options.search.threshold = kStoreThreshold;
+  store::StoreWatch<Detector> watch(
+      options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options.search); });
+  options.process.objects = [&] { return watch.known(); };
+  LcmBus bus(options.url, options.output_log);
+  if (!bus.is_log()) watch.follow();  // all of a log goes by the same
+  require(!bus.is_log() || watch.current(), "{}: no such folder, expected an object store of hs-teach",
+          options.objects);
+  DetectorWorkspace workspace;
+  run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
+    const std::shared_ptr<const Detector> detector = watch.current();
+    return detector ? detector->detect(frame, workspace) : Detections{frame.id, {}, frame.stages};
+  });
 }
 
 }  // namespace
@@ -31,35 +68,23 @@ int main(int argc, char** argv) {
   CommandLine app(
       "Finds the taught objects in the newest RGB-D frame of each camera in turn and publishes detections_t",
       "hs-detect");
-  std::string forest_file;
-  std::string objects;
+  DetectOptions options;
   std::string camera;
-  std::string url;
-  std::string output_log;
-  SearchOptions search;
-  DetectProcessOptions options;
-  app.add_option("--objects", objects, "object store of hs-teach");
-  app.add_option("--forest", forest_file, "forest file of hs-train, instead of --objects");
+  app.add_option("--objects", options.objects,
+                 "object store of hs-teach; it may be made, and changed, while this runs");
+  app.add_option("--forest", options.forest_file, "forest file of hs-train, instead of --objects");
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
-  add_search_options(app, search);
-  add_frame_channels_option(app, options.frame_channels);
-  app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
-  app.add_flag("--keep-frames", options.keep_frames,
+  add_search_options(app, options.search);
+  add_frame_channels_option(app, options.process.frame_channels);
+  app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
+  app.add_flag("--keep-frames", options.process.keep_frames,
                "with --output-log: write the frames too, each before its result, so that hs-pose can work on that log");
-  add_lcm_url_option(app, url);
+  add_lcm_url_option(app, options.url);
 
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
-    if (!camera.empty()) options.camera = parse_camera(camera);
-    Forest forest = load_taught(forest_file, objects);
-    if (!objects.empty() && !search.threshold) search.threshold = kStoreThreshold;
-    const DetectionSettings settings = search.settings_for(forest);
-    const Detector detector(std::move(forest), settings);
-    for (const ObjectClass& object : detector.forest().classes) {
-      log_debug("class {}: {}", object.class_id, object.name);
-    }
-    LcmBus bus(url, output_log);
-    DetectorWorkspace workspace;
-    run_detect_process(bus, options, [&](const RgbdFrame& frame) { return detector.detect(frame, workspace); });
+    if (!camera.empty()) options.process.camera = parse_camera(camera);
+    require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
+    options.objects.empty() ? run_with_forest(options) : run_with_store(options);
   });
 }

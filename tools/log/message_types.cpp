@@ -7,9 +7,11 @@
 #include <houghstream/image_t.hpp>
 #include <houghstream/images_t.hpp>
 #include <houghstream/kinect_frame_msg_t.hpp>
+#include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
+#include <houghstream/teaching_t.hpp>
 #include <map>
 
 namespace houghstream::log_tools {
@@ -29,6 +31,8 @@ std::string type_name(std::int64_t fingerprint) {
       {detections_t::getHash(), "detections_t"},
       {object_poses_t::getHash(), "object_poses_t"},
       {status_t::getHash(), "status_t"},
+      {known_objects_t::getHash(), "known_objects_t"},
+      {teaching_t::getHash(), "teaching_t"},
       {0x6c636d2073656c66, "LCM's own test"},  // the text "lcm self test"
   };
   if (fingerprint == 0) return "no message";

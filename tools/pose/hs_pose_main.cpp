@@ -1,5 +1,5 @@
 #include "drivers/datasets/bop_dataset.hpp"
-#include "drivers/store/object_store.hpp"
+#include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -10,59 +10,94 @@
 
 namespace {
 
-/// Meshes by class name; without a folder every detection is answered with "no model".
-std::map<std::string, houghstream::Mesh> load_models(const std::string& objects, const std::string& folder,
-                                                     double unit_m) {
-  using namespace houghstream;
-  require(objects.empty() || folder.empty(), "expected either --objects STORE or --models FOLDER");
-  if (!objects.empty()) return store::load_store_meshes(store::read_store(objects));
-  if (!folder.empty()) return load_class_models(folder, unit_m);
+using namespace houghstream;
+
+/// What a command line asks for.
+struct PoseOptions {
+  std::string objects;
+  std::string models;
+  double model_unit_m = 1e-3;
+  std::string url;
+  std::string output_log;
+  PoseSettings settings;
+  std::optional<float> min_quality;
+  PoseProcessOptions process;
+};
+
+/// Without a folder every detection is answered with "no model".
+std::map<std::string, Mesh> load_models(const PoseOptions& options) {
+  if (!options.models.empty()) return load_class_models(options.models, options.model_unit_m);
   log_warning("neither --objects nor --models: detections are answered without a pose");
   return {};
+}
+
+/// The estimator may be another one for each frame.
+using CurrentEstimator = std::function<std::shared_ptr<const PoseEstimator>()>;
+
+void run(LcmBus& bus, const PoseProcessOptions& options, const CurrentEstimator& current) {
+  run_pose_process(bus, options, [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
+    return current()->estimate(frame, detections, earlier);
+  });
+}
+
+/// Models stay what they are.
+void run_with_models(PoseOptions options) {
+  std::map<std::string, Mesh> meshes = load_models(options);
+  if (options.min_quality) options.settings.quality.least = *options.min_quality;
+  for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
+  const auto estimator = std::make_shared<const PoseEstimator>(std::move(meshes), options.settings);
+  LcmBus bus(options.url, options.output_log);
+  run(bus, options.process, [&] { return estimator; });
+}
+
+/// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
+void run_with_store(PoseOptions options) {
+  options.settings.quality.least = options.min_quality.value_or(kStoreQuality);
+  const auto load = [&](const store::ObjectStore& store) {
+    PoseSettings settings = options.settings;
+    settings.class_quality = stored_quality(store, settings.quality);
+    return std::make_shared<const PoseEstimator>(store::load_store_meshes(store), settings);
+  };
+  store::StoreWatch<PoseEstimator> watch(options.objects, load);
+  const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
+  options.process.objects = [&] { return watch.known(); };
+  LcmBus bus(options.url, options.output_log);
+  if (!bus.is_log()) watch.follow();  // all of a log goes by the same
+  require(!bus.is_log() || watch.current(), "{}: no such folder, expected an object store of hs-teach",
+          options.objects);
+  run(bus, options.process, [&] {
+    std::shared_ptr<const PoseEstimator> estimator = watch.current();
+    return estimator ? estimator : without_models;
+  });
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace houghstream;
   CommandLine app("Refines detections to 6-DoF poses and publishes object_poses_t", "hs-pose");
-  std::string objects;
-  std::string models;
-  double model_unit_m = 1e-3;
+  PoseOptions options;
   std::string camera;
-  std::string url;
-  std::string output_log;
-  PoseSettings settings;
-  std::optional<float> min_quality;
-  PoseProcessOptions options;
-  app.add_option("--objects", objects, "object store of hs-teach, instead of --models");
-  add_model_options(app, models, model_unit_m);
+  app.add_option("--objects", options.objects,
+                 "object store of hs-teach, instead of --models; it may be made, and changed, while this runs");
+  add_model_options(app, options.models, options.model_unit_m);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
-  app.add_option("--threads", settings.threads, "threads").range(1, 64).capture_default_str();
-  app.add_option("--min-score", settings.min_score, "poses are looked for from this score of the detection on")
+  app.add_option("--threads", options.settings.threads, "threads").range(1, 64).capture_default_str();
+  app.add_option("--min-score", options.settings.min_score, "poses are looked for from this score of the detection on")
       .range(0.0, 1.0)
       .capture_default_str();
-  app.add_option("--min-quality", min_quality,
+  app.add_option("--min-quality", options.min_quality,
                  fmt::format("poses that are right with a lower probability are withheld, and it is said why; default: "
                              "{}, of a store's objects {}",
-                             settings.quality.least, kStoreQuality))
+                             options.settings.quality.least, kStoreQuality))
       .range(0.0, 1.0);
-  add_frame_channels_option(app, options.frame_channels);
-  app.add_option("--output-log", output_log, "with -l file://LOG: write the results to this log");
-  add_lcm_url_option(app, url);
+  add_frame_channels_option(app, options.process.frame_channels);
+  app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
+  add_lcm_url_option(app, options.url);
 
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
-    if (!camera.empty()) options.camera = parse_camera(camera);
-    std::map<std::string, Mesh> meshes = load_models(objects, models, model_unit_m);
-    settings.quality.least = min_quality.value_or(objects.empty() ? settings.quality.least : kStoreQuality);
-    if (!objects.empty()) settings.class_quality = stored_quality(store::read_store(objects), settings.quality);
-    for (const auto& [name, mesh] : meshes) options.models.insert(name);
-    const PoseEstimator estimator(std::move(meshes), settings);
-    LcmBus bus(url, output_log);
-    run_pose_process(bus, options,
-                     [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
-                       return estimator.estimate(frame, detections, earlier);
-                     });
+    if (!camera.empty()) options.process.camera = parse_camera(camera);
+    require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    options.objects.empty() ? run_with_models(options) : run_with_store(options);
   });
 }

@@ -4,6 +4,7 @@
 
 #include "tools/common/tool_main.hpp"
 #include "tools/render/render_jobs.hpp"
+#include "tools/render/take_jobs.hpp"
 
 // hs-render: training views, backgrounds and test scenes made by code, in BOP format.
 
@@ -20,6 +21,7 @@ struct Arguments {
   int background_count = 215;
   SceneJob scene;
   std::string sensor = "structured_light";
+  TakesJob takes;
 };
 
 void add_common(CommandLine& command, Arguments& arguments) {
@@ -67,6 +69,21 @@ void add_scene(CommandLine& app, Arguments& arguments) {
       .capture_default_str();
 }
 
+CommandLine add_takes(CommandLine& app, Arguments& arguments) {
+  CommandLine takes = app.add_subcommand("takes", "recordings of objects that are shown to a camera, with truth");
+  add_common(takes, arguments);
+  takes.add_option("--objects", arguments.takes.objects, "names, or all (twelve)").delimiter(',').capture_default_str();
+  takes.add_option("--take", arguments.takes.take, "1: upright, 2: laid on its side or turned over; without it both")
+      .range(1, 2);
+  takes.add_option("--frames", arguments.takes.frames, "of a take, which is one turn").capture_default_str();
+  takes.add_option("--fps", arguments.takes.fps, "frames a second").capture_default_str();
+  takes.add_option("--world", arguments.takes.world, "another room, light and movement for each number")
+      .capture_default_str()
+      .range(0, 999);
+  takes.add_flag("--development", arguments.takes.development, "rooms to choose settings in, of training seeds");
+  return takes;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -77,6 +94,7 @@ int main(int argc, char** argv) {
   app.require_subcommand();
   const CommandLine training = add_training(app, arguments);
   const CommandLine background = add_background(app, arguments);
+  const CommandLine takes = add_takes(app, arguments);
   add_scene(app, arguments);
   return run_tool(app, argc, argv, [&] {
     if (training.given()) {
@@ -86,6 +104,8 @@ int main(int argc, char** argv) {
       render_training(arguments.common, arguments.objects, arguments.turntable);
     } else if (background.given()) {
       render_background(arguments.common, arguments.background_count);
+    } else if (takes.given()) {
+      render_takes(arguments.common, arguments.takes);
     } else {
       arguments.scene.sensor = world::parse_sensor(arguments.sensor);
       render_scene(arguments.common, arguments.scene);

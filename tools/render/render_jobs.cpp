@@ -48,6 +48,8 @@ Symmetries symmetries_of(const TaughtObject& object) {
   return symmetries;
 }
 
+}  // namespace
+
 void write_models(const std::vector<TaughtObject>& objects, const std::filesystem::path& folder) {
   std::vector<NamedModel> models;
   models.reserve(objects.size());
@@ -56,7 +58,6 @@ void write_models(const std::vector<TaughtObject>& objects, const std::filesyste
   write_bop_models(models, folder);
 }
 
-/// Folders are written anew: frames of an earlier, longer run must not stay behind.
 std::filesystem::path fresh_scene(const std::filesystem::path& folder) {
   for (const char* part : {"rgb", "depth", "mask_visib"}) {
     std::error_code error;
@@ -65,8 +66,6 @@ std::filesystem::path fresh_scene(const std::filesystem::path& folder) {
   }
   return folder;
 }
-
-}  // namespace
 
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,
                      const TurntableSettings& turntable) {

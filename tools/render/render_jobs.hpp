@@ -16,6 +16,12 @@ struct RenderOptions {
   int threads = 2;
 };
 
+/// The objects as a BOP models folder.
+void write_models(const std::vector<world::TaughtObject>& objects, const std::filesystem::path& folder);
+
+/// A scene's folder without pictures: frames of an earlier, longer run must not stay behind. Returns it.
+std::filesystem::path fresh_scene(const std::filesystem::path& folder);
+
 /// OUT/00000I/ for each object id I, and OUT/models/. `objects` holds names, or only "all" (the demo's four classes) or
 /// only "all_20" (twenty_class_ids()) or "all_40" (forty_object_ids()).
 void render_training(const RenderOptions& options, const std::vector<std::string>& objects,

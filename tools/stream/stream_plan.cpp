@@ -33,18 +33,17 @@ std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
   const bool has_store = !options.objects.empty();
   const Words store = {"--objects", options.objects};
   const Words forest = {"--forest", options.forest};
-  const std::string folder = has_store ? options.objects + "/models" : options.models;
-  const Words models = folder.empty() ? Words() : Words{"--models", folder};
+  const Words models = options.models.empty() ? Words() : Words{"--models", options.models};
   const auto with_camera = [&](Words words) {
     words.insert(words.end(), camera.begin(), camera.end());
     return words;
   };
   std::vector<ChildPlan> plans;
   plans.push_back(plan(options, "detect", with_camera(has_store ? store : forest), options.detect_options));
-  if (!models.empty())
+  if (has_store || !models.empty())
     plans.push_back(plan(options, "pose", with_camera(has_store ? store : models), options.pose_options));
   if (options.view) {
-    plans.push_back(plan(options, "view", with_camera(models), options.view_options));
+    plans.push_back(plan(options, "view", with_camera(has_store ? store : models), options.view_options));
     plans.back().ends_stream = true;
   }
   if (!options.source.empty()) {

@@ -123,7 +123,9 @@ def images_of(data):
 class Status:
     utime: int
     process: str
+    received: int
     processed: int
+    skipped: int
     lost: int
     last_error: str
 
@@ -132,6 +134,54 @@ def status_of(data):
     wire = Wire(data)
     utime, process = wire.read("q"), wire.text()
     wire.read("if")
-    _, processed, _, lost, _ = wire.read("5q")
+    received, processed, skipped, lost, _ = wire.read("5q")
     wire.read("3f")
-    return Status(utime, process, processed, lost, wire.text())
+    return Status(utime, process, received, processed, skipped, lost, wire.text())
+
+
+@dataclass
+class KnownObjects:
+    utime: int
+    process: str
+    store: str
+    since: int
+    objects: dict  # since when each is known, by name
+    problem: str
+
+
+def known_objects_of(data):
+    wire = Wire(data)
+    utime, process = wire.read("q"), wire.text()
+    wire.read("i")
+    store, since = wire.text(), wire.read("q")
+    names = [wire.text() for _ in range(wire.read("i"))]
+    times = [wire.read("q") for _ in names]
+    return KnownObjects(utime, process, store, since, dict(zip(names, times)), wire.text())
+
+
+TEACHING_STATES = ("invalid", "choosing", "tracking", "lost", "fusing", "training", "done", "failed")
+
+
+@dataclass
+class Teaching:
+    utime: int
+    name: str
+    state: str
+    message: str
+    progress: float  # NaN: cannot be told
+    frames: int
+    keyframes: int
+    box: tuple  # x, y, width, height in pixels; NaN where it is not known
+    seen: tuple  # of the directions
+
+
+def teaching_of(data):
+    wire = Wire(data)
+    utime, _, name = wire.read("q"), wire.text(), wire.text()
+    state, message = TEACHING_STATES[wire.read("b")], wire.text()
+    progress, frames, keyframes, *box = wire.read("fii4f")
+    wire.read("7d")
+    count = wire.read("i")
+    wire.position += 3 * 4 * count
+    seen = tuple(wire.data[wire.position : wire.position + count])
+    return Teaching(utime, name, state, message, progress, frames, keyframes, tuple(box), seen)

@@ -14,6 +14,7 @@ constexpr int kColumns = 12;
 constexpr int kShown = 24;
 constexpr int kTile_px = 100;
 constexpr int kTitle_px = 26;
+const cv::Scalar kGround(40, 40, 40);
 
 /// The view, square, without being distorted; what is not the object is darker.
 cv::Mat tile_of(const TrainingView& view) {
@@ -32,10 +33,20 @@ cv::Mat tile_of(const TrainingView& view) {
 
 }  // namespace
 
+std::string title_of(const store::StoredObject& object) {
+  return fmt::format("{} (object {}): {} views, {}{}", object.name, object.id, object.views, object.attitudes,
+                     object.coloured ? "" : ", colour unknown");
+}
+
+void write_title(const std::string& title, cv::Mat& view_picture) {
+  view_picture.rowRange(0, kTitle_px).setTo(kGround);
+  cv::putText(view_picture, title, {4, kTitle_px - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.55, {255, 255, 255}, 1, cv::LINE_AA);
+}
+
 cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& title) {
   const int rows = kShown / kColumns;
-  cv::Mat picture(kTitle_px + rows * kTile_px, kColumns * kTile_px, CV_8UC3, cv::Scalar(40, 40, 40));
-  cv::putText(picture, title, {4, kTitle_px - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.55, {255, 255, 255}, 1, cv::LINE_AA);
+  cv::Mat picture(kTitle_px + rows * kTile_px, kColumns * kTile_px, CV_8UC3, kGround);
+  write_title(title, picture);
   const int count = static_cast<int>(views.size());
   for (int i = 0; i < std::min(kShown, count); ++i) {
     const std::size_t which = static_cast<std::size_t>(count <= kShown ? i : i * (count - 1) / (kShown - 1));

@@ -5,13 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "drivers/store/object_store.hpp"
 #include "pipeline/types/training_view.hpp"
 
 namespace houghstream::teach {
 
+/// What stands above an object's views.
+std::string title_of(const store::StoredObject& object);
+
 /// Two dozen of an object's views, spread over all of them, side by side under a title, for a person to look at.
 /// CV_8UC3, the same width for every object.
 cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& title);
+
+/// Another title above them.
+void write_title(const std::string& title, cv::Mat& view_picture);
 
 /// The pictures below one another. Throws InputError where one cannot be read or the sheet not be written.
 void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& sheet);

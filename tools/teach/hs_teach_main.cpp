@@ -1,10 +1,14 @@
 #include <opencv2/core.hpp>
 #include <sstream>
 
+#include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/teach/show/show_jobs.hpp"
+#include "tools/teach/show/show_stream.hpp"
+#include "tools/teach/store_rename.hpp"
 #include "tools/teach/teach_jobs.hpp"
 
-// hs-teach: objects are taught from their meshes, into an object store.
+// hs-teach: objects are taught from their meshes, or by showing them, into an object store.
 
 namespace {
 
@@ -61,6 +65,55 @@ CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   return mesh;
 }
 
+cv::Rect parse_box(const std::string& text) {
+  cv::Rect box;
+  char rest = 0;
+  const int read = std::sscanf(text.c_str(), "%d,%d,%d,%d%c", &box.x, &box.y, &box.width, &box.height, &rest);
+  require(read == 4 && box.x >= 0 && box.y >= 0 && box.width > 0 && box.height > 0,
+          "--box '{}', expected X,Y,W,H in pixels of the first frame", text);
+  return box;
+}
+
+/// What is not of ShowOptions, or in other words there.
+struct ShowWords {
+  std::string box;
+  std::string lcm_url;
+  bool from_stream = false;
+};
+
+CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
+  CommandLine show = app.add_subcommand("show", "teaches an object that a camera is moved around, or that turns");
+  show.add_option("--source", options.source,
+                  "openni2[:CAMERA], or a recording: log:FILE, FILE.klg, FILE.oni, bop:DIR, uw:DIR, tum:DIR");
+  show.add_flag("--from-stream", words.from_stream,
+                "instead: frames of --channel on the bus, while the stream goes on");
+  show.add_option("--second", options.second, "a second take, the object laid on its side or turned over");
+  show.add_option("--name", options.name, "of the object").required();
+  show.add_option("--out", options.out, "object store to write; one that is there is replaced when all is done");
+  show.add_flag("--add", options.add, "the object joins those of the store");
+  show.add_option("--box", words.box,
+                  "X,Y,W,H about the object in the first frame; default: what stands nearest the middle");
+  show.add_option("--keep", options.keep, "folder for model, views, pictures and report");
+  show.add_flag("--go-on", options.go_on, "teaches a poor model too");
+  show.add_clearing_flag("--no-teach", options.teach, "makes the model only");
+  show.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of frames that come without");
+  show.add_option("--channel", options.channel,
+                  "of the frames in a log; default: the first that holds any; of a stream OPENNI_FRAME");
+  show.add_option("--seconds", options.longest_s, "that a take of a camera lasts at most").capture_default_str();
+  show.add_option("--cache", options.rooms_cache, "where rendered rooms are kept; default ~/.cache/houghstream");
+  show.add_option("--seed", options.seed, "same seed, same take: same store").capture_default_str();
+  show.add_option("--threads", options.threads, "any number gives the same store").range(1, 256).capture_default_str();
+  add_lcm_url_option(show, words.lcm_url);
+  return show;
+}
+
+int run_show(ShowOptions options, const ShowWords& words) {
+  if (!words.box.empty()) options.box = parse_box(words.box);
+  require(options.source.empty() == words.from_stream, "expected either --source SOURCE or --from-stream");
+  require(!words.from_stream || options.second.empty(), "--second goes with --source, not with --from-stream");
+  return words.from_stream ? show_from_stream(options, words.lcm_url) : show_sources(options, nullptr);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -68,24 +121,37 @@ int main(int argc, char** argv) {
   Lists lists;
   std::filesystem::path folder;
   std::string name;
+  std::string new_name;
+  ShowOptions shown;
+  ShowWords words;
+  int status = 0;
   cv::setNumThreads(1);  // views are rendered in parallel, each on one thread
-  CommandLine app("Teaches objects from their meshes, into an object store for hs-detect and hs-pose", "hs-teach");
+  CommandLine app(
+      "Teaches objects from their meshes, or by showing them, into an object store for hs-detect and hs-pose",
+      "hs-teach");
   app.require_subcommand();
   const CommandLine mesh = add_mesh(app, options, lists);
+  const CommandLine show = add_show(app, shown, words);
   CommandLine list = app.add_subcommand("list", "the objects of a store");
   list.add_option("store", folder, "object store").required();
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
   remove.add_option("name", name, "of the object").required();
+  CommandLine rename = app.add_subcommand("rename", "gives an object of a store another name");
+  rename.add_option("store", folder, "object store").required();
+  rename.add_option("name", name, "of the object").required();
+  rename.add_option("new-name", new_name, "that it gets").required();
   CommandLine practise = app.add_subcommand("practise", "learns anew what detections and poses of a store are worth");
   practise.add_option("store", folder, "object store").required();
   add_practice_options(practise, options);
-  return run_tool(app, argc, argv, [&] {
+  const int failed = run_tool(app, argc, argv, [&] {
     options.meshes.names = split(lists.names);
     options.meshes.ids = split(lists.ids);
     options.rooms.further = split(lists.rooms);
     options.rooms.threads = options.threads;
-    if (mesh.given()) {
+    if (show.given()) {
+      status = run_show(shown, words);
+    } else if (mesh.given()) {
       teach_meshes(options);
     } else if (practise.given()) {
       options.practice.seed = options.seed;
@@ -93,8 +159,11 @@ int main(int argc, char** argv) {
       practise_store(folder, options.practice);
     } else if (list.given()) {
       list_store(folder);
+    } else if (rename.given()) {
+      rename_in_store(folder, name, new_name);
     } else {
       remove_from_store(folder, name);
     }
   });
+  return failed != 0 ? failed : status;
 }

@@ -138,17 +138,17 @@ std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes) {
   return models;
 }
 
-std::string title_of(const StoredObject& object) {
-  return fmt::format("{} (object {}): {} views, {}{}", object.name, object.id, object.views, object.attitudes,
-                     object.coloured ? "" : ", colour unknown");
-}
-
 /// Views of all objects, in order; their pictures go to the store, and to the dump where one is wanted.
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
                                      ObjectStore& made, const Progress& progress) {
   std::vector<TrainingView> all;
   for (const TaughtMesh& taught : meshes) {
     std::vector<TrainingView> views = render_views(taught, options, views_of_each(meshes.size()));
+    for (const TrainingView& own : options.own_views) {
+      if (own.class_name != taught.name) continue;
+      views.push_back(own);
+      views.back().class_id = taught.id;
+    }
     StoredObject object;
     object.id = taught.id;
     object.name = taught.name;
@@ -277,7 +277,11 @@ void teach_meshes(const TeachOptions& options) {
   store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on
   Contents old;
   if (options.add) old = read_contents(options.out);
-  std::vector<TaughtMesh> meshes = read_meshes(options.meshes);
+  std::vector<TaughtMesh> meshes = options.shown;
+  if (meshes.empty() || !options.meshes.sources.empty()) {
+    std::vector<TaughtMesh> read = read_meshes(options.meshes);
+    std::move(read.begin(), read.end(), std::back_inserter(meshes));
+  }
   require_new(old.list, meshes);
   give_ids(old.list, meshes);
   progress(fmt::format("{} meshes read", meshes.size()));

@@ -15,6 +15,8 @@ namespace houghstream::teach {
 /// What hs-teach mesh is asked for.
 struct TeachOptions {
   MeshSources meshes;
+  std::vector<TaughtMesh> shown;        ///< beside those: checked as they are (mesh_checks.hpp)
+  std::vector<TrainingView> own_views;  ///< of a camera, by class_name, beside the rendered ones; in the mesh's frame
   RoomSettings rooms;
   std::filesystem::path out;                   ///< the store
   std::string attitudes = "resting";           ///< see world::parse_mesh_attitudes

@@ -28,6 +28,7 @@ BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channels, const Mat
   subscribe_to_frames(frame_channels);
   subscribe_to_results();
   subscribe_to_status();
+  subscribe_to_teaching();
   const BlockStopSignals block;
   thread_ = std::thread([this] { listen(); });
 }
@@ -96,6 +97,13 @@ void BusWatcher::subscribe_to_status() {
                    const auto message = decode_message<houghstream::status_t>(arrival.bytes);
                    stream_.note_process({message.process, message.pid, message.rate_hz, message.frames_skipped,
                                          message.frames_lost, message.frames_refused, microseconds(arrival.time)});
+                 }));
+}
+
+void BusWatcher::subscribe_to_teaching() {
+  bus_.subscribe(channel::kTeaching, counting_bad([this](const Arrival& arrival) {
+                   Teaching teaching = teaching_from_message(decode_message<houghstream::teaching_t>(arrival.bytes));
+                   stream_.note_teaching(std::move(teaching), microseconds(arrival.time));
                  }));
 }
 

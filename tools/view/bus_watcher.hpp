@@ -11,7 +11,6 @@
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "tools/view/match_queue.hpp"
-#include "tools/view/shown_camera.hpp"
 #include "tools/view/stream_watch.hpp"
 
 namespace houghstream::view {
@@ -55,6 +54,7 @@ class BusWatcher {
   void subscribe_to_frames(const std::string& frame_channels);
   void subscribe_to_results();
   void subscribe_to_status();
+  void subscribe_to_teaching();
   LcmBus::Handler counting_bad(LcmBus::Handler handler);
   void take_frame(const Arrival& arrival);
   void listen();

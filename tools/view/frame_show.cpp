@@ -24,16 +24,32 @@ ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& cam
   return viewed;
 }
 
+std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
+  require(settings.models.empty() || settings.objects.empty(), "expected either --objects STORE or --models FOLDER");
+  ClassModels models;
+  if (!settings.models.empty()) models = load_class_models(settings.models, settings.model_unit_m);
+  return std::make_shared<const ClassModels>(std::move(models));
+}
+
 }  // namespace
 
-FrameShow::FrameShow(const ShowSettings& settings)
-    : models_(settings.models.empty() ? ClassModels() : load_class_models(settings.models, settings.model_unit_m)),
+FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
+    : models_(load_models(settings)),
       window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
       outputs_(settings.outputs),
       camera_(settings.camera),
       picture_settings_(settings.picture),
       preview_(settings.preview) {
   picture_settings_.show_keys = window_ != nullptr;
+  if (settings.objects.empty()) return;
+  store_ = std::make_unique<store::StoreWatch<ClassModels>>(settings.objects, [](const store::ObjectStore& store) {
+    return std::make_shared<const ClassModels>(store::load_store_meshes(store));
+  });
+  store_->follow();
+  picture_settings_.can_teach = true;
+  order_.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  order_.store = settings.objects;
+  order_.lcm_url = lcm_url;
 }
 
 void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
@@ -52,8 +68,28 @@ bool FrameShow::handle_keys(BusWatcher& watcher) {
   if (!window_) return true;
   const KeyAction action = window_->handle_keys(picture_settings_);
   if (action == KeyAction::kNextCamera) watcher.cameras().next();
+  if (action == KeyAction::kTeach) teach();
+  starter_.runs();
   if (action == KeyAction::kRedraw && viewed_) window_->show(draw(*viewed_), viewed_->frame.id);
   return action != KeyAction::kEnd;
+}
+
+std::shared_ptr<const ClassModels> FrameShow::models() const {
+  const std::shared_ptr<const ClassModels> of_store = store_ ? store_->current() : nullptr;
+  return of_store ? of_store : models_;
+}
+
+void FrameShow::teach() {
+  if (!store_ || !viewed_) return;
+  std::vector<std::string> known;
+  for (const KnownObject& object : store_->known().objects) known.push_back(object.name);
+  order_.name = free_name(known);
+  order_.joins_others = !known.empty();
+  order_.channel = viewed_->frame.id.channel;
+  const cv::Rect box = picture_settings_.box & cv::Rect({}, viewed_->frame.colour.size());
+  order_.box = box.empty() ? std::nullopt : std::optional<cv::Rect>(box);
+  picture_settings_.box = {};
+  starter_.press(order_);
 }
 
 std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher& watcher) {
@@ -74,7 +110,7 @@ std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher&
 }
 
 cv::Mat FrameShow::draw(const ViewedFrame& viewed) const {
-  return draw_frame_view(viewed, models_, picture_settings_, stream_);
+  return draw_frame_view(viewed, *models(), picture_settings_, stream_);
 }
 
 void FrameShow::remember(const ViewedFrame& viewed) {

@@ -4,8 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "drivers/store/store_watch.hpp"
 #include "tools/view/bus_watcher.hpp"
 #include "tools/view/drawing/frame_view.hpp"
+#include "tools/view/teaching_starter.hpp"
 #include "tools/view/view_outputs.hpp"
 #include "tools/view/view_window.hpp"
 
@@ -16,6 +18,7 @@ struct ShowSettings {
   std::optional<Camera> camera;  ///< of frames that carry none of their own
   std::string models;            ///< folder of models for outlines; "" = none
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
+  std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
   FrameViewSettings picture;
   bool preview = false;  ///< send each picture on the preview channel
   OutputSettings outputs;
@@ -29,8 +32,9 @@ struct ShowSettings {
 /// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
 class FrameShow {
  public:
-  /// Throws InputError where there are no models, no display or no folder to write to.
-  explicit FrameShow(const ShowSettings& settings);
+  /// A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the store, if there is one.
+  /// Throws InputError where there are no models, a store and a folder of models, no display or no folder to write to.
+  explicit FrameShow(const ShowSettings& settings, const std::string& lcm_url = "");
 
   /// Shows a frame, unless paused or another camera is shown by now. One that cannot be understood is reported to
   /// `watcher` and passed over. Throws InputError where a file cannot be written.
@@ -46,9 +50,12 @@ class FrameShow {
  private:
   std::optional<cv::Mat> drawn(const MatchedFrame& matched, BusWatcher& watcher);
   cv::Mat draw(const ViewedFrame& viewed) const;
+  void teach();
+  std::shared_ptr<const ClassModels> models() const;
   void remember(const ViewedFrame& viewed);
 
-  ClassModels models_;
+  std::shared_ptr<const ClassModels> models_;
+  std::unique_ptr<store::StoreWatch<ClassModels>> store_;
   std::unique_ptr<ViewWindow> window_;
   ViewOutputs outputs_;
   std::optional<Camera> camera_;
@@ -56,6 +63,8 @@ class FrameShow {
   bool preview_;
   std::optional<ViewedFrame> viewed_;
   StreamView stream_;
+  TeachingOrder order_;
+  TeachingStarter starter_;
 };
 
 }  // namespace houghstream::view

@@ -6,7 +6,7 @@ namespace houghstream::view {
 namespace {
 
 constexpr std::int64_t kWindowUs = 2'000'000;   // over which rates are counted
-constexpr std::int64_t kSilenceUs = 5'000'000;  // five times the interval of status_t
+constexpr std::int64_t kSilenceUs = 5'000'000;  // five times the interval of status_t, and of teaching_t at its slowest
 
 }  // namespace
 
@@ -21,6 +21,12 @@ void StreamWatch::note_process(ProcessState process) {
   processes_[{process.name, process.pid}] = std::move(process);
 }
 
+void StreamWatch::note_teaching(Teaching teaching, std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  teaching_ = std::move(teaching);
+  taught_us_ = now_us;
+}
+
 StreamState StreamWatch::state(std::int64_t now_us) {
   const std::lock_guard lock(mutex_);
   while (!arrivals_us_.empty() && now_us - arrivals_us_.front() > kWindowUs) arrivals_us_.pop_front();
@@ -32,7 +38,31 @@ StreamState StreamWatch::state(std::int64_t now_us) {
   for (const auto& [key, process] : processes_) {
     if (now_us - process.heard_us <= kSilenceUs) state.processes.push_back(process);
   }
+  if (now_us - taught_us_ <= kSilenceUs) state.teaching = teaching_;
   return state;
+}
+
+void ShownCamera::note(const std::string& channel) {
+  const std::lock_guard lock(mutex_);
+  if (heard_.empty()) shown_ = channel;
+  heard_.insert(channel);
+}
+
+void ShownCamera::next() {
+  const std::lock_guard lock(mutex_);
+  if (heard_.empty()) return;
+  const auto after = heard_.upper_bound(shown_);
+  shown_ = after == heard_.end() ? *heard_.begin() : *after;
+}
+
+bool ShownCamera::is_shown(const std::string& channel) const {
+  const std::lock_guard lock(mutex_);
+  return heard_.empty() || channel == shown_;
+}
+
+std::vector<std::string> ShownCamera::heard() const {
+  const std::lock_guard lock(mutex_);
+  return {heard_.begin(), heard_.end()};
 }
 
 }  // namespace houghstream::view

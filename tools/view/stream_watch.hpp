@@ -4,9 +4,13 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "pipeline/types/teaching.hpp"
 
 namespace houghstream::view {
 
@@ -25,6 +29,7 @@ struct ProcessState {
 struct StreamState {
   double frames_hz = 0.0;               ///< frames of the camera that arrive here per second
   std::vector<ProcessState> processes;  ///< those heard of late, by name
+  std::optional<Teaching> teaching;     ///< of an object that is shown just now
 };
 
 /// Keeps the rates of a stream. Every function may be called from any thread; times are microseconds of one clock.
@@ -32,14 +37,39 @@ class StreamWatch {
  public:
   void note_frame(std::int64_t now_us);
   void note_process(ProcessState process);
+  void note_teaching(Teaching teaching, std::int64_t now_us);
 
-  /// A process that has been silent for five seconds is gone.
+  /// A process that has been silent for five seconds is gone, and so is a teaching.
   StreamState state(std::int64_t now_us);
 
  private:
   std::mutex mutex_;
   std::deque<std::int64_t> arrivals_us_;
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
+  std::optional<Teaching> teaching_;
+  std::int64_t taught_us_ = 0;  // when it was heard
+};
+
+/// Which camera's frames are shown, of those that are on the bus: the first that is heard until another one is asked
+/// for. May be used from any thread.
+class ShownCamera {
+ public:
+  /// A frame of this camera has come.
+  void note(const std::string& channel);
+
+  /// The next camera in the order of their names.
+  void next();
+
+  /// While none was heard, each one is.
+  bool is_shown(const std::string& channel) const;
+
+  /// The channels of all cameras that were heard, in order.
+  std::vector<std::string> heard() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<std::string> heard_;
+  std::string shown_;
 };
 
 }  // namespace houghstream::view

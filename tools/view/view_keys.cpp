@@ -12,6 +12,7 @@ KeyAction apply_key(int key, FrameViewSettings& settings) {
     case kEscape: return KeyAction::kEnd;
     case ' ': settings.paused = !settings.paused; break;
     case 'c': return KeyAction::kNextCamera;
+    case 't': return KeyAction::kTeach;
     case 'd': settings.show_depth = !settings.show_depth; break;
     case '3': settings.show_3d = !settings.show_3d; break;
     case '+':

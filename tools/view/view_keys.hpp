@@ -9,11 +9,12 @@ enum class KeyAction {
   kNone,
   kRedraw,      ///< the settings have changed
   kNextCamera,  ///< the next camera's frames are to be shown
+  kTeach,       ///< what is seen is to be taught, or enough of it was shown
   kEnd,
 };
 
 /// What a key, as cv::waitKey gives it, does to the settings: q or Esc ends, space pauses, d shows or hides depth, 3
-/// shows 3-D in its place, + and - move the smallest score that is drawn, c goes on to the next camera.
+/// shows 3-D in its place, + and - move the smallest score that is drawn, c goes on to the next camera, t teaches.
 KeyAction apply_key(int key, FrameViewSettings& settings);
 
 }  // namespace houghstream::view

@@ -8,6 +8,8 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
   houghstream::view::OutputSettings& outputs = show.outputs;
   houghstream::add_frame_channels_option(app, settings.frame_channels);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--objects", show.objects,
+                 "object store of hs-teach with the models; it may be made, and changed, while this runs");
   houghstream::add_model_options(app, show.models, show.model_unit_m);
   app.add_option("--snapshot", outputs.snapshot, "write one picture to this file (.png or .jpg)");
   app.add_option("--after", outputs.snapshot_after, "the snapshot is the so-manieth picture drawn")

@@ -54,6 +54,15 @@ ViewWindow::ViewWindow() {
   require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"), "no display for a window (DISPLAY is not set); {}", advice);
   require(window_opens(), "no display for a window (the one named by DISPLAY does not answer); {}", advice);
   cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);
+  cv::setMouseCallback(kTitle, on_mouse, this);
+}
+
+void ViewWindow::on_mouse(int event, int x, int y, int /*flags*/, void* window) {
+  auto& self = *static_cast<ViewWindow*>(window);
+  if (event == cv::EVENT_LBUTTONDOWN) self.pressed_ = cv::Point(x, y);
+  if (self.pressed_ && (event == cv::EVENT_MOUSEMOVE || event == cv::EVENT_LBUTTONUP))
+    self.dragged_ = cv::Rect(*self.pressed_, cv::Point(x, y));
+  if (event == cv::EVENT_LBUTTONUP) self.pressed_.reset();
 }
 
 void ViewWindow::show(const cv::Mat& picture, const FrameId& id) {
@@ -66,7 +75,12 @@ KeyAction ViewWindow::handle_keys(FrameViewSettings& settings) {
   constexpr int kMoment = 5;  // milliseconds
   const int key = cv::waitKey(kMoment);
   if (key == 's') save();
-  const KeyAction action = apply_key(key, settings);
+  KeyAction action = apply_key(key, settings);
+  if (dragged_) {
+    settings.box = *dragged_;
+    dragged_.reset();
+    if (action == KeyAction::kNone) action = KeyAction::kRedraw;
+  }
   return cv::getWindowProperty(kTitle, cv::WND_PROP_VISIBLE) >= 1.0 ? action : KeyAction::kEnd;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "pipeline/types/frame_id.hpp"
 #include "tools/view/view_keys.hpp"
@@ -15,14 +16,17 @@ class ViewWindow {
 
   void show(const cv::Mat& picture, const FrameId& id);
 
-  /// Lets the window live for a moment and acts on keys.
+  /// Lets the window live for a moment and acts on keys and on the mouse, which draws a box; a click removes it.
   KeyAction handle_keys(FrameViewSettings& settings);
 
  private:
+  static void on_mouse(int event, int x, int y, int flags, void* window);
   void save() const;
 
   cv::Mat shown_;
   FrameId id_;
+  std::optional<cv::Point> pressed_;  // where the mouse's button went down
+  std::optional<cv::Rect> dragged_;   // from there to where it is or went up; not yet handed on
 };
 
 }  // namespace houghstream::view

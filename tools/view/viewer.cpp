@@ -30,7 +30,7 @@ std::size_t waiting_frames(const ShowSettings& settings) {
 
 void run_viewer(const ViewerSettings& settings) {
   catch_stop_signals();
-  FrameShow frame_show(settings.show);
+  FrameShow frame_show(settings.show, settings.lcm_url);
   MatchSettings match;
   match.rate_hz = settings.show.outputs.rate_hz;
   LcmBus bus(settings.lcm_url);

@@ -1,46 +1,16 @@
 #include "drivers/store/object_store.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "drivers/datasets/bop_writer.hpp"
-#include "drivers/store/store_build.hpp"
-#include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/drivers/store/small_store.hpp"
 
 namespace houghstream::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A tetrahedron with corners at the origin and `side_m` along each axis.
-Mesh tetrahedron(float side_m) {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {side_m, 0, 0}, {0, side_m, 0}, {0, 0, side_m}};
-  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  return mesh;
-}
-
-void fill(const fs::path& folder, const std::string& second_name) {
-  ObjectStore store;
-  store.folder = folder;
-  store.objects = {{2, "mug", "cad/mug.ply", true, 12, "resting", nullptr},
-                   {5, second_name, "cad/b.ply", false, 34, "any", {{"least", 0.5}}}};
-  store.settings = {{"seed", 1}};
-  Symmetries half_turn;
-  half_turn.discrete.emplace_back(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
-  write_bop_models({{2, "mug", tetrahedron(0.1F), half_turn}, {5, second_name, tetrahedron(0.2F), {}}},
-                   store.models_folder());
-  write_text(store.forest_file(), "a forest");
-  write_store_json(store);
-}
-
-/// A whole store of a mug and a brick.
-fs::path whole_store(const std::string& name) {
-  fs::path folder = fresh_folder(name) / "store";
-  fs::create_directories(folder);
-  fill(folder, "brick");
-  return folder;
-}
 
 std::string error_of_reading(const fs::path& folder) {
   return error_of([&] { read_store(folder); });
@@ -115,7 +85,7 @@ TEST(StoreBuild, TheOldStoreStaysWholeUntilTheNewOneIs) {
   const fs::path folder = whole_store("store_swap");
   {
     StoreBuild build(folder);
-    fill(build.folder(), "bowl");
+    fill_store(build.folder(), "bowl");
     EXPECT_EQ(read_store(folder).objects[1].name, "brick") << "before it is published";
     build.publish();
   }
@@ -158,6 +128,37 @@ TEST(StoreBuild, OneAtATimeAndNothingElseIsReplaced) {
   write_text(other / "holiday.jpg", "");
   expect_says(error_of([&] { StoreBuild build(other); }), {other.string(), "not replaced"});
   EXPECT_TRUE(fs::exists(other / "holiday.jpg"));
+}
+
+/// The name of the second object; throws where any part of the store is missing or of another one.
+std::string second_of(const fs::path& folder) {
+  const ObjectStore store = read_store(folder);
+  load_store_meshes(store);
+  return store.objects.at(1).name;
+}
+
+TEST(StoreBuild, WhoeverIsKilledAtAnyMomentLeavesAWholeStore) {
+  const fs::path folder = whole_store("store_killed");
+  int published = 0;
+  for (int i = 0; i < 60; ++i) {
+    const std::string before = second_of(folder);
+    const std::string after = "thing_" + std::to_string(i);
+    const pid_t child = fork();
+    if (child == 0) {
+      exchange(folder, after);
+      _exit(0);
+    }
+    usleep(static_cast<useconds_t>(i * 60));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const std::string now = second_of(folder);
+    EXPECT_TRUE(now == before || now == after) << now;
+    if (now == after) ++published;
+  }
+  EXPECT_LT(published, 60) << "some were killed before they were done";
+  exchange(folder, "last");
+  EXPECT_EQ(second_of(folder), "last");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
 }  // namespace

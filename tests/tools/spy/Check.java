@@ -1,5 +1,6 @@
 package houghstream.spy;
 
+import houghstream.spy.Wire.BadMessage;
 import java.util.Objects;
 
 /** Runs tests and counts them: enough for a few plain ones, without a library. */

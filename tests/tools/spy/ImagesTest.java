@@ -2,6 +2,7 @@ package houghstream.spy;
 
 import houghstream.image_t;
 import houghstream.images_t;
+import houghstream.spy.Wire.BadMessage;
 import java.util.Arrays;
 import java.util.Random;
 

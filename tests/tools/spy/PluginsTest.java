@@ -3,10 +3,12 @@ package houghstream.spy;
 import houghstream.detections_t;
 import houghstream.image_t;
 import houghstream.images_t;
+import houghstream.known_objects_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
 import houghstream.rigid_transform_t;
 import houghstream.status_t;
+import houghstream.teaching_t;
 import javax.swing.JDesktopPane;
 import lcm.spy.LCMTypeDatabase;
 import lcm.spy.SpyPlugin;
@@ -25,15 +27,14 @@ final class PluginsTest {
   }
 
   private static void plugins() {
-    SpyPlugin[] plugins = {new RgbdPlugin(), new ImagePlugin(), new DetectionPlugin()};
-    long[] types = {images_t.LCM_FINGERPRINT, image_t.LCM_FINGERPRINT, detections_t.LCM_FINGERPRINT};
-    for (int i = 0; i < plugins.length; ++i) {
-      for (int k = 0; k < types.length; ++k) Check.equal(plugins[i].canHandle(types[k]), i == k);
-      Check.that(plugins[i].getAction(null, null).getValue("Name") instanceof String, "a name");
-      plugins[i].getAction(null, null).actionPerformed(null);
-      plugins[i].getAction(new JDesktopPane(), null).actionPerformed(null);
-    }
-    Check.that(plugins[2].canHandle(object_poses_t.LCM_FINGERPRINT), "poses");
+    SpyPlugin plugin = new ViewerPlugin();
+    long[] types = {images_t.LCM_FINGERPRINT, image_t.LCM_FINGERPRINT, detections_t.LCM_FINGERPRINT,
+        object_poses_t.LCM_FINGERPRINT, teaching_t.LCM_FINGERPRINT};
+    for (long type : types) Check.that(plugin.canHandle(type), "a viewer of " + type);
+    Check.that(!plugin.canHandle(status_t.LCM_FINGERPRINT), "spy itself shows numbers");
+    Check.that(plugin.getAction(null, null).getValue("Name") instanceof String, "a name");
+    plugin.getAction(null, null).actionPerformed(null);
+    plugin.getAction(new JDesktopPane(), null).actionPerformed(null);
   }
 
   private static void types() {
@@ -44,6 +45,8 @@ final class PluginsTest {
     Check.equal(known.getClassByFingerprint(object_poses_t.LCM_FINGERPRINT), object_poses_t.class);
     Check.equal(known.getClassByFingerprint(rigid_transform_t.LCM_FINGERPRINT), rigid_transform_t.class);
     Check.equal(known.getClassByFingerprint(status_t.LCM_FINGERPRINT), status_t.class);
+    Check.equal(known.getClassByFingerprint(known_objects_t.LCM_FINGERPRINT), known_objects_t.class);
+    Check.equal(known.getClassByFingerprint(teaching_t.LCM_FINGERPRINT), teaching_t.class);
   }
 
   private static void matching() throws Exception {

@@ -9,6 +9,7 @@ import houghstream.images_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
 import houghstream.stage_time_t;
+import houghstream.teaching_t;
 import java.awt.image.BufferedImage;
 import java.io.ByteArrayOutputStream;
 import java.io.DataOutputStream;
@@ -130,6 +131,24 @@ final class Samples {
     message.n_poses = 1;
     message.poses = new object_pose_t[] {pose};
     message.stages = new stage_time_t[0];
+    return message;
+  }
+
+  /** Six directions, the first seen, of an object that is not turned. */
+  static teaching_t teaching(byte state) {
+    teaching_t message = new teaching_t();
+    message.name = "mug";
+    message.source_channel = "OPENNI_FRAME";
+    message.state = state;
+    message.message = "from behind nothing yet";
+    message.progress = 0.25F;
+    message.n_frames = 70;
+    message.n_keyframes = 7;
+    message.trans = new double[] {0, 0, 0.5};
+    message.quat = new double[] {1, 0, 0, 0};
+    message.directions = new float[][] {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+    message.seen = new byte[] {1, 0, 0, 0, 0, 0};
+    message.n_directions = 6;
     return message;
   }
 }

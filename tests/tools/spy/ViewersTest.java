@@ -4,6 +4,8 @@ import houghstream.detections_t;
 import houghstream.images_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
+import houghstream.teaching_t;
+import houghstream.spy.Wire.BadMessage;
 import java.awt.Color;
 import java.awt.Component;
 import java.awt.Container;
@@ -24,6 +26,7 @@ public final class ViewersTest {
     Check.test("box and axes are drawn where they belong", ViewersTest::overlay);
     Check.test("pictures fit every size", ViewersTest::sizes);
     Check.test("the panel of detections survives every size", ViewersTest::panel);
+    Check.test("the sphere fills from where the object was seen", ViewersTest::teaching);
     Check.test("damaged detections and poses do no harm", ViewersTest::damaged);
     Check.end();
   }
@@ -70,12 +73,12 @@ public final class ViewersTest {
   private static void overlay() throws Exception {
     BufferedImage valid = drawn(object_pose_t.VALID, 0.75);
     // The box's lower edge, at y = 38 of the frame, and the middle of the x axis, which points to the right.
-    Check.equal(valid.getRGB(10 * 32 + 5, 10 * 38 + 5), ClassColours.of(4).getRGB());
+    Check.equal(valid.getRGB(10 * 32 + 5, 10 * 38 + 5), DetectionOverlay.classColour(4).getRGB());
     Check.equal(valid.getRGB(10 * 35 + 5, 10 * 24 + 5), DetectionOverlay.AXIS_COLOURS[0].getRGB());
     Check.that(count(valid, DetectionOverlay.AXIS_COLOURS[1]) > 50, "y axis");
     Check.equal(count(drawn(object_pose_t.REJECTED_BY_DEPTH, 0.5), DetectionOverlay.AXIS_COLOURS[0]), 0);
     BufferedImage weak = drawn(object_pose_t.VALID, 0.8);
-    Check.equal(count(weak, ClassColours.of(4)) + count(weak, DetectionOverlay.AXIS_COLOURS[0]), 0);
+    Check.equal(count(weak, DetectionOverlay.classColour(4)) + count(weak, DetectionOverlay.AXIS_COLOURS[0]), 0);
     double[] turned = DetectionOverlay.rotation(new double[] {Math.sqrt(0.5), 0, 0, Math.sqrt(0.5)});
     Check.that(Math.abs(turned[3] - 1) < 1e-12, "a quarter turn about z takes x to y");
   }
@@ -103,6 +106,24 @@ public final class ViewersTest {
     for (int[] size : SIZES) painted(panel.component(), size[0], size[1]);
     Dimension least = panel.component().getMinimumSize();
     Check.that(least.width > 0 && least.height > 0, "a smallest size");
+  }
+
+  private static void teaching() {
+    TeachingViewer viewer = new TeachingViewer();
+    for (int[] size : SIZES) painted(viewer.component(), size[0], size[1]); // before anything comes
+    viewer.show(Samples.teaching(teaching_t.TRACKING));
+    BufferedImage picture = painted(viewer.component(), 640, 400);
+    Check.that(count(picture.getSubimage(0, 0, 320, 350), TeachingViewer.Spheres.SEEN) > 500, "the near side");
+    Check.equal(count(picture.getSubimage(330, 0, 310, 350), TeachingViewer.Spheres.SEEN), 0); // the far side
+    Check.equal(viewer.said(), "mug: tracking, 70 frames, 7 kept - from behind nothing yet");
+    viewer.show(Samples.teaching(teaching_t.LOST));
+    Check.equal(viewer.said(), "mug: lost, 70 frames, 7 kept - from behind nothing yet");
+    teaching_t odd = Samples.teaching((byte) 99);
+    odd.progress = Float.NaN;
+    odd.quat = new double[] {Double.NaN, 0, 0, 0};
+    odd.directions[2][1] = Float.NaN;
+    viewer.show(odd);
+    for (int[] size : SIZES) painted(viewer.component(), size[0], size[1]);
   }
 
   // Whatever can be decoded can be drawn: boxes of NaN, of astronomic size, poses inside out.

@@ -35,7 +35,7 @@ TEST(StreamPlan, AnObjectStoreIsForAll) {
   ASSERT_EQ(plans.size(), 3U);
   EXPECT_EQ(plans[0].command, (Words{"/bin/hs-detect", "--channel", "OPENNI_FRAME", "--objects", "store"}));
   EXPECT_EQ(plans[1].command, (Words{"/bin/hs-pose", "--channel", "OPENNI_FRAME", "--objects", "store"}));
-  EXPECT_EQ(plans[2].command, (Words{"/bin/hs-view", "--channel", "OPENNI_FRAME", "--models", "store/models"}));
+  EXPECT_EQ(plans[2].command, (Words{"/bin/hs-view", "--channel", "OPENNI_FRAME", "--objects", "store"}));
 }
 
 TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {

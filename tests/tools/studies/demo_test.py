@@ -1,10 +1,12 @@
 """Tests of the demo's report: accounting for frames, latencies, its page. Usage: PYTHONPATH=tools demo_test.py"""
 
+import math
 import pathlib
 import tempfile
 import unittest
 
-from studies.demo import live, report
+from studies.demo import live, report, teach
+from studies.lcm_log import Status, Teaching
 from studies.measured import write_json
 
 
@@ -136,6 +138,51 @@ class Report(unittest.TestCase):
     def test_latency_is_of_frames_that_have_results(self):
         times = [{"t_frame": "0.1", "t_poses": "0.13"}, {"t_frame": "0.2", "t_poses": ""}]
         self.assertEqual([(x, round(y, 6)) for x, y in report.latency_points(times, "t_poses")], [(0.1, 30.0)])
+
+
+class Teach(unittest.TestCase):
+    def test_the_camera_plays_its_scene_forwards_then_backwards(self):
+        taken = [(1_000_000 + 66_667 * number, number) for number in range(9)]
+        seen = [teach.picture_at(taken, utime + 500, 4) for utime, _ in taken]
+        self.assertEqual(seen, [0, 1, 2, 3, 3, 2, 1, 0, 0])
+        self.assertIsNone(teach.picture_at(taken, 5_000_000, 4))
+        self.assertIsNone(teach.picture_at([], 5_000_000, 4))
+
+    def test_poses_of_another_frame_on_the_object_scatter_by_their_errors_alone(self):
+        def about_z(degrees):
+            return teach.rotation_of((math.cos(math.radians(degrees) / 2), 0, 0, math.sin(math.radians(degrees) / 2)))
+
+        relative = []
+        for i in range(20):
+            true = (about_z(18 * i), (0.1, 0.01 * i, 0.7))
+            off = 0.003 if i == 0 else 0.0  # one is 3 mm and 5 degrees off
+            turn = 95 if i == 0 else 90
+            moved = [a + b for a, b in zip(teach.turned(true[0], (0.0, 0.0, 0.05 + off)), true[1])]
+            relative.append(teach.seen_from_truth(true, (teach.product(true[0], about_z(turn)), moved)))
+        found = teach.scatter(relative)
+        self.assertEqual((found["mm_50"], found["deg_50"]), (0.0, 0.0))
+        self.assertAlmostEqual(found["mm_95"], 3.0, places=1)
+        self.assertAlmostEqual(found["deg_95"], 5.0, places=1)
+        self.assertEqual(teach.scatter([]), {})
+
+    def test_what_was_lost_is_told_apart_around_the_change_of_the_store(self):
+        class Told:
+            known_us = 10_000_000
+            of_process = staticmethod(lambda _: [
+                (1_000_000 * second, Status(0, "hs-detect", 30 * second, 0, second // 5, 1 if second > 11 else 0, ""))
+                for second in range(1, 20)
+            ])  # fmt: skip
+
+        figures = teach.stream_figures(Told)
+        self.assertEqual((figures["frames"], figures["lost"], figures["skipped"]), (570, 1, 3))
+        self.assertEqual((figures["lost_at_change"], figures["skipped_at_change"]), (1, 1))
+
+    def test_a_state_that_was_never_told_ends_the_demo(self):
+        story = teach.Story.__new__(teach.Story)
+        story.teaching = [(5, Teaching(1, "mug", "tracking", "", 0.5, 3, 1, (), ()))]
+        self.assertEqual(story.begin("tracking", "lost")[0], 5)
+        with self.assertRaises(SystemExit):
+            story.begin("fusing")
 
 
 if __name__ == "__main__":

@@ -31,7 +31,27 @@ class ReadLog(unittest.TestCase):
                 lcm_log.count_events(self.file, "A")
 
 
+def text(words):
+    return struct.pack(">i", len(words) + 1) + words.encode() + b"\0"
+
+
 class Messages(unittest.TestCase):
+    def test_what_a_process_knows_and_how_a_teaching_goes(self):
+        head = bytes(8) + struct.pack(">q", 77)
+        known = lcm_log.known_objects_of(
+            head + text("hs-pose") + struct.pack(">i", 5) + text("my.store") + struct.pack(">qi", 60, 2)
+            + text("mug") + text("bowl") + struct.pack(">2q", 50, 60) + text("cut short")
+        )  # fmt: skip
+        self.assertEqual((known.utime, known.process, known.since), (77, "hs-pose", 60))
+        self.assertEqual((known.objects, known.problem), ({"mug": 50, "bowl": 60}, "cut short"))
+        teaching = lcm_log.teaching_of(
+            head + text("CAM") + text("mug") + struct.pack(">b", 2) + text("go on") + struct.pack(">fii4f", 0.5, 9, 3, 1, 2, 3, 4)
+            + bytes(7 * 8) + struct.pack(">i6f2b", 2, *([0.0] * 6), 1, 0)
+        )  # fmt: skip
+        self.assertEqual((teaching.utime, teaching.name, teaching.state, teaching.message), (77, "mug", "tracking", "go on"))
+        self.assertEqual((teaching.progress, teaching.frames, teaching.keyframes), (0.5, 9, 3))
+        self.assertEqual((teaching.box, teaching.seen), ((1, 2, 3, 4), (1, 0)))
+
     def test_poses_are_read_from_front_to_back(self):
         pose = (
             struct.pack(">i5s", 5, b"bowl\0")

@@ -4,12 +4,14 @@
 
 #include "detector/forest/forest_file.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/files/image_file.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 #include "tools/common/stored_quality.hpp"
+#include "tools/teach/store_rename.hpp"
 
 namespace houghstream::teach {
 namespace {
@@ -84,6 +86,49 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "bracket"); }), "");
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "grey"); }), "") << "the only one";
   EXPECT_EQ(store::read_store(options.out).objects.size(), 1U) << "a refusal loses nothing";
+}
+
+/// Names in all places where they stand.
+void expect_named(const fs::path& folder, const std::string& name) {
+  const store::ObjectStore store = store::read_store(folder);
+  ASSERT_EQ(store.objects.size(), 1U);
+  EXPECT_EQ(store.objects[0].name, name);
+  EXPECT_EQ(store::load_store_meshes(store).count(name), 1U);
+  EXPECT_EQ(forest_names(folder), std::vector<std::string>{name});
+}
+
+TEST(TeachJobs, ARenamedObjectIsTheSame) {
+  const fs::path folder = folder_of_meshes("teach_rename");
+  const TeachOptions options = quick_options(folder, "bracket.ply");
+  teach_meshes(options);
+  const store::ObjectStore before = store::read_store(options.out);
+  const std::string forest = read_text(before.forest_file());
+  const cv::Mat views = read_colour_image(before.view_picture(1));
+  rename_in_store(options.out, "bracket", "shelf support");
+  expect_named(options.out, "shelf support");
+  const store::ObjectStore after = store::read_store(options.out);
+  EXPECT_EQ(after.objects[0].id, before.objects[0].id);
+  EXPECT_EQ(after.objects[0].views, before.objects[0].views);
+  EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
+  EXPECT_EQ(after.settings, before.settings);
+  EXPECT_TRUE(fs::exists(after.contact_sheet()));
+  cv::Mat difference;
+  cv::absdiff(read_colour_image(after.view_picture(1)), views, difference);
+  EXPECT_GT(cv::sum(difference.rowRange(0, 26))[0], 0.0) << "another title";
+  EXPECT_EQ(cv::sum(difference.rowRange(26, difference.rows)), cv::Scalar()) << "above the same views";
+
+  EXPECT_NE(error_of([&] { rename_in_store(options.out, "bracket", "x"); }).find("expected one of shelf support"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] {
+              rename_in_store(options.out, "shelf support", "shelf support");
+            }).find("has a 'shelf support' already"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { rename_in_store(options.out, "shelf support", ""); }).find("expected one"),
+            std::string::npos);
+  rename_in_store(options.out, "shelf support", "bracket");
+  expect_named(options.out, "bracket");
+  EXPECT_EQ(read_text(before.forest_file()), forest) << "byte for byte";
+  EXPECT_EQ(std::distance(fs::directory_iterator(options.out.parent_path()), {}), 3) << "nothing is left beside it";
 }
 
 TEST(TeachJobs, PractisingAnewKeepsTheObjects) {

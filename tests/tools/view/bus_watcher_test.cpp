@@ -38,7 +38,8 @@ TEST(BusWatcher, RateAndFramesThatNeverArrivedAreCounted) {
 TEST(BusWatcher, WhatIsNoMessageOfTheChannelDoesNotEndIt) {
   WatchedBus watched;
   const std::vector<std::uint8_t> rubbish(20, 7);
-  for (const std::string& name : {channel::kFrame, channel::kDetections, channel::kPoses, channel::kStatus}) {
+  for (const std::string& name :
+       {channel::kFrame, channel::kDetections, channel::kPoses, channel::kStatus, channel::kTeaching}) {
     watched.bus.publish(name, {rubbish.data(), rubbish.size()}, 0);
   }
   watched.publish_frame(1);
@@ -67,6 +68,16 @@ TEST(BusWatcher, OfTwoCamerasOfEqualTimesOneIsShownAndNothingMixed) {
   EXPECT_EQ(last.frames_received, 4);
   EXPECT_EQ(last.frames_skipped, 2);
   EXPECT_EQ(last.frames_lost, 0) << "each camera has a numbering of its own";
+}
+
+TEST(BusWatcher, ATeachingIsHeard) {
+  WatchedBus watched;
+  Teaching mug;
+  mug.name = "mug";
+  mug.state = TeachingState::kFusing;
+  watched.bus.publish(channel::kTeaching, to_message(mug));
+  ASSERT_TRUE(WatchedBus::comes_true([&] { return watched.watcher.stream_state().teaching.has_value(); }));
+  EXPECT_EQ(watched.watcher.stream_state().teaching->state, TeachingState::kFusing);
 }
 
 TEST(BusWatcher, ProcessesAreKnownByWhatTheySay) {

@@ -5,7 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/drivers/store/small_store.hpp"
 #include "tests/tools/view/watched_bus.hpp"
 
 namespace houghstream::view {
@@ -74,6 +74,51 @@ TEST(FrameShow, ASnapshotAloneIsSoonComplete) {
   EXPECT_FALSE(frame_show.complete());
   frame_show.show(matched_frame(5), watched.watcher);
   EXPECT_TRUE(frame_show.complete());
+}
+
+/// The share of the picture in which two files differ.
+double difference(const ShowSettings& settings, int one, int other) {
+  const auto read = [&](int utime) {
+    return cv::imread((settings.outputs.pictures / (std::to_string(utime) + ".jpg")).string());
+  };
+  cv::Mat different;
+  cv::absdiff(read(one)(cv::Rect(0, 0, 64, 48)), read(other)(cv::Rect(0, 0, 64, 48)), different);
+  return cv::mean(different > 40)[0] / 255.0;
+}
+
+TEST(FrameShow, AStoreThatChangesIsFollowed) {
+  WatchedBus watched;
+  ShowSettings settings = to_pictures("store");
+  settings.objects = store::whole_store("frame_show_objects");
+  FrameShow frame_show(settings);
+  const auto show = [&](int utime) {
+    MatchedFrame matched = matched_frame(utime);
+    Detections detections;
+    detections.frame = matched.id;
+    detections.detections.resize(1);
+    detections.detections[0].class_id = 1;
+    detections.detections[0].class_name = "plate";
+    detections.detections[0].box_px = {10.0F, 10.0F, 20.0F, 20.0F};
+    ObjectPoses poses;
+    poses.frame = matched.id;
+    poses.poses.resize(1);
+    poses.poses[0].class_id = 1;
+    poses.poses[0].class_name = "plate";
+    poses.poses[0].detection_index = 0;
+    poses.poses[0].status = PoseStatus::kValid;
+    poses.poses[0].T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.6));
+    matched.results.add(std::move(detections));
+    matched.results.add(std::move(poses));
+    frame_show.show(matched, watched.watcher);
+  };
+  show(1);
+  store::exchange(settings.objects, "plate");
+  int utime = 2;
+  for (show(utime); difference(settings, 1, utime) == 0.0 && utime < 100; show(++utime))
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_GT(difference(settings, 1, utime), 0.0) << "an outline and axes as long as the model";
+  settings.models = settings.objects + "/models";
+  EXPECT_THROW(FrameShow{settings}, InputError) << "one of both";
 }
 
 TEST(FrameShow, NoModelsOrNoPictureAtAllIsAnError) {

@@ -34,6 +34,17 @@ TEST(StreamWatch, ProcessesAreShownByNameUntilTheyFallSilent) {
   EXPECT_EQ(later.processes[0].heard_us, 3'000'000);
 }
 
+TEST(StreamWatch, ATeachingIsShownUntilItFallsSilent) {
+  StreamWatch watch;
+  EXPECT_FALSE(watch.state(0).teaching.has_value());
+  Teaching mug;
+  mug.name = "mug";
+  watch.note_teaching(mug, 1'000'000);
+  ASSERT_TRUE(watch.state(5'000'000).teaching.has_value());
+  EXPECT_EQ(watch.state(5'000'000).teaching->name, "mug");
+  EXPECT_FALSE(watch.state(7'000'000).teaching.has_value());
+}
+
 TEST(StreamWatch, TwoProcessesOfOneNameAreTwo) {
   StreamWatch watch;
   ProcessState other = heard("hs-detect", 2'000'000);
@@ -41,6 +52,22 @@ TEST(StreamWatch, TwoProcessesOfOneNameAreTwo) {
   watch.note_process(heard("hs-detect", 1'000'000));
   watch.note_process(other);
   EXPECT_EQ(watch.state(3'000'000).processes.size(), 2U);
+}
+
+TEST(ShownCamera, TheFirstIsShownUntilAnotherIsAskedFor) {
+  ShownCamera cameras;
+  EXPECT_TRUE(cameras.is_shown("ANY"));
+  cameras.next();
+  cameras.note("LEFT");
+  cameras.note("RIGHT");
+  cameras.note("ABOVE");
+  EXPECT_TRUE(cameras.is_shown("LEFT"));
+  EXPECT_FALSE(cameras.is_shown("RIGHT"));
+  cameras.next();
+  EXPECT_TRUE(cameras.is_shown("RIGHT"));
+  cameras.next();
+  EXPECT_TRUE(cameras.is_shown("ABOVE"));
+  EXPECT_EQ(cameras.heard(), (std::vector<std::string>{"ABOVE", "LEFT", "RIGHT"}));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ TEST(ViewKeys, EachKeyDoesWhatTheWindowSays) {
   apply_key(' ', settings);
   EXPECT_FALSE(settings.paused);
   EXPECT_EQ(apply_key('c', settings), KeyAction::kNextCamera);
+  EXPECT_EQ(apply_key('t', settings), KeyAction::kTeach);
   EXPECT_EQ(apply_key('q', settings), KeyAction::kEnd);
   EXPECT_EQ(apply_key(27, settings), KeyAction::kEnd);
   EXPECT_EQ(apply_key(-1, settings), KeyAction::kNone);

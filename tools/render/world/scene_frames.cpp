@@ -59,9 +59,14 @@ SensorKind parse_sensor(const std::string& name) {
 
 SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
                         SensorKind sensor) {
+  const ShadedView view = shade_view(lit_world, lit_world.world.camera, T_camera_world);
+  return record_view(lit_world, T_camera_world, view, noise_seed, sensor);
+}
+
+SceneFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
+                       std::uint64_t noise_seed, SensorKind sensor) {
   SceneFrame result;
   result.frame.camera = lit_world.world.camera;
-  const ShadedView view = shade_view(lit_world, result.frame.camera, T_camera_world);
   result.frame.colour = take_photo(view.radiance, lit_world.world.photo, aspect_seed(noise_seed, 1));
   const SensorView seen{view.geometry.depth, view.cos_incidence, view.reflectance, view.gloss};
   const std::uint64_t depth_seed = aspect_seed(noise_seed, 2);

@@ -31,6 +31,10 @@ SensorKind parse_sensor(const std::string& name);
 SceneFrame render_frame(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, std::uint64_t noise_seed,
                         SensorKind sensor = SensorKind::kStructuredLight);
 
+/// What the sensors make of a view of the world, structured light unless the sensor says otherwise, and the truth.
+SceneFrame record_view(const LitWorld& lit_world, const Eigen::Isometry3d& T_camera_world, const ShadedView& view,
+                       std::uint64_t noise_seed, SensorKind sensor = SensorKind::kStructuredLight);
+
 /// Frame `index` of `count` along the scene's camera path. The utime is left 0: sources stamp their frames.
 SceneFrame render_scene_frame(const Scene& scene, const LitWorld& lit_world, int index, int count,
                               SensorKind sensor = SensorKind::kStructuredLight);

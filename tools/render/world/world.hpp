@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "pipeline/types/camera.hpp"
@@ -28,12 +29,13 @@ struct Light {
 
 /// How the colour camera turns light into a picture.
 struct PhotoSettings {
-  double mean_level = 0.2;     ///< automatic exposure brings the picture's mean towards this, linear, 0 to 1
-  double exposure_bias = 1.0;  ///< factor on what automatic exposure chose
-  double blur_px = 0.6;        ///< standard deviation of the lens's blur, pixels
-  double shot_noise = 0.008;   ///< deviation of the noise at full level; grows with the square root of the level
-  double read_noise = 0.003;   ///< deviation of the noise at level 0
-  double vignetting = 0.15;    ///< light lost in the corners, 0 to 1
+  double mean_level = 0.2;         ///< automatic exposure brings the picture's mean towards this, linear, 0 to 1
+  double exposure_bias = 1.0;      ///< factor on what automatic exposure chose
+  std::optional<double> exposure;  ///< factor on the light, where it is not chosen from the picture itself
+  double blur_px = 0.6;            ///< standard deviation of the lens's blur, pixels
+  double shot_noise = 0.008;       ///< deviation of the noise at full level; grows with the square root of the level
+  double read_noise = 0.003;       ///< deviation of the noise at level 0
+  double vignetting = 0.15;        ///< light lost in the corners, 0 to 1
   Eigen::Vector3f white_balance_bgr = Eigen::Vector3f::Ones();
 };
 

@@ -15,6 +15,8 @@ import java.awt.geom.Rectangle2D;
 /** Boxes, names and scores of detections, and the axes of valid poses where the camera is known. */
 final class DetectionOverlay implements PicturePane.Overlay {
   static final Color[] AXIS_COLOURS = {new Color(255, 60, 60), new Color(60, 220, 60), new Color(60, 120, 255)};
+  private static final int[] CLASS_COLOURS =
+      {0xE69F00, 0x56B4E9, 0x009E73, 0xF0E442, 0x0072B2, 0xD55E00, 0xCC79A7, 0xFFFFFF};
   private static final double AXIS_M = 0.06;
   private static final double NEAR_M = 0.05; // nothing nearer is drawn
   private final detections_t detections;
@@ -53,7 +55,7 @@ final class DetectionOverlay implements PicturePane.Overlay {
     graphics.setColor(Color.BLACK);
     graphics.setStroke(new BasicStroke(4.0F));
     graphics.draw(box);
-    graphics.setColor(ClassColours.of(detection.class_id));
+    graphics.setColor(classColour(detection.class_id));
     graphics.setStroke(new BasicStroke(2.0F));
     graphics.draw(box);
   }
@@ -63,10 +65,10 @@ final class DetectionOverlay implements PicturePane.Overlay {
     FontMetrics font = graphics.getFontMetrics();
     int left = (int) (detection.box_x * scale) - 1;
     int top = Math.max(0, (int) (detection.box_y * scale) - font.getHeight());
-    Color colour = ClassColours.of(detection.class_id);
+    Color colour = classColour(detection.class_id);
     graphics.setColor(colour);
     graphics.fillRect(left, top, font.stringWidth(text) + 6, font.getHeight());
-    graphics.setColor(ClassColours.textOn(colour));
+    graphics.setColor(textColourOn(colour));
     graphics.drawString(text, left + 3, top + font.getAscent());
   }
 
@@ -105,5 +107,16 @@ final class DetectionOverlay implements PicturePane.Overlay {
         1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
         2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
         2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+  }
+
+  /** The same as in hs-view: eight that stay apart for colour-blind eyes (Okabe and Ito 2008). */
+  static Color classColour(int classId) {
+    return new Color(CLASS_COLOURS[Math.floorMod(classId - 1, CLASS_COLOURS.length)]);
+  }
+
+  // Black or white, whichever can be read on it.
+  private static Color textColourOn(Color background) {
+    double brightness = 0.299 * background.getRed() + 0.587 * background.getGreen() + 0.114 * background.getBlue();
+    return brightness > 130 ? Color.BLACK : Color.WHITE;
   }
 }

@@ -2,6 +2,7 @@ package houghstream.spy;
 
 import houghstream.detections_t;
 import houghstream.object_poses_t;
+import houghstream.spy.Wire.BadMessage;
 import java.awt.Dimension;
 import java.awt.image.BufferedImage;
 import java.util.ArrayList;

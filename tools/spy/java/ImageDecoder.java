@@ -1,6 +1,7 @@
 package houghstream.spy;
 
 import houghstream.image_t;
+import houghstream.spy.Wire.BadMessage;
 import java.awt.image.BufferedImage;
 import java.io.ByteArrayInputStream;
 import java.io.IOException;

@@ -37,11 +37,26 @@ final class ObjectsTable extends AbstractTableModel {
     float[] centre = detection.centre_camera;
     String place = valid ? place(pose.trans[0], pose.trans[1], pose.trans[2]) : place(centre[0], centre[1], centre[2]);
     return new String[] {detection.class_name, String.format("%.2f", detection.score), place,
-        pose == null ? "-" : PoseStatus.text(pose.status), pose == null ? "-" : String.format("%.2f", pose.quality)};
+        pose == null ? "-" : word(pose.status), pose == null ? "-" : String.format("%.2f", pose.quality)};
   }
 
   private static String place(double x, double y, double z) {
     return Double.isNaN(z) ? "-" : String.format("%.3f, %.3f, %.3f", x, y, z);
+  }
+
+  private static String word(int status) {
+    return switch (status) {
+      case object_pose_t.VALID -> "valid";
+      case object_pose_t.NO_MODEL -> "no model";
+      case object_pose_t.TOO_FEW_POINTS -> "too few points";
+      case object_pose_t.NO_INITIAL_POSE -> "no initial pose";
+      case object_pose_t.NOT_CONVERGED -> "not converged";
+      case object_pose_t.REJECTED_BY_DEPTH -> "rejected by depth";
+      case object_pose_t.LOW_SCORE -> "low score";
+      case object_pose_t.REJECTED_BY_OUTLINE -> "rejected by outline";
+      case object_pose_t.REJECTED_BY_COLOUR -> "rejected by colour";
+      default -> "status " + status;
+    };
   }
 
   @Override

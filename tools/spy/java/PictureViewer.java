@@ -1,6 +1,7 @@
 package houghstream.spy;
 
 import houghstream.image_t;
+import houghstream.spy.Wire.BadMessage;
 import java.awt.BorderLayout;
 import java.awt.Dimension;
 import java.awt.FlowLayout;

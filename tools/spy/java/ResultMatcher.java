@@ -2,6 +2,7 @@ package houghstream.spy;
 
 import houghstream.detections_t;
 import houghstream.object_poses_t;
+import houghstream.spy.Wire.BadMessage;
 import java.util.LinkedHashMap;
 import java.util.List;
 import java.util.TreeSet;

@@ -4,6 +4,7 @@ import houghstream.camera_t;
 import houghstream.image_metadata_t;
 import houghstream.image_t;
 import houghstream.images_t;
+import houghstream.spy.Wire.BadMessage;
 import java.awt.image.BufferedImage;
 
 /** A frame as far as it can be read: what is missing is null, and `complaint` says why. */

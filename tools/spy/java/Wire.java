@@ -5,6 +5,14 @@ import java.nio.ByteBuffer;
 
 /** Decodes messages of the generated types, damaged ones included. */
 final class Wire {
+  /** A message that cannot be shown; its text is one line for the person at the screen. */
+  @SuppressWarnings("serial")
+  static final class BadMessage extends Exception {
+    BadMessage(String text) {
+      super(text);
+    }
+  }
+
   /** A generated type's constructor from bytes. */
   interface Decoder<T> {
     T decode(byte[] bytes) throws IOException;

@@ -8,7 +8,7 @@ from studies.command import Options, die, positive, prepare, step
 from studies.stream import ProcessFailed, enter_private_network, enter_shared_network
 from studies.work import UnitFailed, locked
 
-TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
+TARGETS = ("hs-render", "hs-teach", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
            "hs-spy", "hs-evaluate", "virtual_camera")  # fmt: skip
 
 
@@ -19,6 +19,8 @@ def parse(words):
     add("--live", action="store_true", help="a virtual camera plays the rendered scene through OpenNI2; measures from "
                                             "its shutter to the poses")  # fmt: skip
     add("--seconds", type=positive, default=60, metavar="N", help="how long it does so (default 60)")
+    add("--teach", action="store_true", help="a virtual camera is carried around an object that nobody has seen: it is "
+                                             "taught, found and posed while the stream goes on")  # fmt: skip
     add("--unplug", action="store_true", help="takes the camera away for three seconds halfway through, and plugs it in "
                                               "again")  # fmt: skip
     add("--real", metavar="DIR", help="camera-recorded data (DIR/objects, background, scenes, clutter) instead of "
@@ -31,7 +33,7 @@ def parse(words):
         "--out",
         type=pathlib.Path,
         metavar="DIR",
-        help="default out/demo, out/real with --real, or out/live with --live",
+        help="default out/demo, out/real with --real, out/live with --live, or out/teach_demo with --teach",
     )
     add("--fresh", action="store_true", help="render and train again even where nothing has changed")
     options = parser.parse_args(words)
@@ -39,13 +41,14 @@ def parse(words):
         die(f"{options.real}: no folder objects/ in it, expected camera-recorded data")
     if options.live and options.real:
         die("--live plays a rendered scene; it does not go with --real")
+    if options.teach and (options.live or options.real):
+        die("--teach is a demo of its own; it goes neither with --live nor with --real")
     if options.unplug and not options.live:
         die("--unplug goes with --live")
     paths = {options.real, options.bin, str(options.out)}
     options.command = " ".join(["tools/demo", *("DIR" if word in paths else word for word in words)])
-    options.out = (
-        options.out or pathlib.Path("out", "live" if options.live else "real" if options.real else "demo")
-    ).resolve()
+    kind = "teach_demo" if options.teach else "live" if options.live else "real" if options.real else "demo"
+    options.out = (options.out or pathlib.Path("out", kind)).resolve()
     return options
 
 

@@ -1,11 +1,12 @@
-"""What tools/demo does: data, log, stream, evaluation, report; of a rendered scene, of recorded ones, or live."""
+"""What tools/demo does: data, log, stream, evaluation, report; of a rendered scene, of recorded ones, or live. --teach is
+in teach.py."""
 
 import shutil
 import threading
 import time
 
 from studies.command import RECORDED_CAMERA, call, die, recorded_views, step
-from studies.demo import live, report
+from studies.demo import live, report, teach
 from studies.lcm_log import count_events
 from studies.measured import threads, write_json
 from studies.stream import Stream
@@ -138,4 +139,9 @@ def run_live(options, programs):
 
 
 def run(options, programs):
-    run_live(options, programs) if options.live else run_replay(options, programs)
+    if options.teach:
+        teach.run(options, programs)
+    elif options.live:
+        run_live(options, programs)
+    else:
+        run_replay(options, programs)

@@ -18,6 +18,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kFarOff_m = 0.01;
 constexpr std::uint64_t kSeed = 1;
+constexpr int kFinePoints = 3000;
 
 struct Fit {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
@@ -143,7 +144,6 @@ MeshAlignment align_meshes(const Mesh& source, const Mesh& target) {
   require(!source.triangles.empty(), "mesh of {} vertices without triangles, expected a surface",
           source.vertices.size());
   constexpr int kCoarsePoints = 150;
-  constexpr int kFinePoints = 3000;
   constexpr std::size_t kRefined = 12;
   constexpr double kSame_rad = 10.0 * M_PI / 180.0;
   constexpr double kOther_rad = 20.0 * M_PI / 180.0;
@@ -166,6 +166,12 @@ MeshAlignment align_meshes(const Mesh& source, const Mesh& target) {
   const std::vector<Fit> basins = distinct(fine, kOther_rad, 2);
   const double next = basins.size() > 1 ? basins[1].rms_m : std::numeric_limits<double>::quiet_NaN();
   return {basins[0].T_target_source, basins[0].rms_m, next};
+}
+
+Eigen::Isometry3d refined_alignment(const Mesh& source, const Mesh& target, const Eigen::Isometry3d& T_start) {
+  constexpr Descent kRefining{30, 0.01, 0.003};
+  const std::vector<Eigen::Vector3f> points = sample_surface(source, kFinePoints, kSeed).points;
+  return Target(target).registered(points, T_start, kRefining).T_target_source;
 }
 
 }  // namespace houghstream

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/view/drawing/teaching_view.hpp"
 #include "tools/view/drawing/turned_view.hpp"
 #include "tools/view/drawing/view_panel.hpp"
 
@@ -45,6 +46,8 @@ cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const
                         const StreamView& stream) {
   const ViewedFrame viewed = without_weak(all, settings.min_score);
   cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
+  if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
+  if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
   if (settings.show_3d) {
     cv::hconcat(picture, draw_turned_view(viewed.frame, viewed.poses, models), picture);
   } else if (settings.show_depth) {

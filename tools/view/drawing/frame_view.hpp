@@ -28,6 +28,8 @@ struct FrameViewSettings {
   float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue
   bool show_keys = false;   ///< a line that names the window's keys
   bool paused = false;      ///< said in that line
+  bool can_teach = false;   ///< that line names the key for it
+  cv::Rect box;             ///< that was drawn with the mouse, pixels of the colour image; empty = none
 };
 
 /// What the panel below the pictures shows of the stream as a whole.

@@ -23,7 +23,8 @@ std::array<std::uint8_t, kLevels> make_srgb_table() {
   return table;
 }
 
-// Cameras do not follow the scene's brightness all the way: dark rooms stay darker.
+}  // namespace
+
 double automatic_exposure(const cv::Mat& radiance, const PhotoSettings& settings) {
   constexpr double kFollow = 0.8;
   const cv::Scalar mean = cv::mean(cv::min(radiance, 1.5));
@@ -31,13 +32,12 @@ double automatic_exposure(const cv::Mat& radiance, const PhotoSettings& settings
   return settings.exposure_bias * std::pow(settings.mean_level / level, kFollow);
 }
 
-}  // namespace
-
 cv::Mat take_photo(const cv::Mat& radiance, const PhotoSettings& settings, std::uint64_t seed) {
   static const std::array<std::uint8_t, kLevels> kSrgb = make_srgb_table();
   cv::Mat blurred;
   cv::GaussianBlur(radiance, blurred, {5, 5}, settings.blur_px);
-  const auto exposure = static_cast<float>(automatic_exposure(radiance, settings));
+  const auto exposure =
+      static_cast<float>(settings.exposure ? *settings.exposure : automatic_exposure(radiance, settings));
   const Eigen::Vector3f gain = exposure * settings.white_balance_bgr;
   const auto shot_sq = static_cast<float>(settings.shot_noise * settings.shot_noise);
   const auto read_sq = static_cast<float>(settings.read_noise * settings.read_noise);

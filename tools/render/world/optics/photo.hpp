@@ -6,8 +6,12 @@
 
 namespace houghstream::world {
 
-/// The picture a colour camera takes of linear light (CV_32FC3 BGR): lens blur, vignetting, automatic exposure,
-/// white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same picture.
+/// The factor on the light that automatic exposure settles at for a picture (CV_32FC3, linear). Cameras do not follow
+/// the scene's brightness all the way: dark rooms stay darker.
+double automatic_exposure(const cv::Mat& radiance, const PhotoSettings& settings);
+
+/// The picture a colour camera takes of linear light (CV_32FC3 BGR): lens blur, vignetting, automatic exposure
+/// unless the settings fix it, white balance, shot and read noise, sRGB. Returns CV_8UC3 BGR. Same seed, same picture.
 cv::Mat take_photo(const cv::Mat& radiance, const PhotoSettings& settings, std::uint64_t seed);
 
 /// How a camera's own processing departs from plain sRGB; as it stands, not at all. The steps and their order are those

@@ -82,9 +82,11 @@ Eigen::Vector3f reflected(const Point& point, const std::vector<LightInView>& li
 
 class Shader {
  public:
-  Shader(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world)
+  Shader(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world,
+         const cv::Point& first_px)
       : world_(lit_world.world),
         camera_(camera),
+        first_px_(first_px),
         up_((T_camera_world.linear() * Eigen::Vector3d::UnitZ()).cast<float>()) {
     for (std::size_t i = 0; i < world_.lights.size(); ++i) {
       const Light& light = world_.lights[i];
@@ -95,6 +97,7 @@ class Shader {
       R_camera_object_.push_back((T_camera_world * placed.T_world_object).linear().cast<float>());
   }
 
+  /// The view's pixel (x, y), which is the image's (x, y) + first_px.
   void shade_pixel(int x, int y, ShadedView& view) const {
     const std::uint16_t id = view.geometry.id.at<std::uint16_t>(y, x);
     if (id == 0) return;
@@ -107,7 +110,9 @@ class Shader {
     const float z = view.geometry.depth.at<float>(y, x);
 
     Point point;
-    point.position = camera_.backproject(x, y, z).cast<float>();
+    const int image_x = x + first_px_.x;
+    const int image_y = y + first_px_.y;
+    point.position = camera_.backproject(image_x, image_y, z).cast<float>();
     point.to_eye = -point.position.normalized();
     point.normal = (R_camera_object_[item] *
                     (first * thing.mesh.normals[a] + bary[0] * thing.mesh.normals[b] + bary[1] * thing.mesh.normals[c]))
@@ -122,7 +127,8 @@ class Shader {
       point.reflectance_bgr = sample_level(mip_level(thing, triangle, pixel_m), uv);
     }
     point.gloss = thing.gloss;
-    point.turn = pixel_uniform(kPatternSeed, static_cast<std::uint64_t>(y) * 4096U + static_cast<std::uint64_t>(x));
+    const auto number = static_cast<std::uint64_t>(image_y) * 4096U + static_cast<std::uint64_t>(image_x);
+    point.turn = pixel_uniform(kPatternSeed, number);
 
     // More of the light from everywhere comes from above.
     const Eigen::Vector3f ambient = world_.ambient_bgr * (0.72F + 0.28F * point.normal.dot(up_));
@@ -137,6 +143,7 @@ class Shader {
  private:
   const World& world_;
   const Camera& camera_;
+  cv::Point first_px_;
   Eigen::Vector3f up_;
   std::vector<LightInView> lights_;
   std::vector<Eigen::Matrix3f> R_camera_object_;
@@ -152,19 +159,24 @@ LitWorld light_world(World world) {
 }
 
 ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
+  return shade_view(lit_world, camera, T_camera_world, cv::Rect(0, 0, camera.width, camera.height));
+}
+
+ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world,
+                      const cv::Rect& region_px) {
   std::vector<RenderItem> items;
   for (std::size_t i = 0; i < lit_world.world.items.size(); ++i) {
     const Placed& placed = lit_world.world.items[i];
     items.push_back({&placed.thing->mesh, T_camera_world * placed.T_world_object, static_cast<int>(i) + 1});
   }
   ShadedView view;
-  view.geometry = render_geometry(items, camera);
-  const cv::Size size(camera.width, camera.height);
+  view.geometry = render_geometry(items, camera, region_px);
+  const cv::Size size = region_px.size();
   view.radiance = cv::Mat::zeros(size, CV_32FC3);
   view.cos_incidence = cv::Mat::zeros(size, CV_32FC1);
   view.reflectance = cv::Mat::zeros(size, CV_32FC1);
   view.gloss = cv::Mat::zeros(size, CV_32FC1);
-  const Shader shader(lit_world, camera, T_camera_world);
+  const Shader shader(lit_world, camera, T_camera_world, region_px.tl());
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) shader.shade_pixel(x, y, view);
   }

@@ -26,4 +26,8 @@ struct ShadedView {
 /// Geometry, then texture (mip-mapped, bilinear), Lambert and Blinn-Phong light per pixel.
 ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world);
 
+/// The same inside `region_px` of the image; the result has the region's size.
+ShadedView shade_view(const LitWorld& lit_world, const Camera& camera, const Eigen::Isometry3d& T_camera_world,
+                      const cv::Rect& region_px);
+
 }  // namespace houghstream::world

@@ -162,29 +162,35 @@ Eigen::Matrix3d any_attitude(Random& random) {
       .toRotationMatrix();
 }
 
-Group hold(const ThingPtr& thing, int object_id, const HeldPlace& place, Random& random) {
+Placed take_hold(const Placed& placed, const HeldPlace& place, Random& random) {
   constexpr int kTries = 400;
-  Placed placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
-  const Eigen::Matrix3d R_world_object = any_attitude(random);
-  placed.T_world_object.linear() = R_world_object;
-  const double height_m = random.uniform(kLeastHeldM, kMostHeldM);
-  placed.T_world_object.translation() << place.over, height_m + height_above_table(thing->mesh, R_world_object);
+  const Eigen::Matrix3d R_world_object = placed.T_world_object.linear();
   const cv::Mat skin =
       plain({64, 64}, hsv(random.uniform(12, 26), random.uniform(0.3, 0.6), random.uniform(0.4, 0.9)), 0.06, random);
   const cv::Mat sleeve =
       fabric({128, 128}, hsv(random.uniform(0, 360), random.uniform(0.0, 0.6), random.uniform(0.15, 0.9)), random);
   for (int i = 0; i < kTries; ++i) {
     const Grip grip = draw_grip(place.arm_azimuth_rad, static_cast<double>(i) / kTries, random);
-    const auto points = surface_points(thing->mesh, grip.axes.transpose() * R_world_object);
+    const auto points = surface_points(placed.thing->mesh, grip.axes.transpose() * R_world_object);
     Placed hand{make_hand(points, grip, skin, sleeve), Eigen::Isometry3d::Identity(), 0, true};
     hand.T_world_object.linear() = grip.axes;
     hand.T_world_object.translation() = placed.T_world_object.translation();
     if (lowest_point(hand) < kOverTableM) continue;
     const double hidden = mean_hidden_share(hand, placed, place);
-    if (hidden >= kLeastGripped && hidden <= kMostGripped) return {hand, placed};
+    if (hidden >= kLeastGripped && hidden <= kMostGripped) return hand;
   }
-  fail("{}: no grip that hides {:.2f} to {:.2f} of it, after {} tries", thing->name, kLeastGripped, kMostGripped,
+  fail("{}: no grip that hides {:.2f} to {:.2f} of it, after {} tries", placed.thing->name, kLeastGripped, kMostGripped,
        kTries);
+}
+
+Group hold(const ThingPtr& thing, int object_id, const HeldPlace& place, Random& random) {
+  Placed placed{thing, Eigen::Isometry3d::Identity(), object_id, true};
+  const Eigen::Matrix3d R_world_object = any_attitude(random);
+  placed.T_world_object.linear() = R_world_object;
+  const double height_m = random.uniform(kLeastHeldM, kMostHeldM);
+  placed.T_world_object.translation() << place.over, height_m + height_above_table(thing->mesh, R_world_object);
+  const Placed hand = take_hold(placed, place, random);
+  return {hand, placed};
 }
 
 }  // namespace houghstream::world

@@ -1,0 +1,163 @@
+#include "drivers/store/store_watch.hpp"
+
+#include <fmt/ranges.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/host_clock.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+
+namespace houghstream::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string state_of(const fs::path& file) {
+  struct stat is {};
+  if (stat(file.c_str(), &is) != 0) return file.string() + " missing";
+  return fmt::format("{} {} {} {} {}.{} {}.{}", file.string(), is.st_dev, is.st_ino, is.st_size, is.st_mtim.tv_sec,
+                     is.st_mtim.tv_nsec, is.st_ctim.tv_sec, is.st_ctim.tv_nsec);
+}
+
+/// Differs whenever a file that is loaded has been written or exchanged, without reading any.
+std::string state_of_store(const ObjectStore& store) {
+  std::vector<std::string> states = {state_of(store.folder), state_of(store.json_file()),
+                                     state_of(store.forest_file())};
+  std::error_code error;  // a folder that goes away meanwhile shows in the next state
+  for (fs::directory_iterator entry(store.models_folder(), error), end; !error && entry != end; entry.increment(error))
+    states.push_back(state_of(entry->path()));
+  std::sort(states.begin() + 3, states.end());
+  return fmt::format("{}", fmt::join(states, "\n"));
+}
+
+std::string state_of_store(const fs::path& folder) {
+  ObjectStore store;
+  store.folder = folder;
+  return state_of_store(store);
+}
+
+bool holds(const std::vector<KnownObject>& objects, const std::string& name) {
+  return std::any_of(objects.begin(), objects.end(), [&](const KnownObject& known) { return known.name == name; });
+}
+
+/// Names of those that `others` lack, with what happened to them.
+std::string changed(const char* what, const std::vector<KnownObject>& objects, const std::vector<KnownObject>& others) {
+  std::vector<std::string> names;
+  for (const KnownObject& object : objects) {
+    if (!holds(others, object.name)) names.push_back(object.name);
+  }
+  return names.empty() ? "" : fmt::format("; {} {}", what, fmt::join(names, ", "));
+}
+
+}  // namespace
+
+StoreFollower::StoreFollower(fs::path folder, Load load) : folder_(std::move(folder)), load_(std::move(load)) {
+  known_.store = folder_.string();
+  taken_ = state_of_store(folder_);  // what changes while it is read is noticed when it is followed
+  if (!fs::exists(folder_)) {
+    const fs::path beside = fs::absolute(folder_ / "").lexically_normal().parent_path().parent_path();
+    require(fs::is_directory(beside),
+            "{}: no such folder, expected an object store of hs-teach, or where it can make one", folder_.string());
+    refused_ = std::exchange(taken_, "");
+    set_problem(fmt::format("{}: not there yet, nothing is known until hs-teach makes it", folder_.string()));
+    return;
+  }
+  const ObjectStore store = read_store(folder_);
+  take_over(store, load_(store));
+}
+
+StoreFollower::~StoreFollower() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  ended_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void StoreFollower::follow(std::chrono::milliseconds period) {
+  const BlockStopSignals block;
+  thread_ = std::thread([this, period] { live(period); });
+}
+
+std::shared_ptr<const void> StoreFollower::current() const {
+  const std::lock_guard lock(mutex_);
+  return current_;
+}
+
+KnownObjects StoreFollower::known() const {
+  const std::lock_guard lock(mutex_);
+  return known_;
+}
+
+void StoreFollower::live(std::chrono::milliseconds period) {
+  constexpr int kPolite = 10;  // on Linux of this thread only: frames go first, and still it gets its turn
+  if (nice(kPolite) == -1) log_warning("{}: is loaded at full priority: it cannot be lowered", folder_.string());
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, period, [this] { return ending_; })) {
+    lock.unlock();
+    look();
+    lock.lock();
+  }
+}
+
+void StoreFollower::look() {
+  retired_.erase(
+      std::remove_if(retired_.begin(), retired_.end(), [](const auto& loaded) { return loaded.use_count() == 1; }),
+      retired_.end());
+  const std::string state = state_of_store(folder_);
+  const bool lasts = state == pending_;
+  pending_ = state;
+  if (state == taken_) return set_problem("");
+  if (!lasts || state == refused_) return;
+  load(state);
+}
+
+void StoreFollower::load(const std::string& state) {
+  std::string problem;
+  try {
+    const ObjectStore store = read_store(folder_);
+    std::shared_ptr<const void> loaded = load_(store);
+    if (state_of_store(folder_) != state) return;  // of two stores
+    take_over(store, std::move(loaded));
+    taken_ = state;
+  } catch (const std::exception& error) {
+    if (state_of_store(folder_) != state) return;
+    problem = error.what();
+    refused_ = state;
+  }
+  set_problem(problem);
+}
+
+void StoreFollower::take_over(const ObjectStore& store, std::shared_ptr<const void> loaded) {
+  const std::int64_t now = utime_now();
+  const std::lock_guard lock(mutex_);
+  std::vector<KnownObject> objects;
+  for (const StoredObject& object : store.objects) {
+    const auto known = std::find_if(known_.objects.begin(), known_.objects.end(),
+                                    [&](const KnownObject& earlier) { return earlier.name == object.name; });
+    objects.push_back({object.name, known == known_.objects.end() ? now : known->since_utime});
+  }
+  if (current_) retired_.push_back(std::move(current_));
+  if (current_ || !known_.problem.empty()) {
+    log_info("{}: {} objects from here on{}{}", known_.store, objects.size(), changed("new:", objects, known_.objects),
+             changed("gone:", known_.objects, objects));
+  }
+  current_ = std::move(loaded);
+  known_.objects = std::move(objects);
+  known_.since_utime = now;
+}
+
+void StoreFollower::set_problem(const std::string& problem) {
+  const std::lock_guard lock(mutex_);
+  if (problem == known_.problem) return;
+  known_.problem = problem;
+  if (!problem.empty()) log_warning("{}{}", problem, current_ ? "; what was known stays" : "");
+}
+
+}  // namespace houghstream::store

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "drivers/store/object_store.hpp"
+#include "pipeline/types/known_objects.hpp"
+
+namespace houghstream::store {
+
+/// Follows an object store that changes while a program runs: what the program needs of it is loaded in a thread of low
+/// priority, and is there as a whole once it is. A store that is torn or bad leaves what was there before; one line of
+/// the log says why, and known(). Every function may be called from any thread.
+class StoreFollower {
+ public:
+  using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
+
+  /// Loads the store at once. `load` throws where its parts are bad; it may be called again later, from another thread.
+  /// Where there is no folder of this name yet, but one that it could be made in, nothing is known so far, and the log
+  /// says so. Throws InputError as read_store() and `load` do.
+  StoreFollower(std::filesystem::path folder, Load load);
+  ~StoreFollower();  ///< waits for a load that is under way
+  StoreFollower(const StoreFollower&) = delete;
+  StoreFollower& operator=(const StoreFollower&) = delete;
+
+  /// From here on looks at it every `period`, and loads it when it has changed and stayed the same for a period: who
+  /// copies into it is at work for a while.
+  void follow(std::chrono::milliseconds period);
+
+  /// What was loaded last; null while there is no store yet.
+  std::shared_ptr<const void> current() const;
+
+  KnownObjects known() const;
+
+ private:
+  void live(std::chrono::milliseconds period);
+  void look();
+  void load(const std::string& state);
+  void take_over(const ObjectStore& store, std::shared_ptr<const void> loaded);
+  void set_problem(const std::string& problem);
+
+  std::filesystem::path folder_;
+  Load load_;
+  std::string taken_;                                 // the files' state when they were loaded
+  std::string refused_;                               // or when they could not be
+  std::string pending_;                               // seen last: one that may not last
+  std::vector<std::shared_ptr<const void>> retired_;  // given up here, where their end keeps no frame waiting
+  mutable std::mutex mutex_;
+  std::condition_variable ended_;
+  bool ending_ = false;
+  std::shared_ptr<const void> current_;
+  KnownObjects known_;
+  std::thread thread_;
+};
+
+/// The same with the type of what is loaded.
+template <typename T>
+class StoreWatch {
+ public:
+  using Load = std::function<std::shared_ptr<const T>(const ObjectStore&)>;
+
+  StoreWatch(const std::filesystem::path& folder, Load load) : follower_(folder, std::move(load)) {}
+
+  void follow(std::chrono::milliseconds period = std::chrono::milliseconds(200)) { follower_.follow(period); }
+  std::shared_ptr<const T> current() const { return std::static_pointer_cast<const T>(follower_.current()); }
+  KnownObjects known() const { return follower_.known(); }
+
+ private:
+  StoreFollower follower_;
+};
+
+}  // namespace houghstream::store

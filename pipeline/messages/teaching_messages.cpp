@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/messages/messages.hpp"
+
+namespace houghstream {
+namespace {
+
+constexpr double kUnitTolerance = 1e-3;  // a unit vector in single precision is this close to length 1
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+std::optional<cv::Rect2f> box_from(const teaching_t& message) {
+  const cv::Rect2f box(message.box_x, message.box_y, message.box_width, message.box_height);
+  if (std::isnan(box.x) && std::isnan(box.y) && std::isnan(box.width) && std::isnan(box.height)) return std::nullopt;
+  const bool is_box = std::isfinite(box.x) && std::isfinite(box.y) && std::isfinite(box.width) &&
+                      std::isfinite(box.height) && box.width > 0.0F && box.height > 0.0F;
+  require(is_box, "box at ({}, {}) of {}x{} pixels, expected finite with positive size, or NaN", box.x, box.y,
+          box.width, box.height);
+  return box;
+}
+
+std::optional<Eigen::Isometry3d> pose_from(const teaching_t& message) {
+  const Eigen::Vector3d translation(message.trans);
+  const Eigen::Vector4d wxyz(message.quat);
+  if (translation.array().isNaN().all() && wxyz.array().isNaN().all()) return std::nullopt;
+  require(translation.allFinite(), "pose at ({}, {}, {}), expected finite metres, or NaN", translation.x(),
+          translation.y(), translation.z());
+  require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "pose with a quaternion of length {}, expected 1, or NaN",
+          wxyz.norm());
+  return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+}
+
+SeenDirection direction_from(const std::vector<float>& xyz, std::int8_t seen) {
+  const Eigen::Vector3f direction(xyz.at(0), xyz.at(1), xyz.at(2));
+  require(std::abs(direction.norm() - 1.0F) < kUnitTolerance, "a direction of length {}, expected 1", direction.norm());
+  return {direction, seen != 0};
+}
+
+}  // namespace
+
+known_objects_t to_message(const KnownObjects& known) {
+  known_objects_t message{};
+  message.store = known.store;
+  message.since_utime = known.since_utime;
+  for (const KnownObject& object : known.objects) {
+    message.object_names.push_back(object.name);
+    message.object_since_utimes.push_back(object.since_utime);
+  }
+  message.n_objects = static_cast<std::int32_t>(known.objects.size());
+  message.problem = known.problem;
+  return message;
+}
+
+teaching_t to_message(const Teaching& teaching) {
+  teaching_t message{};
+  message.utime = teaching.frame.utime;
+  message.source_channel = teaching.frame.channel;
+  message.name = teaching.name;
+  message.state = static_cast<std::int8_t>(teaching.state);
+  message.message = teaching.message;
+  message.progress = teaching.progress.value_or(kNone);
+  message.n_frames = teaching.frames;
+  message.n_keyframes = teaching.keyframes;
+  const cv::Rect2f box = teaching.box_px.value_or(cv::Rect2f(kNone, kNone, kNone, kNone));
+  message.box_x = box.x;
+  message.box_y = box.y;
+  message.box_width = box.width;
+  message.box_height = box.height;
+  std::fill_n(message.trans, 3, std::numeric_limits<double>::quiet_NaN());
+  std::fill_n(message.quat, 4, std::numeric_limits<double>::quiet_NaN());
+  if (teaching.T_camera_object) {
+    const rigid_transform_t transform = to_message(teaching.frame.utime, *teaching.T_camera_object);
+    std::copy_n(transform.trans, 3, message.trans);
+    std::copy_n(transform.quat, 4, message.quat);
+  }
+  for (const SeenDirection& direction : teaching.directions) {
+    message.directions.push_back({direction.direction.x(), direction.direction.y(), direction.direction.z()});
+    message.seen.push_back(direction.seen ? 1 : 0);
+  }
+  message.n_directions = static_cast<std::int32_t>(teaching.directions.size());
+  return message;
+}
+
+Teaching teaching_from_message(const teaching_t& message) {
+  try {
+    require(message.state > teaching_t::INVALID && message.state <= teaching_t::FAILED, "state {}, expected {} to {}",
+            message.state, teaching_t::CHOOSING, teaching_t::FAILED);
+    require(std::isnan(message.progress) || (message.progress >= 0.0F && message.progress <= 1.0F),
+            "progress {}, expected 0 to 1, or NaN", message.progress);
+    Teaching out;
+    out.frame = {message.source_channel, message.utime};
+    out.name = message.name;
+    out.state = static_cast<TeachingState>(message.state);
+    out.message = message.message;
+    if (!std::isnan(message.progress)) out.progress = message.progress;
+    out.frames = message.n_frames;
+    out.keyframes = message.n_keyframes;
+    out.box_px = box_from(message);
+    out.T_camera_object = pose_from(message);
+    for (std::size_t i = 0; i < message.directions.size(); ++i)
+      out.directions.push_back(direction_from(message.directions[i], message.seen.at(i)));
+    return out;
+  } catch (const InputError& error) {
+    fail("teaching of '{}': {}", message.name, error.what());
+  }
+}
+
+}  // namespace houghstream

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/frame_id.hpp"
+
+namespace houghstream {
+
+/// Where the showing of an object stands. Values are those of teaching_t.
+enum class TeachingState : std::int8_t {
+  kInvalid = 0,
+  kChoosing = 1,  ///< looks for the object that is meant
+  kTracking = 2,  ///< follows it, and learns its shape
+  kLost = 3,      ///< has lost it, and looks for it
+  kFusing = 4,    ///< makes its model
+  kTraining = 5,  ///< teaches the model to the store
+  kDone = 6,      ///< the store knows it
+  kFailed = 7,    ///< it was not taught; the message says why
+};
+
+/// One word for people.
+const char* to_string(TeachingState state);
+
+/// A direction from which an object can be seen.
+struct SeenDirection {
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();  ///< unit vector in the object's frame, away from the object
+  bool seen = false;
+};
+
+/// How it goes with an object that is shown to a camera to be taught.
+struct Teaching {
+  FrameId frame;  ///< looked at last; box and pose are those in it; its channel is empty where it is not from the bus
+  std::string name;
+  TeachingState state = TeachingState::kInvalid;
+  std::string message;            ///< what happens, or what to do next, one line
+  std::optional<float> progress;  ///< share of the state's work that is done, 0 to 1; nothing = cannot be told
+  int frames = 0;                 ///< looked at
+  int keyframes = 0;              ///< whose views will be taught
+  std::optional<cv::Rect2f> box_px;
+  std::optional<Eigen::Isometry3d> T_camera_object;
+  std::vector<SeenDirection> directions;  ///< evenly over the sphere
+};
+
+/// How many of the directions were seen.
+int count_seen(const Teaching& teaching);
+
+}  // namespace houghstream

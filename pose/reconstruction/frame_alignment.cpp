@@ -1,0 +1,203 @@
+#include "pose/reconstruction/frame_alignment.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace houghstream::reconstruction {
+namespace {
+
+/// Normal equations and counts of one look at all points.
+struct Sums {
+  Matrix6 squares = Matrix6::Zero();
+  Vector6 slope = Vector6::Zero();
+  int pairs = 0, seen = 0, lights = 0;
+  double depth_sq = 0.0, light_sq = 0.0;
+
+  void add(const Vector6& row, double residual, double weight) {
+    squares.noalias() += weight * row * row.transpose();
+    slope.noalias() += (weight * residual) * row;
+  }
+};
+
+/// Depth at a place between pixels; that of the nearest pixel at an edge, NaN where there is none.
+float depth_between(const cv::Mat& depth, float u, float v) {
+  const int x = static_cast<int>(u);
+  const int y = static_cast<int>(v);
+  const float* above = depth.ptr<float>(y) + x;
+  const float* below = depth.ptr<float>(y + 1) + x;
+  const float low = std::min(std::min(above[0], above[1]), std::min(below[0], below[1]));
+  const float high = std::max(std::max(above[0], above[1]), std::max(below[0], below[1]));
+  const float du = u - static_cast<float>(x);
+  const float dv = v - static_cast<float>(y);
+  const float sum = above[0] + above[1] + below[0] + below[1];
+  if (!(high - low < 0.02F * low) || !std::isfinite(sum)) return (dv < 0.5F ? above : below)[du < 0.5F ? 0 : 1];
+  return (1 - dv) * ((1 - du) * above[0] + du * above[1]) + dv * ((1 - du) * below[0] + du * below[1]);
+}
+
+/// Light between pixels and its slope there.
+struct Light {
+  float value, slope_u, slope_v;
+};
+Light light_between(const cv::Mat& light, float u, float v) {
+  const int x = static_cast<int>(u);
+  const int y = static_cast<int>(v);
+  const float du = u - static_cast<float>(x);
+  const float dv = v - static_cast<float>(y);
+  const float* a = light.ptr<float>(y) + x;
+  const float* b = light.ptr<float>(y + 1) + x;
+  const float above = a[0] + du * (a[1] - a[0]);
+  const float below = b[0] + du * (b[1] - b[0]);
+  return {above + dv * (below - above), (1 - dv) * (a[1] - a[0]) + dv * (b[1] - b[0]), below - above};
+}
+
+/// Tukey's weight of a residual in deviations.
+double tukey(double r) {
+  constexpr double kLimit_sq = 4.685 * 4.685;
+  const double rest = 1.0 - r * r / kLimit_sq;
+  return rest > 0.0 ? rest * rest : 0.0;
+}
+
+class Look {
+  static constexpr double kShade = 0.15;  // of light a pixel
+  static constexpr double kNear_m = 0.6;  // of the world's origin, at which the object stands
+
+ public:
+  Look(const FrameLevel& frame, const Eigen::Isometry3d& T, int level, const AlignmentLimits& limits)
+      : frame_(frame),
+        R_(T.linear().cast<float>()),
+        t_(T.translation().cast<float>()),
+        gate_(limits.gate_m * static_cast<double>(1 << level)),
+        limits_(limits) {}
+
+  void at(const SurfacePoint& point, Sums& sums) const {
+    const Eigen::Vector3f p = R_ * point.point + t_;
+    if (!(p.z() > 0.1F)) return;
+    const Eigen::Vector2f px = frame_.camera.project_single(p);
+    if (!(px.x() >= 1.0F && px.y() >= 1.0F && px.x() < static_cast<float>(frame_.depth.cols - 2) &&
+          px.y() < static_cast<float>(frame_.depth.rows - 2)))
+      return;
+    const double sigma = depth_sigma(p.z());
+    const double gate = gate_ + 3.0 * sigma;
+    const float z = depth_between(frame_.depth, px.x(), px.y());
+    if (!std::isfinite(z)) return;
+    const double behind = p.z() - z;
+    if (behind > gate) return;  // hidden
+    ++sums.seen;
+    if (behind < -gate) return;  // seen through
+    const Eigen::Vector3f n = R_ * point.normal;
+    const float facing = -n.dot(p) / p.norm();
+    if (facing < 0.05F) return;
+    const double residual = n.dot(p) * (z / p.z() - 1.0F);
+    const double weight = tukey(residual / (1.5 * sigma + 0.3 * gate_));
+    if (weight > 0.0) {
+      ++sums.pairs;
+      sums.depth_sq += residual * residual;
+      Vector6 row;
+      row << -point.normal.cast<double>(), -point.point.cross(point.normal).cast<double>();
+      sums.add(row, residual, weight * std::min(1.0F, 2.0F * facing) / (sigma * sigma));
+    }
+    if (limits_.use_light) add_light(point, p, px, sums);
+  }
+
+ private:
+  void add_light(const SurfacePoint& point, const Eigen::Vector3f& p, const Eigen::Vector2f& px, Sums& sums) const {
+    const Light seen = light_between(frame_.light, px.x(), px.y());
+    const double residual = seen.value - point.light;
+    const double weight = tukey(residual / (2.0 * limits_.light_sigma));
+    ++sums.lights;
+    sums.light_sq += std::min(residual * residual, 1.0);
+    if (weight <= 0.0) return;
+    const float a = seen.slope_u * static_cast<float>(frame_.camera.fx) / p.z();
+    const float b = seen.slope_v * static_cast<float>(frame_.camera.fy) / p.z();
+    const Eigen::Vector3f in_world = R_.transpose() * Eigen::Vector3f(a, b, -(a * p.x() + b * p.y()) / p.z());
+    Vector6 row;
+    row << in_world.cast<double>(), point.point.cross(in_world).cast<double>();
+    // What is far from the object says little of it, and repeats itself: wallpaper, tiles.
+    const double far = point.point.norm() / kNear_m;
+    // Faint slopes are shade and shine, which do not move with the surface.
+    const double slope_sq = seen.slope_u * seen.slope_u + seen.slope_v * seen.slope_v;
+    const double edge = slope_sq / (slope_sq + kShade * kShade);
+    sums.add(row, residual, edge * weight / (limits_.light_sigma * limits_.light_sigma * (1.0 + far * far)));
+  }
+
+  const FrameLevel& frame_;
+  Eigen::Matrix3f R_;
+  Eigen::Vector3f t_;
+  double gate_;
+  const AlignmentLimits& limits_;
+};
+
+void add_plane(const PlaneKnown& plane, const Eigen::Isometry3d& T, Sums& sums) {
+  const Eigen::Vector3d up = T.linear().transpose() * plane.normal;  // should be z
+  const double turn = 1.0 / (plane.sigma_rad * plane.sigma_rad);
+  Vector6 row = Vector6::Zero();
+  row[4] = 1.0;
+  sums.add(row, -up.x(), turn);
+  row.setZero();
+  row[3] = -1.0;
+  sums.add(row, -up.y(), turn);
+  row.setZero();
+  row.head<3>() = up;
+  sums.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
+}
+
+Sums look(const std::vector<SurfacePoint>& points, const FrameLevel& frame, const Eigen::Isometry3d& T, int level,
+          const AlignmentLimits& limits) {
+  Sums sums;
+  const Look one(frame, T, level, limits);
+  for (const SurfacePoint& point : points) one.at(point, sums);
+  return sums;
+}
+
+}  // namespace
+
+Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& xi) {
+  const double angle = xi.tail<3>().norm();
+  Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
+  if (angle > 0.0) step.linear() = Eigen::AngleAxisd(angle, xi.tail<3>() / angle).toRotationMatrix();
+  step.translation() = xi.head<3>();
+  Eigen::Isometry3d out = T * step;
+  out.linear() = Eigen::Quaterniond(out.linear()).normalized().toRotationMatrix();  // many steps keep it a rotation
+  return out;
+}
+
+Vector6 motion_of(const Eigen::Isometry3d& motion) {
+  const Eigen::AngleAxisd turn(motion.linear());
+  Vector6 xi;
+  xi << motion.translation(), turn.angle() * turn.axis();
+  return xi;
+}
+
+Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
+                      const std::optional<PlaneKnown>& plane, const AlignmentLimits& limits) {
+  constexpr int kFewest = 40;
+  Alignment out;
+  out.T_camera_world = T_camera_world;
+  Sums sums;
+  for (int level = limits.coarsest; level >= limits.finest; --level) {
+    const auto l = static_cast<std::size_t>(level);
+    for (int i = 0; i <= limits.iterations; ++i) {
+      sums = look(points[l], frame.levels[l], out.T_camera_world, level, limits);
+      if (sums.pairs < kFewest) break;
+      if (plane) add_plane(*plane, out.T_camera_world, sums);
+      if (i == limits.iterations) break;
+      Matrix6 damped = sums.squares;
+      damped.diagonal() += Vector6::Constant(1.0) + 1e-6 * sums.squares.diagonal();
+      const Vector6 step = damped.ldlt().solve(-sums.slope);
+      if (!step.allFinite() || step.norm() > 0.5) break;
+      out.T_camera_world = moved(out.T_camera_world, step);
+      if (step.head<3>().norm() < limits.enough_m && step.tail<3>().norm() < 2.0 * limits.enough_m) break;
+    }
+  }
+  const auto all = static_cast<double>(points[static_cast<std::size_t>(limits.finest)].size());
+  out.information = sums.squares;
+  out.pairs = sums.pairs;
+  out.inlier_share = sums.seen > 0 ? static_cast<double>(sums.pairs) / sums.seen : 0.0;
+  out.seen_share = all > 0.0 ? sums.seen / all : 0.0;
+  out.depth_rms_m = sums.pairs > 0 ? std::sqrt(sums.depth_sq / sums.pairs) : 0.0;
+  out.light_rms = sums.lights > 0 ? std::sqrt(sums.light_sq / sums.lights) : 0.0;
+  return out;
+}
+
+}  // namespace houghstream::reconstruction

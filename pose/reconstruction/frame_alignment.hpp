@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "pose/reconstruction/frame_levels.hpp"
+
+namespace houghstream::reconstruction {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+/// T * exp(xi): a small motion of the world, its shift (metres) before its turn (radians).
+Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& xi);
+
+/// xi with motion = exp(xi), as moved() takes it.
+Vector6 motion_of(const Eigen::Isometry3d& motion);
+
+/// The table, where it is known to the camera: its height and slope hold three of six degrees of freedom.
+struct PlaneKnown {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< camera frame, unit length, upwards
+  double offset = 0.0;                                ///< normal.X + offset = 0 on the table
+  double sigma_m = 0.0005;                            ///< of the height of the world's origin above it
+  double sigma_rad = 0.004;                           ///< of the world's z axis
+};
+
+struct AlignmentLimits {
+  int iterations = 7;         ///< on each level, at most
+  int coarsest = 2;           ///< level to begin on
+  int finest = 0;             ///< level to end on
+  double light_sigma = 0.35;  ///< of FrameLevel::light
+  double gate_m = 0.014;      ///< on the finest level; what is farther apart is no pair. Twice that on the next
+  double enough_m = 1e-4;     ///< a step that moves nothing farther ends a level
+  bool use_light = true;
+};
+
+/// A frame laid on surface points, and what speaks for it.
+struct Alignment {
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+  Matrix6 information = Matrix6::Zero();  ///< of a motion of the world, as moved() has it, at the end
+  int pairs = 0;                          ///< points with a measured partner
+  double inlier_share = 0.0;              ///< of the points in the image that nothing hides: those with a partner
+  double seen_share = 0.0;                ///< of all points: those in the image, not hidden, with depth
+  double depth_rms_m = 0.0;               ///< of the pairs, along normals
+  double light_rms = 0.0;                 ///< of the pairs, robust
+};
+
+/// Lays a frame on points of surface: distances along the points' normals (Chen & Medioni 1992), partners found by
+/// projection (Blais & Levine 1995), and differences of light (Steinbruecker, Sturm, Cremers, "Real-time visual
+/// odometry from dense RGB-D images", ICCVW 2011) are lowered together by Gauss-Newton under Tukey's weights, from
+/// coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
+Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
+                      const std::optional<PlaneKnown>& plane, const AlignmentLimits& limits);
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "pipeline/types/frame.hpp"
+
+namespace houghstream::reconstruction {
+
+/// A frame at one resolution.
+struct FrameLevel {
+  Camera camera;
+  cv::Mat light;  ///< CV_32FC1, brightness less the mean around, in deviations around: the same at any exposure
+  cv::Mat depth;  ///< CV_32FC1, metres, NaN = none
+};
+
+/// How good a picture is, for leaving out what would blur a model.
+struct PictureQuality {
+  double sharpness = 0.0;     ///< mean square of the Laplacian over the mean square of the brightness' deviation
+  double dark_share = 0.0;    ///< pixels that are black
+  double bright_share = 0.0;  ///< pixels that are burnt out
+};
+
+/// A frame from fine to coarse, as registration needs it.
+struct FrameLevels {
+  std::vector<FrameLevel> levels;  ///< the finest first, each half as large as the one before
+  PictureQuality quality;
+};
+
+/// What of a frame is taken.
+struct LevelSettings {
+  cv::Rect region_px;     ///< of the frame; empty = all
+  int least_width = 400;  ///< pixels: what is wider is halved before
+  int levels = 3;
+};
+
+FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings);
+
+/// A point of surface as a keyframe saw it.
+struct SurfacePoint {
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit length, towards the camera
+  float light = 0.0F;                                ///< of FrameLevel::light there
+  bool on_table = false;                             ///< of the plane z = 0 of the world, as far as is known
+};
+
+/// Points of each level, finest first.
+using LevelPoints = std::vector<std::vector<SurfacePoint>>;
+
+/// Which points of a frame are kept: in each square of pixels the one with the strongest edge of light, of those with
+/// depth and a normal.
+struct PointSettings {
+  int square_px = 6;          ///< of the finest level; 3/4 of it on the next, and so on
+  double least_facing = 0.2;  ///< cosine between normal and line of sight
+};
+
+/// Camera frame. `mask` (CV_8UC1 of the first level's size, or empty) chooses pixels.
+LevelPoints choose_points(const FrameLevels& frame, const cv::Mat& mask, const PointSettings& settings);
+
+/// Standard deviation of a structured-light camera's depth at a distance, metres (Nguyen, Izadi, Lovell, "Modeling
+/// Kinect sensor noise", 3DIMPVT 2012, equation 6).
+inline double depth_sigma(double z) {
+  return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4);
+}
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,184 @@
+#include "pose/reconstruction/keyframe_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/base/parallel.hpp"
+
+namespace houghstream::reconstruction {
+namespace {
+
+std::vector<Eigen::Isometry3d> poses_of(const std::vector<Keyframe>& keyframes) {
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(keyframes.size());
+  for (const Keyframe& keyframe : keyframes) poses.push_back(keyframe.T_camera_world);
+  return poses;
+}
+
+LoopGap gap_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) {
+  const Vector6 gap = motion_of(before.inverse() * after);
+  return {gap.head<3>().norm(), gap.tail<3>().norm()};
+}
+
+}  // namespace
+
+double KeyframeMap::difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const {
+  const Eigen::Vector3d from_a = a.inverse().translation() - settings_.middle;
+  const Eigen::Vector3d from_b = b.inverse().translation() - settings_.middle;
+  const double cosine = std::clamp(from_a.normalized().dot(from_b.normalized()), -1.0, 1.0);
+  return std::acos(cosine) + std::abs(std::log(from_a.norm() / from_b.norm()));
+}
+
+bool KeyframeMap::is_good(const Alignment& alignment) const {
+  return alignment.pairs >= 100 && alignment.inlier_share >= settings_.least_inlier_share &&
+         alignment.seen_share >= settings_.least_seen_share && alignment.light_rms <= settings_.most_light_rms;
+}
+
+int KeyframeMap::nearest(const Eigen::Isometry3d& T_camera_world) const {
+  int best = -1;
+  double least = 1e9;
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+    const double d = difference(T_camera_world, keyframes_[k].T_camera_world);
+    if (d >= least) continue;
+    least = d;
+    best = static_cast<int>(k);
+  }
+  return best;
+}
+
+std::vector<int> KeyframeMap::references_for(const Eigen::Isometry3d& T_camera_world) const {
+  std::vector<std::pair<double, int>> ranked;
+  for (std::size_t k = 0; k < keyframes_.size(); ++k) {
+    if (steps_[k] < 0 || steps_[k] > settings_.loop_steps) continue;
+    ranked.emplace_back(difference(T_camera_world, keyframes_[k].T_camera_world), static_cast<int>(k));
+  }
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<int> references;
+  for (const auto& [d, k] : ranked) {
+    if (static_cast<int>(references.size()) == settings_.references) break;
+    if (references.empty() || d < settings_.alike) references.push_back(k);
+  }
+  std::sort(references.begin(), references.end());
+  return references;
+}
+
+LevelPoints KeyframeMap::points_of(const std::vector<int>& keyframes) const {
+  LevelPoints points;
+  for (const int k : keyframes) {
+    const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
+    const Eigen::Isometry3f T_world_camera = keyframe.T_camera_world.inverse().cast<float>();
+    points.resize(keyframe.points.size());
+    for (std::size_t level = 0; level < points.size(); ++level) {
+      for (SurfacePoint point : keyframe.points[level]) {
+        point.point = T_world_camera * point.point;
+        point.normal = T_world_camera.linear() * point.normal;
+        if (point.on_table) {
+          point.point.z() = 0.0F;
+          point.normal = Eigen::Vector3f::UnitZ();
+        }
+        points[level].push_back(point);
+      }
+    }
+  }
+  return points;
+}
+
+const LevelPoints& KeyframeMap::local_map(const Eigen::Isometry3d& T_camera_world) {
+  std::vector<int> references = references_for(T_camera_world);
+  if (references == local_references_) return local_points_;
+  local_references_ = std::move(references);
+  local_points_ = points_of(local_references_);
+  return local_points_;
+}
+
+PoseEdge KeyframeMap::edge_between(int from, int to, const Matrix6& information) const {
+  const Keyframe& a = keyframes_[static_cast<std::size_t>(from)];
+  const Keyframe& b = keyframes_[static_cast<std::size_t>(to)];
+  return {from, to, b.T_camera_world * a.T_camera_world.inverse(), information};
+}
+
+std::optional<LoopGap> KeyframeMap::add(Keyframe keyframe, const Alignment& alignment) {
+  const int last = static_cast<int>(keyframes_.size());
+  keyframes_.push_back(std::move(keyframe));
+  for (const int reference : local_references_)
+    edges_.push_back(
+        edge_between(reference, last, alignment.information / static_cast<double>(local_references_.size())));
+  steps_ = steps_from(last, last + 1, edges_);
+  const std::optional<LoopGap> gap = close_loop(last);
+  if (gap) correct_poses();
+  local_references_.clear();
+  return gap;
+}
+
+std::optional<LoopGap> KeyframeMap::close_loop(int last) {
+  constexpr int kMostTries = 2;
+  constexpr double kMostShift_m = 0.2;
+  const Keyframe& now = keyframes_[static_cast<std::size_t>(last)];
+  std::vector<std::pair<double, int>> candidates;
+  for (int k = 0; k < last; ++k) {
+    const double d = difference(now.T_camera_world, keyframes_[static_cast<std::size_t>(k)].T_camera_world);
+    if (steps_[static_cast<std::size_t>(k)] > settings_.loop_steps && d < settings_.loop_alike)
+      candidates.emplace_back(d, k);
+  }
+  std::sort(candidates.begin(), candidates.end());
+  if (candidates.size() > kMostTries) candidates.resize(kMostTries);
+  for (const auto& [d, k] : candidates) {
+    const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
+    const LevelPoints points = points_of({k});
+    Alignment found = align_frame(points, now.levels, now.T_camera_world, settings_.plane, {});
+    if (!is_good(found)) {
+      const auto match = match_landmarks(old.landmarks, now.landmarks);
+      if (!match) continue;
+      found = align_frame(points, now.levels, match->T_b_a * old.T_camera_world, settings_.plane, {});
+    }
+    const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
+    if (!is_good(found) || gap.shift_m > kMostShift_m) continue;
+    edges_.push_back({k, last, found.T_camera_world * old.T_camera_world.inverse(), found.information});
+    return gap;
+  }
+  return std::nullopt;
+}
+
+void KeyframeMap::correct_poses() {
+  std::vector<Eigen::Isometry3d> poses = poses_of(keyframes_);
+  optimise_poses(edges_, poses);
+  for (std::size_t k = 0; k < poses.size(); ++k) keyframes_[k].T_camera_world = poses[k];
+  steps_ = steps_from(static_cast<int>(keyframes_.size()) - 1, static_cast<int>(keyframes_.size()), edges_);
+}
+
+void KeyframeMap::refine(int rounds) {
+  constexpr std::size_t kNeighbours = 8;
+  const int n = static_cast<int>(keyframes_.size());
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<std::vector<PoseEdge>> found(static_cast<std::size_t>(n));
+    parallel_for(settings_.threads, n, [&](int i) {
+      const Keyframe& from = keyframes_[static_cast<std::size_t>(i)];
+      std::vector<std::pair<double, int>> near;
+      for (int j = 0; j < n; ++j) {
+        const double d = difference(from.T_camera_world, keyframes_[static_cast<std::size_t>(j)].T_camera_world);
+        if (j != i && d < 1.5 * settings_.alike) near.emplace_back(d, j);
+      }
+      std::sort(near.begin(), near.end());
+      if (near.size() > kNeighbours) near.resize(kNeighbours);
+      const LevelPoints points = points_of({i});
+      AlignmentLimits limits;
+      limits.coarsest = round == 0 ? 1 : 0;
+      for (const auto& [d, j] : near) {
+        const Keyframe& to = keyframes_[static_cast<std::size_t>(j)];
+        const Alignment laid = align_frame(points, to.levels, to.T_camera_world, settings_.plane, limits);
+        if (is_good(laid))
+          found[static_cast<std::size_t>(i)].push_back(
+              {i, j, laid.T_camera_world * from.T_camera_world.inverse(), laid.information});
+      }
+    });
+    std::vector<PoseEdge> edges = edges_;
+    for (PoseEdge& edge : edges) edge.information *= 0.05;  // keep together what has no other tie
+    for (const auto& of_one : found) edges.insert(edges.end(), of_one.begin(), of_one.end());
+    std::vector<Eigen::Isometry3d> poses = poses_of(keyframes_);
+    optimise_poses(edges, poses);
+    for (std::size_t k = 0; k < poses.size(); ++k) keyframes_[k].T_camera_world = poses[k];
+  }
+  local_references_.clear();
+}
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <vector>
+
+#include "pose/reconstruction/landmarks.hpp"
+#include "pose/reconstruction/pose_graph.hpp"
+
+namespace houghstream::reconstruction {
+
+/// A frame that is kept.
+struct Keyframe {
+  RgbdFrame frame;
+  int number = 0;  ///< of the frame in its take, from 0
+  FrameLevels levels;
+  LevelPoints points;  ///< camera frame
+  Landmarks landmarks;
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< metres; world: z up from the table
+};
+
+/// What the loop missed when it was closed.
+struct LoopGap {
+  double shift_m = 0.0;  ///< of the world's origin
+  double turn = 0.0;     ///< radians
+};
+
+/// When two views are alike enough to be laid on each other, and how well that must go.
+struct MapSettings {
+  double alike = 0.44;       ///< radians between views: a keyframe of the local map
+  double loop_alike = 0.35;  ///< radians between views: a loop may be closed
+  int loop_steps = 8;        ///< keyframes in between that make a loop
+  int references = 3;        ///< keyframes of the local map
+  double least_inlier_share = 0.75;
+  double least_seen_share = 0.25;
+  double most_light_rms = 0.62;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
+  std::optional<PlaneKnown> plane;                   ///< where the camera stands still
+  int threads = 1;
+};
+
+/// All keyframes of a take, what ties them together, and the part of them that the next frame is laid on.
+class KeyframeMap {
+ public:
+  explicit KeyframeMap(const MapSettings& settings) : settings_(settings) {}
+  MapSettings& settings() { return settings_; }
+
+  /// Adds a keyframe; `alignment` is how it was laid on the local map (not asked for with the first). Closes a loop
+  /// where one is found, and corrects all poses then: the gap that was closed.
+  std::optional<LoopGap> add(Keyframe keyframe, const Alignment& alignment);
+
+  /// Points of the keyframes that see most of what a camera there sees, without such as are across an open loop.
+  const LevelPoints& local_map(const Eigen::Isometry3d& T_camera_world);
+  LevelPoints points_of(const std::vector<int>& keyframes) const;  ///< world frame
+
+  /// Whether an alignment is one.
+  bool is_good(const Alignment& alignment) const;
+  /// Angle between two views of the object, and how far nearer one is, as an angle; radians.
+  double difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) const;
+  /// The keyframe whose view is nearest.
+  int nearest(const Eigen::Isometry3d& T_camera_world) const;
+
+  /// Registers all keyframes to their neighbours all round and corrects the poses until all agree. Thread-count makes
+  /// no difference to the result.
+  void refine(int rounds);
+
+  std::vector<Keyframe>& keyframes() { return keyframes_; }
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  bool empty() const { return keyframes_.empty(); }
+
+ private:
+  std::vector<int> references_for(const Eigen::Isometry3d& T_camera_world) const;
+  std::optional<LoopGap> close_loop(int last);
+  void correct_poses();
+  PoseEdge edge_between(int from, int to, const Matrix6& information) const;
+
+  MapSettings settings_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<PoseEdge> edges_;
+  std::vector<int> steps_;  ///< from the last keyframe
+  std::vector<int> local_references_;
+  LevelPoints local_points_;
+};
+
+}  // namespace houghstream::reconstruction

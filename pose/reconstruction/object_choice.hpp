@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/frame.hpp"
+
+namespace houghstream::reconstruction {
+
+/// normal.X + offset = 0 for its points X; camera frame, metres.
+struct Plane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit length, towards the camera
+  double offset = 0.0;                                ///< the camera's height above it
+
+  double height(const Eigen::Vector3d& point) const { return normal.dot(point) + offset; }
+};
+
+/// The object that is meant.
+struct ChosenObject {
+  Plane plane;                                                       ///< on which it stands
+  Eigen::Isometry3d T_camera_stand = Eigen::Isometry3d::Identity();  ///< origin on the plane below its middle, z up
+  double radius_m = 0.0;                                             ///< of what is seen of it about that axis
+  double height_m = 0.0;                                             ///< above the plane
+  cv::Mat mask;                                                      ///< CV_8UC1, 255 on it, size of the frame
+  cv::Rect box_px;                                                   ///< of the mask
+  bool boxed = false;  ///< by a person: what touches it there is not of it
+};
+
+/// The object, or in words why there is none.
+struct Choice {
+  std::optional<ChosenObject> object;
+  std::string reason;  ///< empty with an object
+};
+
+struct ChoiceSettings {
+  std::optional<cv::Rect> box_px;  ///< about the object; none: what is nearest to the image's middle
+  double smallest_m = 0.012;       ///< sides of an object
+  double largest_m = 0.6;
+  double farthest_m = 2.0;       ///< from the camera
+  double farthest_share = 0.25;  ///< of the image's width: how far from its middle, without a box
+  std::uint64_t seed = 1;
+};
+
+/// Planes on which things may stand, the largest first: RANSAC (Fischler & Bolles 1981) on the depth, refined by least
+/// squares; only such as face upwards or the camera.
+std::vector<Plane> find_planes(const RgbdFrame& frame, const ChoiceSettings& settings);
+
+/// The plane nearest to the measured points that are close to it, of those pixels where `mask` (CV_8UC1, may be empty)
+/// is 0 and within `radius_m` of `middle`.
+Plane refine_plane(const RgbdFrame& frame, const cv::Mat& mask, const Plane& plane, const Eigen::Vector3d& middle,
+                   double radius_m);
+
+/// What stands on the dominant plane nearest to the image's middle, or in the box: points above the plane that hang
+/// together. Planes are tried in their order until one carries something.
+Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings);
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,379 @@
+#include "pose/reconstruction/object_tracker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream::reconstruction {
+namespace {
+
+constexpr double kDegrees = 57.29577951308232;
+
+double agreement_of(const Alignment& alignment) {
+  return alignment.inlier_share * std::min(1.0, alignment.seen_share / 0.4) - 0.5 * alignment.light_rms;
+}
+
+/// The statistics of an alignment without any.
+Alignment look_at(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T, int level) {
+  AlignmentLimits limits;
+  limits.iterations = 0;
+  limits.coarsest = level;
+  limits.finest = level;
+  return align_frame(points, frame, T, std::nullopt, limits);
+}
+
+/// What is seen of the object and its box; the whole picture where it is not in it.
+cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
+  std::vector<cv::Point2f> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner((i & 1 ? 1 : -1) * object.radius_m * 0.8, (i & 2 ? 1 : -1) * object.radius_m * 0.8,
+                                 i & 4 ? object.height_m : 0.0);
+    const Eigen::Vector3d p = T_camera_world * corner;
+    if (p.z() < 0.05) return {};
+    const Eigen::Vector2d px = camera.project(p);
+    corners.emplace_back(static_cast<float>(px.x()), static_cast<float>(px.y()));
+  }
+  return cv::boundingRect(corners) & cv::Rect(0, 0, camera.width, camera.height);
+}
+
+}  // namespace
+
+Eigen::Isometry3d Take::pose_of(const FrameTrack& frame) const {
+  return frame.T_camera_keyframe * keyframes[static_cast<std::size_t>(frame.keyframe)].T_camera_world;
+}
+
+const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
+  constexpr std::size_t kMostUnplaced = 100;
+  const auto begin = std::chrono::steady_clock::now();
+  take_.frames.push_back({frame.id, false, false, -1, Eigen::Isometry3d::Identity()});
+  ++state_.frames;
+  if (map_.empty()) {
+    choose(frame);
+  } else {
+    FrameLevels levels = make_levels(frame, levels_);
+    take_.frames.back().left_out = !is_fit_for_model(levels.quality);
+    std::optional<Alignment> found;
+    if (state_.state == TrackState::kTracking) found = follow(levels);
+    if (!found) found = find_again(frame, levels, false);
+    if (found) {
+      accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
+    } else {
+      note_lost(levels);
+      if (unplaced_.size() < kMostUnplaced) unplaced_.emplace_back(static_cast<int>(take_.frames.size()) - 1, frame);
+    }
+  }
+  describe();
+  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return state_;
+}
+
+void ObjectTracker::choose(const RgbdFrame& frame) {
+  Choice choice = choose_object(frame, settings_.choice);
+  if (!choice.object) {
+    state_.message = choice.reason;
+    require(state_.frames < settings_.most_frames_to_choose && !settings_.choice.box_px, "{}", choice.reason);
+    return;
+  }
+  chosen_ = std::move(*choice.object);
+  map_.settings().middle = {0.0, 0.0, 0.5 * chosen_.height_m};
+  first_frame_ = frame;
+  first_number_ = state_.frames - 1;
+  FrameLevels levels = make_levels(frame, levels_);
+  const cv::Mat on_it = object_pixels(levels.levels[0], chosen_.T_camera_stand);
+  T_last_ = T_before_ = chosen_.T_camera_stand;
+  state_.state = TrackState::kTracking;
+  round_.assign(36, false);
+  const auto to_world = [&](LevelPoints points) {
+    const Eigen::Isometry3f T = chosen_.T_camera_stand.inverse().cast<float>();
+    for (std::vector<SurfacePoint>& level : points) {
+      for (SurfacePoint& point : level) {
+        point.point = T * point.point;
+        point.normal = T.linear() * point.normal;
+      }
+    }
+    return points;
+  };
+  PointSettings dense;
+  dense.square_px = 3;
+  first_object_ = to_world(choose_points(levels, on_it, dense));
+  first_rest_ = to_world(choose_points(levels, on_it == 0, {}));
+  Alignment at_start;
+  at_start.T_camera_world = chosen_.T_camera_stand;
+  accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
+}
+
+bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
+  constexpr std::size_t kAround = 31;
+  std::vector<double> around(sharpness_.begin(), sharpness_.end());
+  sharpness_.push_back(quality.sharpness);
+  if (sharpness_.size() > kAround) sharpness_.pop_front();
+  const bool badly_exposed =
+      quality.dark_share > settings_.most_dark_share || quality.bright_share > settings_.most_bright_share;
+  take_.badly_exposed += badly_exposed ? 1 : 0;
+  if (badly_exposed) return false;
+  if (around.size() < 3) return true;
+  std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2), around.end());
+  const bool blurred = quality.sharpness < settings_.least_sharpness * around[around.size() / 2];
+  take_.blurred += blurred ? 1 : 0;
+  return !blurred;
+}
+
+Alignment ObjectTracker::lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest) {
+  AlignmentLimits limits;
+  limits.coarsest = coarsest;
+  return align_frame(map_.local_map(T_start), levels, T_start, map_.settings().plane, limits);
+}
+
+std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
+  const Eigen::Isometry3d T_goes_on =
+      motion_ == Motion::kObject ? T_last_ * (T_before_.inverse() * T_last_) : T_last_ * T_before_.inverse() * T_last_;
+  const LevelPoints& points = map_.local_map(T_last_);
+  const bool goes_on =
+      agreement_of(look_at(points, levels, T_goes_on, 2)) > agreement_of(look_at(points, levels, T_last_, 2));
+  const Eigen::Isometry3d& T_likely = goes_on ? T_goes_on : T_last_;
+  Alignment best = lay_on_map(levels, T_likely, 2);
+  // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
+  if (!map_.is_good(best) || best.light_rms > 1.4 * usual_light_rms_ + 0.03) {
+    for (const Alignment& other :
+         {lay_on_map(levels, T_likely, 0), lay_on_map(levels, goes_on ? T_last_ : T_goes_on, 2),
+          lay_on_map(levels, goes_on ? T_last_ : T_goes_on, 1)}) {
+      if (agreement_of(other) > agreement_of(best)) best = other;
+    }
+  }
+  if (!map_.is_good(best)) return std::nullopt;
+  usual_light_rms_ += 0.2 * (best.light_rms - usual_light_rms_);
+  return best;
+}
+
+std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere) {
+  constexpr std::size_t kTriedByPose = 4;
+  constexpr double kSure = 0.85;  // share of inliers: a plane and a pattern on it may agree with a wrong pose by half
+  const int fewest_inliers = motion_ == Motion::kObject ? 12 : 30;
+  const std::size_t tried_by_landmarks = everywhere ? map_.keyframes().size() : 12;
+  const std::vector<Keyframe>& keyframes = map_.keyframes();
+  std::vector<std::pair<double, int>> by_distance;
+  for (std::size_t k = 0; k < keyframes.size(); ++k)
+    by_distance.emplace_back(map_.difference(T_last_, keyframes[k].T_camera_world), static_cast<int>(k));
+  std::sort(by_distance.begin(), by_distance.end());
+  for (std::size_t i = 0; i < std::min(kTriedByPose, by_distance.size()); ++i) {
+    const int k = by_distance[i].second;
+    const Alignment found = align_frame(
+        map_.points_of({k}), levels, keyframes[static_cast<std::size_t>(k)].T_camera_world, map_.settings().plane, {});
+    if (map_.is_good(found) && found.inlier_share > kSure) return found;
+  }
+  const Landmarks seen = find_landmarks(frame, landmark_mask(frame, T_last_));
+  std::optional<LandmarkMatch> best;
+  int best_keyframe = -1;
+  for (std::size_t i = 0; i < std::min(tried_by_landmarks, by_distance.size()); ++i) {
+    // The nearest half, and the others in turn.
+    const std::size_t at = i < tried_by_landmarks / 2 ? i : next_to_try_++ % by_distance.size();
+    const int k = by_distance[at].second;
+    const auto match = match_landmarks(keyframes[static_cast<std::size_t>(k)].landmarks, seen);
+    if (!match || (best && best->inliers >= match->inliers)) continue;
+    best = match;
+    best_keyframe = k;
+  }
+  if (!best || best->inliers < fewest_inliers) return std::nullopt;
+  const Eigen::Isometry3d T = best->T_b_a * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
+  const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, map_.settings().plane, {});
+  if (map_.is_good(found) && found.inlier_share > kSure) return found;
+  return std::nullopt;
+}
+
+void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+  const bool was_lost = state_.state == TrackState::kLost;
+  state_.state = TrackState::kTracking;
+  T_before_ = was_lost ? alignment.T_camera_world : T_last_;
+  T_last_ = alignment.T_camera_world;
+  FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
+  const bool fit = !track.left_out;
+  if (motion_ == Motion::kUnknown && !map_.empty()) see_what_moves(levels, alignment);
+  if (state_.state != TrackState::kTracking) return;
+  const int nearest = map_.nearest(T_last_);
+  const double away =
+      nearest < 0 ? 1e9 : map_.difference(T_last_, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
+  if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
+    Alignment laid = alignment;
+    if (nearest >= 0) map_.local_map(T_last_);
+    add_keyframe(number, frame, std::move(levels), laid);
+  }
+  track.tracked = true;
+  track.keyframe = map_.nearest(T_last_);
+  track.T_camera_keyframe =
+      T_last_ * map_.keyframes()[static_cast<std::size_t>(track.keyframe)].T_camera_world.inverse();
+  const Eigen::Vector3d towards = T_last_.inverse().translation() - map_.settings().middle;
+  if (fit) mark_seen(towards, state_.seen);
+  const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
+  round_[at] = round_[at] || fit;
+}
+
+void ObjectTracker::see_what_moves(const FrameLevels& levels, const Alignment& alignment) {
+  constexpr int kSure = 3;
+  const Vector6 motion = motion_of(chosen_.T_camera_stand * alignment.T_camera_world.inverse());
+  if (motion.head<3>().norm() > settings_.camera_moves_m || motion.tail<3>().norm() > settings_.camera_turns) {
+    motion_ = Motion::kCamera;
+    return;
+  }
+  const Alignment object = look_at(first_object_, levels, alignment.T_camera_world, 0);
+  const Alignment rest = look_at(first_rest_, levels, alignment.T_camera_world, 0);
+  const bool moves = object.light_rms > 1.5 * rest.light_rms + 0.12 || object.inlier_share < rest.inlier_share - 0.3;
+  object_moves_ = moves ? object_moves_ + 1 : 0;
+  if (object_moves_ >= kSure) follow_object_only();
+}
+
+/// The camera stands still and something happens to the object: from here on its own surface alone is followed, and the
+/// table, which does not move, holds it upright.
+void ObjectTracker::follow_object_only() {
+  constexpr double kAround = 0.6;
+  motion_ = Motion::kObject;
+  MapSettings& map = map_.settings();
+  map.plane = PlaneKnown();
+  map.plane->normal = chosen_.plane.normal;
+  map.plane->offset = chosen_.plane.offset;
+  map.least_inlier_share = 0.6;
+  const cv::Rect& box = chosen_.box_px;
+  const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
+  levels_.region_px =
+      cv::Rect(box.x - more.width, box.y - more.height, box.width + 2 * more.width, box.height + 2 * more.height) &
+      cv::Rect({0, 0}, first_frame_.depth.size());
+  map_ = KeyframeMap(map);
+  state_.seen = {};
+  for (FrameTrack& track : take_.frames) track.tracked = false;
+  T_last_ = T_before_ = chosen_.T_camera_stand;
+  FrameLevels levels = make_levels(first_frame_, levels_);
+  add_keyframe(first_number_, first_frame_, std::move(levels), {});
+  state_.state = TrackState::kLost;  // until the next frame is laid on the object alone
+}
+
+cv::Mat ObjectTracker::object_pixels(const FrameLevel& level, const Eigen::Isometry3d& T_camera_world) const {
+  constexpr double kLowest_m = 0.006;
+  const double widest = 1.3 * chosen_.radius_m + 0.01;
+  const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
+  cv::Mat mask = cv::Mat::zeros(level.depth.size(), CV_8UC1);
+  for (int y = 0; y < mask.rows; ++y) {
+    for (int x = 0; x < mask.cols; ++x) {
+      const float z = level.depth.at<float>(y, x);
+      if (!(z > 0.1F)) continue;
+      const Eigen::Vector3d p = T_world_camera * level.camera.backproject(x, y, z);
+      const bool is_on_it = p.z() > kLowest_m && p.z() < chosen_.height_m + 0.03 && std::hypot(p.x(), p.y()) < widest;
+      mask.at<std::uint8_t>(y, x) = is_on_it ? 255 : 0;
+    }
+  }
+  return mask;
+}
+
+/// Where corners are looked for: everywhere while the camera moves, else on the object, which may have turned but
+/// stays.
+cv::Mat ObjectTracker::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
+  if (motion_ != Motion::kObject) return {};
+  return object_pixels({frame.camera, {}, frame.depth}, T_camera_world);
+}
+
+void ObjectTracker::add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+  constexpr double kTableRadius_m = 0.7;
+  constexpr float kTableHeight_m = 0.01F;
+  Keyframe keyframe;
+  keyframe.frame = frame;
+  keyframe.number = number;
+  keyframe.T_camera_world = T_last_;
+  const bool object_only = motion_ == Motion::kObject;
+  PointSettings points;
+  points.square_px = object_only ? 4 : 6;
+  keyframe.points = choose_points(levels, object_only ? object_pixels(levels.levels[0], T_last_) : cv::Mat(), points);
+  const Eigen::Isometry3f T_world_camera = T_last_.inverse().cast<float>();
+  for (std::vector<SurfacePoint>& level : keyframe.points) {
+    for (SurfacePoint& point : level) {
+      const Eigen::Vector3f p = T_world_camera * point.point;
+      point.on_table = !object_only && std::abs(p.z()) < kTableHeight_m && p.head<2>().norm() < kTableRadius_m &&
+                       (T_world_camera.linear() * point.normal).z() > 0.95F;
+    }
+  }
+  keyframe.landmarks = find_landmarks(frame, landmark_mask(frame, T_last_));
+  keyframe.levels = std::move(levels);
+  const std::optional<LoopGap> gap = map_.add(std::move(keyframe), alignment);
+  if (!gap) return;
+  T_last_ = T_before_ = map_.keyframes().back().T_camera_world;
+  const auto seen_round = std::count(round_.begin(), round_.end(), true);
+  constexpr int kNearlyRound = 30;  // of 36
+  if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
+}
+
+void ObjectTracker::note_lost(const FrameLevels& levels) {
+  constexpr double kFast = 0.06;  // radians of view a frame
+  const int number = static_cast<int>(take_.frames.size()) - 1;
+  if (state_.state == TrackState::kLost && !take_.lost.empty() && take_.lost.back().to == number - 1) {
+    take_.lost.back().to = number;
+    return;
+  }
+  const double speed = map_.difference(T_last_, T_before_);
+  std::string why = "the picture jumped, or something hid what was followed";
+  if (speed > kFast ||
+      levels.quality.sharpness < settings_.least_sharpness * (sharpness_.empty() ? 0.0 : sharpness_.front()))
+    why = "too fast";
+  state_.state = TrackState::kLost;
+  take_.lost.push_back({number, number, why});
+}
+
+void ObjectTracker::describe() {
+  state_.keyframes = static_cast<int>(map_.keyframes().size());
+  state_.T_camera_object.reset();
+  state_.box_px = {};
+  if (map_.empty()) return;
+  if (state_.state == TrackState::kLost) {
+    state_.message = take_.lost.empty() ? "lost" : "lost: " + take_.lost.back().why + "; go back to where it was seen";
+    return;
+  }
+  state_.T_camera_object = T_last_;
+  state_.box_px = box_of(chosen_, first_frame_.camera, T_last_);
+  state_.message = describe_seen(state_.seen, chosen_.T_camera_stand.inverse().translation());
+}
+
+/// What was lost when it came may be found now that more of the surroundings is known.
+void ObjectTracker::place_the_lost() {
+  for (bool any = true; any;) {
+    any = false;
+    for (auto at = unplaced_.begin(); at != unplaced_.end();) {
+      FrameLevels levels = make_levels(at->second, levels_);
+      const std::optional<Alignment> found = find_again(at->second, levels, true);
+      if (!found) {
+        ++at;
+        continue;
+      }
+      accept(at->first, at->second, std::move(levels), *found);
+      at = unplaced_.erase(at);
+      any = true;
+    }
+  }
+  std::vector<LostSpan> still;
+  for (const LostSpan& span : take_.lost) {
+    for (int i = span.from; i <= span.to; ++i) {
+      if (take_.frames[static_cast<std::size_t>(i)].tracked) continue;
+      if (!still.empty() && still.back().to == i - 1 && i != span.from) {
+        still.back().to = i;
+      } else {
+        still.push_back({i, i, span.why});
+      }
+    }
+  }
+  take_.lost = std::move(still);
+}
+
+Take ObjectTracker::finish() {
+  require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
+  place_the_lost();
+  map_.refine(3);
+  take_.chosen = chosen_;
+  take_.motion = motion_;
+  take_.keyframes = std::move(map_.keyframes());
+  take_.seen = state_.seen;
+  take_.degrees_round = static_cast<int>(10 * std::count(round_.begin(), round_.end(), true));
+  take_.tracking_hz = seconds_ > 0.0 ? static_cast<double>(take_.frames.size()) / seconds_ : 0.0;
+  return std::move(take_);
+}
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,74 @@
+#include "pose/reconstruction/pose_graph.hpp"
+
+#include <Eigen/Cholesky>
+#include <deque>
+
+namespace houghstream::reconstruction {
+namespace {
+
+/// Where the motion that an edge misses is large, the edge is wrong rather than the poses.
+double trust(const Vector6& error) {
+  constexpr double kShift_m = 0.006;
+  constexpr double kTurn = 0.02;
+  const double shift = error.head<3>().norm() / kShift_m;
+  const double turn = error.tail<3>().norm() / kTurn;
+  const double rest = 1.0 + shift * shift + turn * turn;
+  return 1.0 / (rest * rest);  // Geman & McClure
+}
+
+}  // namespace
+
+void optimise_poses(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world) {
+  constexpr int kIterations = 12;
+  constexpr int kPlainIterations = 4;  // first everything counts: a long loop's gap is no error of an edge
+  constexpr double kEnough = 1e-6;
+  const auto n = static_cast<Eigen::Index>(T_camera_world.size());
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(6 * n, 6 * n);
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(6 * n);
+    for (const PoseEdge& edge : edges) {
+      const auto i = static_cast<std::size_t>(edge.from);
+      const auto j = static_cast<std::size_t>(edge.to);
+      const Vector6 error = motion_of((edge.T_to_from * T_camera_world[i]).inverse() * T_camera_world[j]);
+      const Matrix6 weight = edge.information * (iteration < kPlainIterations ? 1.0 : trust(error));
+      squares.block<6, 6>(6 * edge.from, 6 * edge.from) += weight;
+      squares.block<6, 6>(6 * edge.to, 6 * edge.to) += weight;
+      squares.block<6, 6>(6 * edge.from, 6 * edge.to) -= weight;
+      squares.block<6, 6>(6 * edge.to, 6 * edge.from) -= weight;
+      slope.segment<6>(6 * edge.from) -= weight * error;
+      slope.segment<6>(6 * edge.to) += weight * error;
+    }
+    squares.diagonal().array() += 1.0;
+    squares.topLeftCorner<6, 6>().diagonal().array() += 1e12;
+    const Eigen::VectorXd step = squares.ldlt().solve(-slope);
+    if (!step.allFinite()) return;
+    for (Eigen::Index k = 1; k < n; ++k) {
+      Eigen::Isometry3d& T = T_camera_world[static_cast<std::size_t>(k)];
+      T = moved(T, step.segment<6>(6 * k));
+    }
+    if (iteration >= kPlainIterations && step.lpNorm<Eigen::Infinity>() < kEnough) return;
+  }
+}
+
+std::vector<int> steps_from(int start, int poses, const std::vector<PoseEdge>& edges) {
+  std::vector<int> steps(static_cast<std::size_t>(poses), -1);
+  std::vector<std::vector<int>> next(static_cast<std::size_t>(poses));
+  for (const PoseEdge& edge : edges) {
+    next[static_cast<std::size_t>(edge.from)].push_back(edge.to);
+    next[static_cast<std::size_t>(edge.to)].push_back(edge.from);
+  }
+  std::deque<int> open = {start};
+  steps[static_cast<std::size_t>(start)] = 0;
+  while (!open.empty()) {
+    const int at = open.front();
+    open.pop_front();
+    for (const int to : next[static_cast<std::size_t>(at)]) {
+      if (steps[static_cast<std::size_t>(to)] >= 0) continue;
+      steps[static_cast<std::size_t>(to)] = steps[static_cast<std::size_t>(at)] + 1;
+      open.push_back(to);
+    }
+  }
+  return steps;
+}
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "pose/reconstruction/frame_alignment.hpp"
+
+namespace houghstream::reconstruction {
+
+/// What the registration of one keyframe to another says of their poses.
+struct PoseEdge {
+  int from = 0;                                                 ///< its points were laid on ...
+  int to = 0;                                                   ///< ... this one's picture
+  Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();  ///< camera to camera
+  Matrix6 information = Matrix6::Identity();                    ///< of a motion of the world, see Alignment
+};
+
+/// Corrects poses in place until the edges agree as well as they can: Gauss-Newton on a pose graph (Grisetti et al., "A
+/// tutorial on graph-based SLAM", 2010); what contradicts the others by more than some millimetres counts less. Pose 0
+/// stays. Poses that no edge ties to pose 0 stay as well.
+void optimise_poses(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isometry3d>& T_camera_world);
+
+/// For each pose the fewest edges that lead to it from `start`; -1 where none do.
+std::vector<int> steps_from(int start, int poses, const std::vector<PoseEdge>& edges);
+
+}  // namespace houghstream::reconstruction

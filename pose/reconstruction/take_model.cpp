@@ -1,0 +1,315 @@
+#include "pose/reconstruction/take_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
+#include "pipeline/geometry/renderer.hpp"
+#include "pose/fusion/distance_grid.hpp"
+#include "pose/fusion/grid_surface.hpp"
+#include "pose/fusion/view_colours.hpp"
+
+namespace houghstream::reconstruction {
+namespace {
+
+using fusion::DepthView;
+using fusion::DistanceGrid;
+
+/// Where a box is seen, a few pixels wider.
+cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
+  constexpr int kMargin_px = 8;
+  std::vector<cv::Point2f> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d p = T_camera_world * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    if (p.z() < 0.05) return {0, 0, camera.width, camera.height};
+    const Eigen::Vector2d px = camera.project(p);
+    corners.emplace_back(static_cast<float>(px.x()), static_cast<float>(px.y()));
+  }
+  cv::Rect region = cv::boundingRect(corners);
+  region.x -= kMargin_px;
+  region.y -= kMargin_px;
+  region.width += 2 * kMargin_px;
+  region.height += 2 * kMargin_px;
+  return region & cv::Rect(0, 0, camera.width, camera.height);
+}
+
+/// All surface that the keyframes show about a box; nothing counts as outside but what is seen through.
+std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& box, int threads) {
+  std::vector<DepthView> views(take.keyframes.size());
+  parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
+    const Keyframe& keyframe = take.keyframes[static_cast<std::size_t>(i)];
+    const cv::Rect region = region_of(box, keyframe.frame.camera, keyframe.T_camera_world);
+    if (region.width < 16 || region.height < 16) return;
+    TrainingView view;
+    view.frame = keyframe.frame;
+    view.frame.colour = keyframe.frame.colour(region);
+    view.frame.depth = keyframe.frame.depth(region);
+    view.frame.camera = keyframe.frame.camera.cropped(region.x, region.y, region.width, region.height);
+    view.mask = cv::Mat(region.size(), CV_8UC1, cv::Scalar(255));
+    view.T_camera_object = keyframe.T_camera_world;
+    views[static_cast<std::size_t>(i)] = fusion::make_depth_view(view);
+  });
+  views.erase(std::remove_if(views.begin(), views.end(), [](const DepthView& view) { return view.depth.empty(); }),
+              views.end());
+  return views;
+}
+
+fusion::GridSettings grid_settings(double voxel, int threads) {
+  fusion::GridSettings settings;
+  settings.voxel = voxel;
+  settings.fewest_share = 0.02;
+  settings.outline_weight = 0.0;  // beside a crop nothing is known
+  settings.threads = threads;
+  return settings;
+}
+
+/// The voxels of the coarse grid that the object fills, CV_8UC1 slices.
+struct Filled {
+  DistanceGrid grid;  ///< its layout
+  std::vector<cv::Mat> slices;
+  Eigen::AlignedBox3d box;
+  bool touches_side = false;  ///< of the grid
+
+  bool holds(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d cell = (point - grid.origin) / grid.voxel;
+    const int k = std::clamp(static_cast<int>(std::lround(cell.z())), 0, grid.nz - 1);
+    const cv::Point at(static_cast<int>(std::lround(cell.x())), static_cast<int>(std::lround(cell.y())));
+    const cv::Mat& slice = slices[static_cast<std::size_t>(k)];
+    return cv::Rect(0, 0, grid.nx, grid.ny).contains(at) && slice.at<std::uint8_t>(at) != 0;
+  }
+};
+
+/// Parts that hang together of what is inside, seen, and not lower than the table's depth can reach; 0 = none.
+std::vector<int> label_parts(const DistanceGrid& grid, double lowest, int& parts) {
+  std::vector<int> labels(grid.distance.size(), 0);
+  parts = 0;
+  std::vector<std::size_t> open;
+  const int bottom = static_cast<int>(std::ceil((lowest - grid.origin.z()) / grid.voxel));
+  const auto is_solid = [&](std::size_t at) {
+    return at >= grid.index(0, 0, bottom) && grid.weight[at] > 0.0F && grid.distance[at] < 0.0F;
+  };
+  for (std::size_t start = 0; start < labels.size(); ++start) {
+    if (labels[start] != 0 || !is_solid(start)) continue;
+    labels[start] = ++parts;
+    open = {start};
+    while (!open.empty()) {
+      const std::size_t at = open.back();
+      open.pop_back();
+      const int i = static_cast<int>(at % static_cast<std::size_t>(grid.nx));
+      const int j = static_cast<int>(at / static_cast<std::size_t>(grid.nx) % static_cast<std::size_t>(grid.ny));
+      const int k = static_cast<int>(at / static_cast<std::size_t>(grid.nx) / static_cast<std::size_t>(grid.ny));
+      for (int n = 0; n < 27; ++n) {
+        const int x = i + n % 3 - 1;
+        const int y = j + n / 3 % 3 - 1;
+        const int z = k + n / 9 - 1;
+        if (x < 0 || y < 0 || z < 0 || x >= grid.nx || y >= grid.ny || z >= grid.nz) continue;
+        const std::size_t next = grid.index(x, y, z);
+        if (labels[next] != 0 || !is_solid(next)) continue;
+        labels[next] = parts;
+        open.push_back(next);
+      }
+    }
+  }
+  return labels;
+}
+
+/// The part on which most of the chosen object's pixels lie; 0 = none.
+int chosen_part(const Take& take, const DistanceGrid& grid, const std::vector<int>& labels, int parts) {
+  std::vector<int> votes(static_cast<std::size_t>(parts) + 1, 0);
+  const Keyframe& first = take.keyframes.front();
+  const Eigen::Isometry3d T_world_camera = first.T_camera_world.inverse();
+  for (int y = 0; y < take.chosen.mask.rows; y += 2) {
+    for (int x = 0; x < take.chosen.mask.cols; x += 2) {
+      const float z = first.frame.depth.at<float>(y, x);
+      if (take.chosen.mask.at<std::uint8_t>(y, x) == 0 || !(z > 0.0F)) continue;
+      const Eigen::Vector3d ray = first.frame.camera.backproject(x, y, 1.0);
+      // A little below the surface.
+      const Eigen::Vector3d cell = (T_world_camera * (ray * (z + 0.5 * grid.voxel)) - grid.origin) / grid.voxel;
+      const Eigen::Vector3i at = cell.array().round().cast<int>();
+      if ((at.array() < 0).any() || at.x() >= grid.nx || at.y() >= grid.ny || at.z() >= grid.nz) continue;
+      ++votes[static_cast<std::size_t>(labels[grid.index(at.x(), at.y(), at.z())])];
+    }
+  }
+  votes[0] = 0;
+  const auto most = std::max_element(votes.begin(), votes.end());
+  return *most > 0 ? static_cast<int>(most - votes.begin()) : 0;
+}
+
+Filled fill(const Take& take, const Eigen::AlignedBox3d& box, const ModelMaking& settings) {
+  Filled filled;
+  filled.grid = fusion::fuse_box(views_about(take, box, settings.threads), box,
+                                 grid_settings(settings.coarse_voxel_m, settings.threads));
+  int parts = 0;
+  const std::vector<int> labels = label_parts(filled.grid, box.min().z(), parts);
+  const int part = chosen_part(take, filled.grid, labels, parts);
+  if (part == 0) return filled;
+  const DistanceGrid& grid = filled.grid;
+  for (int k = 0; k < grid.nz; ++k) {
+    cv::Mat slice = cv::Mat::zeros(grid.ny, grid.nx, CV_8UC1);
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) {
+        if (labels[grid.index(i, j, k)] != part) continue;
+        slice.at<std::uint8_t>(j, i) = 255;
+        filled.box.extend(grid.centre(i, j, k));
+        filled.touches_side = filled.touches_side || i == 0 || j == 0 || i == grid.nx - 1 || j == grid.ny - 1;
+      }
+    }
+    filled.slices.push_back(slice);
+  }
+  return filled;
+}
+
+/// The object's voxels in a box that holds all of it.
+Filled find_object(const Take& take, const ModelMaking& settings) {
+  constexpr double kWidest_m = 0.45;
+  double half =
+      std::min(take.chosen.boxed ? 1.1 * take.chosen.radius_m + 0.01 : 1.4 * take.chosen.radius_m + 0.03, kWidest_m);
+  for (;;) {
+    const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, settings.foot_m + settings.coarse_voxel_m),
+                                  Eigen::Vector3d(half, half, 1.1 * take.chosen.height_m + 0.02));
+    Filled filled = fill(take, box, settings);
+    require(!filled.slices.empty(),
+            "nothing is left of the object when all views are put together, expected one thing "
+            "that stays together");
+    if (!filled.touches_side || half >= kWidest_m || take.chosen.boxed) return filled;
+    half = std::min(1.5 * half, kWidest_m);
+  }
+}
+
+/// Grows the filled voxels by `beside_m` and fills what they enclose in each slice.
+void widen(const ModelMaking& settings, Filled& filled) {
+  const int cells = static_cast<int>(std::ceil(settings.beside_m / settings.coarse_voxel_m));
+  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * cells + 1, 2 * cells + 1});
+  std::vector<cv::Mat> wide(filled.slices.size());
+  for (std::size_t k = 0; k < wide.size(); ++k) {
+    cv::Mat all = cv::Mat::zeros(filled.slices[k].size(), CV_8UC1);
+    for (int d = -cells; d <= cells; ++d) {
+      const auto at = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(k) + d, 0,
+                                                 static_cast<std::ptrdiff_t>(wide.size()) - 1);
+      all |= filled.slices[static_cast<std::size_t>(at)];
+    }
+    cv::dilate(all, all, kernel);
+    std::vector<std::vector<cv::Point>> outlines;
+    cv::findContours(all, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    cv::drawContours(all, outlines, -1, cv::Scalar(255), cv::FILLED);
+    wide[k] = all;
+  }
+  filled.slices = std::move(wide);
+}
+
+/// What is not about the object becomes outside; below the foot's height it is continued down to the table, which ends
+/// it.
+void cut_out(const Filled& filled, const ModelMaking& settings, DistanceGrid& grid) {
+  const double truncation = 4.0 * grid.voxel;
+  const int foot =
+      std::clamp(static_cast<int>(std::ceil((settings.foot_m - grid.origin.z()) / grid.voxel)), 0, grid.nz - 1);
+  for (int k = grid.nz - 1; k >= 0; --k) {
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) {
+        const std::size_t at = grid.index(i, j, k);
+        const Eigen::Vector3d centre = grid.centre(i, j, k);
+        if (!filled.holds({centre.x(), centre.y(), std::max(centre.z(), settings.foot_m)})) grid.distance[at] = 1.0F;
+        const bool is_free = grid.weight[at] > 0.0F && grid.distance[at] > 0.0F;
+        if (k < foot && !is_free) grid.distance[at] = grid.distance[grid.index(i, j, foot)];
+        grid.distance[at] = std::max(grid.distance[at], static_cast<float>(std::min(-centre.z() / truncation, 1.0)));
+      }
+    }
+  }
+}
+
+/// The middle of what is lowest.
+Eigen::Vector3d foot_of(const Mesh& mesh) {
+  constexpr float kFoot_m = 0.01F;
+  Eigen::AlignedBox2f foot;
+  const float lowest = mesh_bounds(mesh).min().z();
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    if (vertex.z() < lowest + kFoot_m) foot.extend(vertex.head<2>());
+  }
+  return {foot.center().x(), foot.center().y(), 0.0};
+}
+
+/// Median distance of measured points on the mask from the model along the line of sight, times how steeply it meets
+/// the surface.
+void add_distances(const Mesh& mesh, const RgbdFrame& frame, const ShownView& view, std::vector<float>& distances) {
+  const cv::Rect box = cv::boundingRect(view.mask);
+  if (box.empty()) return;
+  const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, box);
+  for (int y = 1; y + 1 < box.height; y += 2) {
+    for (int x = 1; x + 1 < box.width; x += 2) {
+      const float z = frame.depth.at<float>(box.y + y, box.x + x);
+      const float slope_x = model.at<float>(y, x + 1) - model.at<float>(y, x - 1);
+      const float slope_y = model.at<float>(y + 1, x) - model.at<float>(y - 1, x);
+      if (view.mask.at<std::uint8_t>(box.y + y, box.x + x) == 0 || !std::isfinite(slope_x + slope_y + z)) continue;
+      const auto px = static_cast<float>(2.0 * frame.camera.metres_per_px(z));
+      const float facing = 1.0F / std::sqrt(1.0F + (slope_x * slope_x + slope_y * slope_y) / (px * px));
+      distances.push_back(std::abs(z - model.at<float>(y, x)) * facing);
+    }
+  }
+}
+
+double median(std::vector<float> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+cv::Mat mask_of(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_object) {
+  const cv::Mat model =
+      render_depth(mesh, T_camera_object, frame.camera, {0, 0, frame.camera.width, frame.camera.height});
+  cv::Mat mask = cv::Mat::zeros(frame.depth.size(), CV_8UC1);
+  for (int y = 0; y < mask.rows; ++y) {
+    for (int x = 0; x < mask.cols; ++x) {
+      const float z = model.at<float>(y, x);
+      if (!std::isfinite(z)) continue;
+      const float measured = frame.depth.at<float>(y, x);
+      const double nearer = 0.008 + 3.0 * depth_sigma(z);
+      const bool contradicts = measured < z - nearer || measured > z + 2.0 * nearer;
+      mask.at<std::uint8_t>(y, x) = contradicts ? 0 : 255;
+    }
+  }
+  return mask;
+}
+
+ShownModel make_model(const Take& take, const ModelMaking& settings) {
+  Filled filled = find_object(take, settings);
+  Eigen::AlignedBox3d box = filled.box;
+  const double voxel = box.diagonal().norm() > 0.3 ? 2.0 * settings.voxel_m : settings.voxel_m;
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(settings.beside_m);
+  box = Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
+  box.min().z() = -0.002;
+  widen(settings, filled);
+  const std::vector<DepthView> views = views_about(take, box, settings.threads);
+  DistanceGrid grid = fusion::fuse_box(views, box, grid_settings(voxel, settings.threads));
+  cut_out(filled, settings, grid);
+  ShownModel model;
+  model.mesh = fusion::largest_part(fusion::extract_surface(grid));
+  require(!model.mesh.triangles.empty(), "the views have no common surface, expected an object that all of them show");
+  model.seen = fusion::colour_mesh(views, 4.0 * voxel, settings.threads, model.mesh);
+  model.T_world_object.translation() = foot_of(model.mesh);
+  for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= model.T_world_object.translation().cast<float>();
+  const int n = static_cast<int>(take.keyframes.size());
+  std::vector<ShownView> shown(static_cast<std::size_t>(n));
+  std::vector<std::vector<float>> distances(static_cast<std::size_t>(n));
+  parallel_for(settings.threads, n, [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Keyframe& keyframe = take.keyframes[at];
+    shown[at] = {i, keyframe.T_camera_world * model.T_world_object, {}};
+    shown[at].mask = mask_of(model.mesh, keyframe.frame, shown[at].T_camera_object);
+    add_distances(model.mesh, keyframe.frame, shown[at], distances[at]);
+  });
+  std::vector<float> all;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (cv::countNonZero(shown[i].mask) == 0) continue;
+    all.insert(all.end(), distances[i].begin(), distances[i].end());
+    model.views.push_back(std::move(shown[i]));
+  }
+  model.agreement_m = median(std::move(all));
+  return model;
+}
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/store/object_store.hpp"
+#include "drivers/store/store_build.hpp"
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream::store {
+
+/// A tetrahedron with corners at the origin and `side_m` along each axis.
+inline Mesh tetrahedron(float side_m) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {side_m, 0, 0}, {0, side_m, 0}, {0, 0, side_m}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return mesh;
+}
+
+/// A whole store of a mug and of what the second name says, in a folder that is there.
+inline void fill_store(const std::filesystem::path& folder, const std::string& second_name) {
+  ObjectStore store;
+  store.folder = folder;
+  store.objects = {{2, "mug", "cad/mug.ply", true, 12, "resting", nullptr},
+                   {5, second_name, "cad/b.ply", false, 34, "any", {{"least", 0.5}}}};
+  store.settings = {{"seed", 1}};
+  Symmetries half_turn;
+  half_turn.discrete.emplace_back(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  write_bop_models({{2, "mug", tetrahedron(0.1F), half_turn}, {5, second_name, tetrahedron(0.2F), {}}},
+                   store.models_folder());
+  write_text(store.forest_file(), "a forest");
+  write_store_json(store);
+}
+
+/// A whole store of a mug and a brick, in a folder of its own.
+inline std::filesystem::path whole_store(const std::string& name) {
+  std::filesystem::path folder = fresh_folder(name) / "store";
+  std::filesystem::create_directories(folder);
+  fill_store(folder, "brick");
+  return folder;
+}
+
+/// The store becomes one of a mug and of `second`, as teaching does it.
+inline void exchange(const std::filesystem::path& folder, const std::string& second) {
+  StoreBuild build(folder);
+  fill_store(build.folder(), second);
+  build.publish();
+}
+
+}  // namespace houghstream::store

@@ -1,0 +1,188 @@
+#include "drivers/store/store_watch.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <houghstream/status_t.hpp>
+
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/process/detect_process.hpp"
+#include "tests/drivers/store/small_store.hpp"
+#include "tests/pipeline/process_test.hpp"
+
+namespace houghstream::store {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPeriod(10);
+
+/// What is made of a store here: the name of its second object.
+using Second = StoreWatch<std::string>;
+
+std::shared_ptr<const std::string> load_second(const ObjectStore& store) {
+  load_store_meshes(store);
+  return std::make_shared<const std::string>(store.objects.at(1).name);
+}
+
+bool comes_true(const std::function<bool()>& what) {
+  for (int i = 0; i < 1000 && !what(); ++i) std::this_thread::sleep_for(milliseconds(5));
+  return what();
+}
+
+std::vector<std::string> names_of(const KnownObjects& known) {
+  std::vector<std::string> names;
+  for (const KnownObject& object : known.objects) names.push_back(object.name);
+  return names;
+}
+
+TEST(StoreWatch, WhatIsAddedRenamedAndRemovedIsThere) {
+  const fs::path folder = whole_store("watch_change");
+  Second watch(folder, load_second);
+  watch.follow(kPeriod);
+  const KnownObjects first = watch.known();
+  EXPECT_EQ(first.store, folder.string());
+  EXPECT_EQ(names_of(first), (std::vector<std::string>{"mug", "brick"}));
+  EXPECT_GT(first.since_utime, 1600000000000000);
+  EXPECT_EQ(first.objects[0].since_utime, first.since_utime);
+  const std::shared_ptr<const std::string> in_use = watch.current();
+
+  exchange(folder, "bowl");
+  ASSERT_TRUE(comes_true([&] { return *watch.current() == "bowl"; }));
+  const KnownObjects second = watch.known();
+  EXPECT_EQ(names_of(second), (std::vector<std::string>{"mug", "bowl"}));
+  EXPECT_EQ(second.objects[0].since_utime, first.objects[0].since_utime) << "it was known all the time";
+  EXPECT_EQ(second.objects[1].since_utime, second.since_utime);
+  EXPECT_GT(second.since_utime, first.since_utime);
+  EXPECT_EQ(second.problem, "");
+  EXPECT_EQ(*in_use, "brick") << "who uses the old one may finish";
+}
+
+TEST(StoreWatch, WithoutFollowingItStays) {
+  const fs::path folder = whole_store("watch_still");
+  const Second watch(folder, load_second);
+  exchange(folder, "bowl");
+  std::this_thread::sleep_for(milliseconds(100));
+  EXPECT_EQ(*watch.current(), "brick");
+  EXPECT_NE(error_of([&] { const Second none(folder.parent_path(), load_second); }), "")
+      << "at the start a fault ends it";
+}
+
+TEST(StoreWatch, ABadOneKeepsTheOldAndIsSaidOnce) {
+  const fs::path folder = whole_store("watch_bad");
+  start_log("drivers_tests", LogLevel::kInfo);
+  testing::internal::CaptureStderr();
+  {
+    Second watch(folder, load_second);
+    watch.follow(kPeriod);
+    write_text(folder / "models" / "obj_000005.ply", "ply\n");
+    ASSERT_TRUE(comes_true([&] { return !watch.known().problem.empty(); }));
+    EXPECT_NE(watch.known().problem.find("obj_000005.ply"), std::string::npos) << watch.known().problem;
+    EXPECT_EQ(*watch.current(), "brick");
+    EXPECT_EQ(names_of(watch.known()), (std::vector<std::string>{"mug", "brick"}));
+    std::this_thread::sleep_for(10 * kPeriod);
+
+    const std::string text = read_text(folder / "store.json");
+    write_text(folder / "store.json", text.substr(0, text.size() / 2));
+    ASSERT_TRUE(comes_true([&] { return watch.known().problem.find("cut short") != std::string::npos; }));
+    fs::rename(folder, folder.parent_path() / "elsewhere");
+    ASSERT_TRUE(comes_true([&] { return watch.known().problem.find("no such folder") != std::string::npos; }));
+    EXPECT_EQ(*watch.current(), "brick");
+
+    fs::create_directories(folder);
+    fill_store(folder, "bowl");
+    ASSERT_TRUE(comes_true([&] { return *watch.current() == "bowl"; }));
+    EXPECT_TRUE(comes_true([&] { return watch.known().problem.empty(); }));
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  const auto lines_with = [&](const std::string& words) {
+    int count = 0;
+    for (std::size_t at = said.find(words); at != std::string::npos; at = said.find(words, at + 1)) ++count;
+    return count;
+  };
+  EXPECT_EQ(lines_with("what was known stays"), 3) << said;
+  EXPECT_EQ(lines_with("obj_000005.ply"), 1) << said;
+  EXPECT_EQ(lines_with("2 objects from here on; new: bowl; gone: brick"), 1) << said;
+}
+
+TEST(StoreWatch, OneThatIsNotThereYetIsAwaited) {
+  const fs::path folder = fresh_folder("watch_awaited") / "store";
+  Second watch(folder, load_second);
+  watch.follow(kPeriod);
+  EXPECT_EQ(watch.current(), nullptr);
+  EXPECT_TRUE(watch.known().objects.empty());
+  EXPECT_NE(watch.known().problem.find("not there yet"), std::string::npos) << watch.known().problem;
+  exchange(folder, "bowl");
+  ASSERT_TRUE(comes_true([&] { return watch.current() != nullptr; }));
+  EXPECT_EQ(*watch.current(), "bowl");
+  ASSERT_TRUE(comes_true([&] { return watch.known().problem.empty(); }));
+  EXPECT_EQ(names_of(watch.known()), (std::vector<std::string>{"mug", "bowl"}));
+  EXPECT_NE(error_of([&] { const Second none(folder / "no" / "such", load_second); }), "") << "nor could it be made";
+}
+
+TEST(StoreWatch, OfTwoStoresAtOnceNothingIsTaken) {
+  const fs::path folder = whole_store("watch_mixed");
+  std::atomic<bool> exchanges{false};
+  Second watch(folder, [&](const ObjectStore& store) {
+    if (exchanges.exchange(false)) exchange(folder, "plate");  // after the list was read
+    return load_second(store);
+  });
+  watch.follow(kPeriod);
+  exchanges = true;
+  exchange(folder, "bowl");
+  ASSERT_TRUE(comes_true([&] { return *watch.current() != "brick"; }));
+  EXPECT_EQ(*watch.current(), "plate") << "the list of one with the meshes of another is no store";
+}
+
+/// Frames at 30 Hz while stores are exchanged and loaded, which takes a third of a second: none waits for it.
+TEST(StoreWatch, NoFrameIsLostAndHardlyOnePassedOverWhileAStoreIsReplaced) {
+  const fs::path folder = whole_store("watch_stream");
+  Second watch(folder, [](const ObjectStore& store) {
+    std::this_thread::sleep_for(milliseconds(330));
+    return load_second(store);
+  });
+  watch.follow(kPeriod);
+  ProcessOnMemq test({channel::kDetections, channel::kStatus, channel::kKnownObjects});
+  DetectProcessOptions options;
+  options.objects = [&] { return watch.known(); };
+  test.start([&](LcmBus& bus) {
+    run_detect_process(bus, options, [&](const RgbdFrame& frame) {
+      Detection detection;
+      detection.class_id = 1;
+      detection.class_name = *watch.current();
+      detection.box_px = {1, 2, 3, 4};
+      return Detections{frame.id, {detection}, frame.stages};
+    });
+  });
+  constexpr std::int64_t kFrames = 75;
+  for (std::int64_t i = 0; i < kFrames; ++i) {
+    if (i == 15) exchange(folder, "bowl");
+    if (i == 45) exchange(folder, "plate");
+    test.bus.publish(channel::kFrame, to_message(make_test_frame(1000 + i), WireFormat{}, i));
+    std::this_thread::sleep_for(milliseconds(33));
+  }
+  ASSERT_TRUE(test.wait_for(channel::kDetections, kFrames - 2));
+  const auto name_in = [&](std::size_t i) {
+    return test.at<detections_t>(channel::kDetections, i).detections[0].class_name;
+  };
+  EXPECT_EQ(name_in(0), "brick");
+  EXPECT_EQ(name_in(test.count(channel::kDetections) - 1), "plate");
+  test.stop();
+  test.bus.handle(milliseconds(50));  // what goes out after the last status
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_lost, 0);
+  EXPECT_EQ(status.frames_refused, 0);
+  EXPECT_LE(status.frames_skipped, 2);
+  EXPECT_EQ(status.frames_received, kFrames);
+  const auto known = test.last<known_objects_t>(channel::kKnownObjects);
+  EXPECT_EQ(known.process, "hs-detect");
+  EXPECT_EQ(known.pid, getpid());
+  ASSERT_EQ(known.n_objects, 2);
+  EXPECT_EQ(known.object_names[1], "plate");
+  EXPECT_GT(known.object_since_utimes[1], known.object_since_utimes[0]);
+}
+
+}  // namespace
+}  // namespace houghstream::store

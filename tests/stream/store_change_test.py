@@ -1,0 +1,161 @@
+"""An object store that changes under a stream: what is renamed is there without a restart, what is torn is said, whoever is killed while
+he changes it leaves it whole.
+
+Forest, models and scene are those that end_to_end_test.py has made.
+"""
+
+import json
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from PIL import Image
+
+from folders import read_arguments
+from studies.lcm_log import detections_of, known_objects_of, read_log, status_of
+from studies.stream import Process, enter_private_network
+from end_to_end_test import CLASSES, THRESHOLD
+
+RATE = 5  # frames a second
+
+
+def make_store(made, store):
+    """As hs-teach leaves one."""
+    (store / "views").mkdir(parents=True)
+    shutil.copy(made / "small.forest", store / "forest")
+    shutil.copytree(made / "views" / "models", store / "models")
+    objects = []
+    for number, name in json.loads((store / "models" / "names.json").read_text()).items():
+        Image.new("RGB", (120, 50)).save(store / "views" / f"obj_{int(number):06d}.png")
+        objects.append({"id": int(number), "name": name, "mesh": "rendered", "coloured": True, "views": 9, "attitudes": "upright"})
+    (store / "store.json").write_text(json.dumps({"houghstream_store": 1, "objects": objects, "settings": {}}))
+
+
+def names_in(store):
+    return {entry["name"] for entry in json.loads((store / "store.json").read_text())["objects"]}
+
+
+def hs_teach(tools, *words):
+    return subprocess.run([str(tools / "hs-teach"), *map(str, words)], capture_output=True, text=True, check=False, timeout=60)
+
+
+def check_killed(tools, store):
+    """At whatever moment: the store is the old one or the new one, and the next change goes through."""
+    chance = random.Random(1)
+    changed = 0
+    for turn in range(20):
+        before = names_in(store)
+        old, new = ("bowl", "dish") if "bowl" in before else ("dish", "bowl")
+        process = subprocess.Popen([tools / "hs-teach", "rename", store, old, new], stderr=subprocess.DEVNULL)
+        time.sleep(chance.uniform(0.0, 0.25))
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        listed = hs_teach(tools, "list", store)
+        assert listed.returncode == 0, (turn, listed)
+        changed += names_in(store) != before
+        assert names_in(store) in (before, before - {old} | {new}), (turn, names_in(store))
+    print(f"killed 20 times, {changed} changes were made before that")
+    if "dish" in names_in(store):
+        assert hs_teach(tools, "rename", store, "dish", "bowl").returncode == 0
+    assert [file.name for file in store.parent.glob(".*")] == [], "nothing is left beside it"
+
+
+class Log:
+    """What the processes say."""
+
+    def __init__(self, file):
+        self.file = file
+        self.logger = subprocess.Popen(["lcm-logger", "-f", "-q", "--flush-interval=1", "-c", "HOUGHSTREAM_.*", str(file)],
+                                       stderr=subprocess.DEVNULL)
+
+    def read(self, channel, decode):
+        try:
+            return [decode(data) for _, name, data in read_log(self.file) if name == channel]
+        except (FileNotFoundError, ValueError):
+            return []  # not there yet, or its end is just being written
+
+    def wait(self, what, complaint, seconds=60):
+        end = time.monotonic() + seconds
+        while not what():
+            assert time.monotonic() < end, complaint
+            time.sleep(0.2)
+
+    def known(self, process):
+        said = [k for k in self.read("HOUGHSTREAM_KNOWN_OBJECTS", known_objects_of) if k.process == process]
+        return said[-1] if said else None
+
+    def wait_for_known(self, name):
+        for process in ("hs-detect", "hs-pose"):
+            self.wait(lambda: (known := self.known(process)) and name in known.objects, f"{process} does not know {name}")
+
+    def wait_for_found(self, name):
+        found = lambda: any(d.name == name for some in self.read("HOUGHSTREAM_DETECTIONS", detections_of)[-10:] for d in some)
+        self.wait(found, f"{name} is not found")
+
+
+def check_stream(tools, made, folder, store):
+    log = Log(folder / "results.log")
+    processes = [Process(folder, tools / "hs-detect", "--objects", store, "--threshold", THRESHOLD),
+                 Process(folder, tools / "hs-pose", "--objects", store)]
+    try:
+        for process in processes:
+            process.wait_until_ready()
+        processes.append(Process(folder, tools / "hs-capture", "--source", f"bop:{made / 'scene'}", "--loop", "--rate", RATE))
+        log.wait_for_known("bowl")
+        log.wait_for_found("bowl")
+        first = log.known("hs-detect")
+        assert hs_teach(tools, "rename", store, "bowl", "dish").returncode == 0
+        log.wait_for_known("dish")
+        log.wait_for_found("dish")
+        second = log.known("hs-detect")
+        assert "bowl" not in second.objects and second.objects["soda_can"] == first.objects["soda_can"] < second.objects["dish"]
+        check_torn(log, store)
+        assert hs_teach(tools, "remove", store, "soda_can").returncode == 0
+        log.wait(lambda: set(log.known("hs-detect").objects) == {"dish"}, "soda_can is still known")
+        for process in reversed(processes):
+            process.stop()
+        log.wait(lambda: last_of(log, "hs-detect").received == last_of(log, "hs-capture").processed, "the last word is missing", 10)
+    finally:
+        for process in processes:
+            process.kill()
+        log.logger.terminate()
+        log.logger.wait()
+    last = last_of(log, "hs-detect")
+    print(f"{last.received} frames received, {last.lost} lost, {last.skipped} passed over; the store changed four times")
+    assert last.lost == 0 and last.received == last.processed + last.skipped, last
+    words = processes[0].log.read_text()
+    assert words.count("what was known stays") == 1, words
+
+
+def last_of(log, process):
+    return [status for status in log.read("HOUGHSTREAM_STATUS", status_of) if status.process == process][-1]
+
+
+def check_torn(log, store):
+    """Half a forest: the old one goes on, and it is said why. Then it is whole again."""
+    whole = (store / "forest").read_bytes()
+    (store / "forest").write_bytes(whole[: len(whole) // 2])
+    log.wait(lambda: log.known("hs-detect").problem, "nobody says that the forest is torn")
+    assert str(store / "forest") in log.known("hs-detect").problem, log.known("hs-detect")
+    assert log.known("hs-detect").problem == last_of(log, "hs-detect").last_error
+    assert "dish" in log.known("hs-detect").objects
+    log.wait_for_found("dish")
+    (store / "forest").write_bytes(whole)
+    log.wait(lambda: not log.known("hs-detect").problem, "the forest is whole again, expected that it is taken")
+
+
+def main():
+    enter_private_network()
+    arguments = read_arguments(__doc__, made="what end_to_end_test.py has made")
+    store = arguments.out / "my" / "store"
+    make_store(arguments.made, store)
+    assert names_in(store) == set(CLASSES.values()), names_in(store)
+    check_killed(arguments.tools, store)
+    check_stream(arguments.tools, arguments.made, arguments.out, store)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

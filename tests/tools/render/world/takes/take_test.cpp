@@ -1,0 +1,106 @@
+#include "tools/render/world/takes/take.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "tools/render/world/takes/take_plans.hpp"
+
+namespace houghstream::world {
+namespace {
+
+TakePlan short_plan(TakeKind kind) {
+  TakePlan plan;
+  plan.object_id = 108;  // a tin
+  plan.kind = kind;
+  plan.use = WorldUse::kTraining;
+  plan.seconds = 6.0;
+  return plan;
+}
+
+double turned_between(const SceneFrame& a, const SceneFrame& b) {
+  const Eigen::Matrix3d R =
+      a.objects.at(0).T_camera_object.linear().transpose() * b.objects.at(0).T_camera_object.linear();
+  return Eigen::AngleAxisd(R).angle();
+}
+
+TEST(Take, TheTruthIsWhereTheObjectIsSeen) {
+  const Take take(short_plan(TakeKind::kHandHeld), 61, 1);
+  const SceneFrame frame = take.render(23);
+  ASSERT_EQ(frame.objects.size(), 1U);
+  EXPECT_EQ(frame.objects[0].object_id, 108);
+  const Mesh mesh = make_taught_object(108).thing->mesh;
+  cv::Mat silhouette = render_depth(mesh, frame.objects[0].T_camera_object, frame.frame.camera, {0, 0, 640, 480});
+  silhouette = silhouette == silhouette;  // NaN differs from itself
+  const double both = cv::countNonZero(silhouette & frame.visible_masks[0]);
+  const double either = cv::countNonZero(silhouette | frame.visible_masks[0]);
+  EXPECT_GT(both / either, 0.97) << "but for the rolling shutter";
+}
+
+TEST(Take, SameArgumentsSameFrameAndOtherThreads) {
+  const SceneFrame one = Take(short_plan(TakeKind::kTurntable), 31, 1).render(9);
+  const SceneFrame other = Take(short_plan(TakeKind::kTurntable), 31, 2).render(9);
+  EXPECT_EQ(cv::norm(one.frame.colour, other.frame.colour, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(one.frame.depth, other.frame.depth, cv::NORM_INF), 0.0);
+}
+
+TEST(Take, ATurntableTurnsTheObjectALittleMoreThanOnceBeforeACameraThatStands) {
+  const TakeStage stage(short_plan(TakeKind::kTurntable));
+  World world = stage.world();
+  const Eigen::Isometry3d T_camera_world = stage.move(world, 0.0);
+  EXPECT_TRUE(stage.move(world, 4.0).isApprox(T_camera_world));
+  const Take take(short_plan(TakeKind::kTurntable), 31, 1);
+  EXPECT_NEAR(turned_between(take.render(0), take.render(30)), 0.25, 1e-6);
+  EXPECT_GT(turned_between(take.render(0), take.render(15)), 1.5);
+}
+
+TEST(Take, AHandTurnsTheObjectAndIsAwayBetween) {
+  const TakeStage stage(short_plan(TakeKind::kHandTurns));
+  const auto hidden_and_turn = [&](double seconds) {
+    World world = stage.world();
+    const Eigen::Isometry3d T_camera_world = stage.move(world, seconds);
+    const ShadedView view = shade_view({world, std::vector<ShadowMap>(world.lights.size())},
+                                       synthetic_camera().scaled(0.25), T_camera_world);
+    bool hand = false;
+    for (std::size_t i = 0; i < world.items.size(); ++i) {
+      if (world.items[i].thing->name == "hand")
+        hand = hand || cv::countNonZero(view.geometry.id == static_cast<double>(i + 1)) > 20;
+    }
+    return hand;
+  };
+  EXPECT_FALSE(hidden_and_turn(0.0));
+  EXPECT_TRUE(hidden_and_turn(0.4)) << "in the middle of the first of six strokes of a second";
+  EXPECT_FALSE(hidden_and_turn(0.95));
+  EXPECT_TRUE(hidden_and_turn(1.4));
+  const Take take(short_plan(TakeKind::kHandTurns), 31, 1);
+  EXPECT_NEAR(turned_between(take.render(0), take.render(30)), 0.25, 1e-6);
+}
+
+TEST(TakePlans, TwelveObjectsTwiceInRoomsOfTheirOwn) {
+  const std::vector<NumberedTake> takes = twelve_objects_takes(WorldUse::kTest, 0, 16.0);
+  ASSERT_EQ(takes.size(), 24U);
+  for (std::size_t i = 0; i < takes.size(); ++i) {
+    EXPECT_EQ(takes[i].scene, static_cast<int>(i) + 1);
+    EXPECT_EQ(takes[i].plan.laid_down, i % 2 == 1);
+    EXPECT_EQ(takes[i].plan.number, i / 2);
+  }
+  EXPECT_EQ(twelve_objects_takes(WorldUse::kTest, 1, 16.0).front().plan.number, 12U);
+}
+
+TEST(TakeStage, TheSecondTakeIsOfTheSameRoomWithTheObjectLaidDown) {
+  TakePlan plan = short_plan(TakeKind::kHandHeld);
+  const TakeStage upright(plan);
+  plan.laid_down = true;
+  const TakeStage lying(plan);
+  ASSERT_EQ(upright.world().items.size(), lying.world().items.size());
+  const Placed& first = upright.world().items.back();
+  const Placed& second = lying.world().items.back();
+  EXPECT_EQ(first.object_id, 108);
+  EXPECT_NEAR(first.T_world_object.linear()(2, 2), 1.0, 1e-9);
+  EXPECT_LT(second.T_world_object.linear()(2, 2), 0.5);
+  EXPECT_EQ(upright.world().lights[0].position_world, lying.world().lights[0].position_world);
+}
+
+}  // namespace
+}  // namespace houghstream::world

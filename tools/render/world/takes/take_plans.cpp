@@ -1,0 +1,36 @@
+#include "tools/render/world/takes/take_plans.hpp"
+
+#include <array>
+#include <utility>
+
+namespace houghstream::world {
+namespace {
+
+constexpr std::array<std::pair<const char*, TakeKind>, 12> kShown = {{{"bowl", TakeKind::kHandHeld},
+                                                                      {"cereal_box", TakeKind::kHandHeld},
+                                                                      {"coffee_mug", TakeKind::kHandHeld},
+                                                                      {"soda_can", TakeKind::kHandHeld},
+                                                                      {"teapot", TakeKind::kTurntable},
+                                                                      {"tumbler", TakeKind::kHandHeld},
+                                                                      {"shampoo_bottle", TakeKind::kHandHeld},
+                                                                      {"food_tin", TakeKind::kHandTurns},
+                                                                      {"tea_box", TakeKind::kHandTurns},
+                                                                      {"office_stapler", TakeKind::kHandHeld},
+                                                                      {"toy_truck", TakeKind::kTurntable},
+                                                                      {"flashlight", TakeKind::kHandHeld}}};
+
+}  // namespace
+
+std::vector<NumberedTake> twelve_objects_takes(WorldUse use, int world, double seconds) {
+  std::vector<NumberedTake> takes;
+  for (const auto& [name, kind] : kShown) {
+    const std::uint64_t room = static_cast<std::uint64_t>(world) * kShown.size() + takes.size() / 2;
+    for (const int take : {1, 2}) {
+      TakePlan plan{taught_object_id(name), kind, take == 2, use, room, seconds};
+      takes.push_back({static_cast<int>(takes.size()) + 1, take, name, plan});
+    }
+  }
+  return takes;
+}
+
+}  // namespace houghstream::world

@@ -1,0 +1,310 @@
+"""tools/demo --teach: a virtual camera is moved around an object that nobody has seen, while the stream runs; it is taught, found
+and posed in the same stream. Times are those of the messages' arrival at the logger."""
+
+import bisect
+import math
+import shutil
+import statistics
+import time
+
+from studies.command import call, die, step
+from studies.demo.live import HALF_PERIOD_US
+from studies.lcm_log import known_objects_of, read_log, status_of, teaching_of
+from studies.measured import about, read_json, threads, write_json
+from studies.report.page import embedded, render, show
+from studies.stream import Processes
+from studies.work import Store, Units, make
+
+OBJECT, NAME = "coffee_mug", "mug"
+WORLD = 4  # of the rooms that are for development
+TAKE_HZ, TAKE_FRAMES = 15, 240  # one turn about the object
+LONGEST_S = 40  # of the take
+AFTERWARDS_S = 20  # for which the stream goes on when the object is known
+AROUND_US = 2_000_000  # the change of the store: so long before and after
+POOR = 3  # exit status of hs-teach
+
+
+def units():
+    found = Units()
+    found.add("takes", "", "hs-render", "takes", "--development", "--world", WORLD, "--objects", OBJECT, "--take", 1,
+              "--frames", TAKE_FRAMES, "--fps", TAKE_HZ, "--out", "{out}")  # fmt: skip
+    return found
+
+
+def start_stream(running, programs, out, store, scene):
+    """All that a stream has, with the camera last. Nothing is known in it: there is no store yet."""
+    running.start("detect", programs / "hs-detect", "--objects", store, "--threads", threads())
+    running.start("pose", programs / "hs-pose", "--objects", store, "--threads", 1)
+    running.start("view", programs / "hs-view", "--objects", store, "--rate", 4, "--pictures", out / "pictures")
+    running.start("logger", "lcm-logger", "-f", "-c", "HOUGHSTREAM_.*", out / "results.lcmlog")
+    for name in ("detect", "pose", "view"):
+        running.by_name[name].wait_until_ready()
+    script, shutter = out / "camera_script", out / "shutter.txt"
+    script.write_text(f"scene {scene}\nrate_hz {TAKE_HZ}\nshutter_file {shutter}\n")
+    camera = {"LD_LIBRARY_PATH": str(programs.parent / "virtual_camera"), "HOUGHSTREAM_VIRTUAL_CAMERA": str(script)}
+    running.start("capture", programs / "hs-capture", "--source", "openni2", "--mode", f"640x480@{TAKE_HZ}", **camera)
+
+
+def await_frames(capture, shutter, seconds=120):
+    """The camera reads all its pictures before it takes the first."""
+    end = time.monotonic() + seconds
+    while not shutter.exists():
+        if not capture.runs() or time.monotonic() > end:
+            capture.fail("sends no frames")
+        time.sleep(0.1)
+
+
+def stream(programs, out, scene):
+    """The stream from its start to AFTERWARDS_S after the object is known, all that was said in OUT/results.lcmlog."""
+    store = out / "store"
+    with Processes(out / "log") as running:
+        start_stream(running, programs, out, store, scene)
+        await_frames(running.by_name["capture"], out / "shutter.txt")
+        step(f"the object is shown: {TAKE_HZ} frames a second, while hs-detect and hs-pose work on them")
+        teach = running.start("teach", programs / "hs-teach", "show", "--from-stream", "--name", NAME, "--out", store,
+                              "--seconds", LONGEST_S, "--keep", out / "shown")  # fmt: skip
+        status = teach.process.wait(600)
+        if status == POOR:
+            die(f"hs-teach calls what it saw poor: {teach.log.read_text().strip().splitlines()[-1]}")
+        if status != 0:
+            teach.fail(f"ended with status {status}")
+        step("taught; the stream goes on")
+        time.sleep(AFTERWARDS_S)
+        for name in ("detect", "pose", "capture"):
+            if not running.by_name[name].runs():
+                running.by_name[name].fail("ended before it was asked to")
+        running.stop("capture", "pose", "detect", "logger")
+        running.stop("view", seconds=60)
+
+
+# Transforms: rotation as three rows, translation in metres.
+
+
+def rotation_of(quaternion):
+    w, x, y, z = quaternion
+    return ((1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)))  # fmt: skip
+
+
+def product(a, b):
+    return tuple(tuple(sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)) for i in range(3))
+
+
+def turned(rotation, vector):
+    return tuple(sum(rotation[i][k] * vector[k] for k in range(3)) for i in range(3))
+
+
+def transposed(rotation):
+    return tuple(zip(*rotation))
+
+
+def seen_from_truth(true, found):
+    """The found pose in the frame of the true object: the same in each frame, where poses are right."""
+    back = transposed(true[0])
+    return product(back, found[0]), turned(back, [f - t for f, t in zip(found[1], true[1])])
+
+
+def degrees_between(a, b):
+    trace = sum(product(transposed(a), b)[i][i] for i in range(3))
+    return math.degrees(math.acos(max(-1.0, min(1.0, (trace - 1) / 2))))
+
+
+def scatter(relative):
+    """How far the poses are, in the frame of the true object, from the one that is nearest to all others: median and 95 %."""
+    if not relative:
+        return {}
+    middle = [statistics.median(axis) for axis in zip(*(where for _, where in relative))]
+    off_mm = sorted(1e3 * math.dist(where, middle) for _, where in relative)
+    some = relative[:: max(1, len(relative) // 60)]
+    centre = min(some, key=lambda one: sum(degrees_between(one[0], other[0]) for other in some))[0]
+    off_deg = sorted(degrees_between(centre, rotation) for rotation, _ in relative)
+    return {f"{name}_{p}": round(values[min(len(values) - 1, p * len(values) // 100)], 2)
+            for name, values in (("mm", off_mm), ("deg", off_deg)) for p in (50, 95)}  # fmt: skip
+
+
+def true_poses(scene):
+    """The object's pose in each picture of the take."""
+    truth = read_json(scene / "scene_gt.json")
+    poses = []
+    for image in sorted(truth, key=int):
+        entry = truth[image][0]
+        r = entry["cam_R_m2c"]
+        poses.append(((r[0:3], r[3:6], r[6:9]), [1e-3 * t for t in entry["cam_t_m2c"]]))
+    return poses
+
+
+def pictures_taken(file):
+    """(utime, number) of each shutter, by time. The camera plays its scene forwards, then backwards."""
+    return sorted((int(words[2]), int(words[0])) for words in map(str.split, file.read_text().splitlines()))
+
+
+def picture_at(taken, utime, count):
+    """Which of the scene's pictures was taken then; None where none was."""
+    place = bisect.bisect_left(taken, (utime, 0))
+    nearest = min(taken[max(place - 1, 0) : place + 1], key=lambda shutter: abs(shutter[0] - utime), default=None)
+    if nearest is None or abs(nearest[0] - utime) > HALF_PERIOD_US:
+        return None
+    index = nearest[1] % (2 * count)
+    return index if index < count else 2 * count - 1 - index
+
+
+def first(items, condition):
+    return next((item for item in items if condition(item)), None)
+
+
+class Story:
+    """What the log says, in order of arrival."""
+
+    def __init__(self, log):
+        self.teaching, self.statuses, self.known_us = [], [], None
+        for arrival, channel, data in read_log(log):
+            if channel == "HOUGHSTREAM_TEACHING":
+                self.teaching.append((arrival, teaching_of(data)))
+            elif channel == "HOUGHSTREAM_STATUS":
+                self.statuses.append((arrival, status_of(data)))
+            elif channel == "HOUGHSTREAM_KNOWN_OBJECTS" and self.known_us is None:
+                known = known_objects_of(data)
+                if known.process == "hs-detect" and NAME in known.objects:
+                    self.known_us = known.objects[NAME]
+
+    def begin(self, *states):
+        """When a state began: (arrival, what was said)."""
+        found = first(self.teaching, lambda said: said[1].state in states)
+        if found is None:
+            die(f"no word of {' or '.join(states)} on the bus, expected that of an object that is taught")
+        return found
+
+    def last(self, state):
+        return first(reversed(self.teaching), lambda said: said[1].state == state)
+
+    def of_process(self, process):
+        return [(arrival, status) for arrival, status in self.statuses if status.process == process]
+
+
+def stream_figures(story):
+    """What hs-detect lost and passed over, in all and around the moment when it took over the store."""
+    statuses = story.of_process("hs-detect")
+    last = statuses[-1][1]
+    before = [status for arrival, status in statuses if arrival < story.known_us - AROUND_US] or [statuses[0][1]]
+    after = first(statuses, lambda said: said[0] > story.known_us + AROUND_US) or statuses[-1]
+    return {
+        "frames": last.received, "lost": last.lost, "skipped": last.skipped,
+        "lost_at_change": after[1].lost - before[-1].lost, "skipped_at_change": after[1].skipped - before[-1].skipped,
+    }  # fmt: skip
+
+
+def found_in(frames):
+    """(utime, detection) of the object, in the frames where it is."""
+    return [(frame["utime"], found) for frame in frames for found in frame["detections"] if found["class_name"] == NAME]
+
+
+def posed_in(found):
+    return [(utime, detection) for utime, detection in found if detection["pose"]["status"] == "valid"]
+
+
+def pose_figures(posed, scene, shutter):
+    truth, taken = true_poses(scene), pictures_taken(shutter)
+    relative = []
+    for utime, detection in posed:
+        picture = picture_at(taken, utime, len(truth))
+        pose = detection["pose"]
+        if picture is not None:
+            relative.append(seen_from_truth(truth[picture], (rotation_of(pose["quat"]), pose["trans"])))
+    return scatter(relative)
+
+
+def summarise(out, scene, story):
+    frames = read_json(out / "results.json")["frames"]
+    found = found_in(frames)
+    posed = posed_in(found)
+    if story.known_us is None or not found or not posed:
+        die(f"{NAME}: taught, but {len(found)} times found and {len(posed)} times posed in the stream, expected more")
+    take, fusing, training, done = (story.begin(*states)[0] for states in (("tracking",), ("fusing",), ("training",), ("done",)))
+    later = [frame["utime"] for frame in frames if frame["utime"] > story.known_us]
+    seconds = {"take": fusing - take, "fusing": training - fusing, "training": done - training,
+               "found": found[0][0] - fusing, "posed": posed[0][0] - fusing}  # fmt: skip
+    return {
+        "seconds": {name: round(1e-6 * us, 1) for name, us in seconds.items()},
+        "shown": read_json(out / "shown" / "report.json"),
+        "stream": stream_figures(story),
+        "frames_later": len(later),
+        "found_share": round(len({utime for utime, _ in found}) / max(len(later), 1), 3),
+        "posed_share": round(len({utime for utime, _ in posed}) / max(len(later), 1), 3),
+        "pose_scatter": pose_figures(posed, scene, out / "shutter.txt"),
+    }, found, posed
+
+
+def drawn(out):
+    """hs-view's pictures by the frame's utime, in order."""
+    return dict(sorted((int(file.stem), file) for file in (out / "pictures").glob("*.jpg")))
+
+
+def steps(out, story, found, posed):
+    """(what, picture) of each step; hs-view drew a few of the frames."""
+    pictures = drawn(out)
+    found = [one for one in found if one[0] in pictures] or found
+    posed = [one for one in posed if one[0] in pictures] or posed
+    take, fused = story.begin("tracking")[1], story.begin("fusing")[1]
+    half = take.utime + (fused.utime - take.utime) // 2
+    training = story.begin("training")[0] // 2 + story.last("training")[0] // 2
+    surest = max(posed, key=lambda one: one[1]["pose"]["quality"])
+    views = [
+        ("Nobody has seen the object: nothing is found", min(pictures)),
+        ("Shown: what stands nearest to the middle is meant", take.utime + 500_000),
+        ("Followed while the camera moves around it; the sphere fills", half),
+        ("Seen from all sides that can be seen: the take ends", fused.utime - 300_000),
+        ("The stream goes on while its model is taught", training),
+        ("Found", found[0][0]),
+        ("Found and posed, with the outline of the model that was made of it", surest[0]),
+    ]
+    told = [(words, embedded(pictures[min(pictures, key=lambda drawn_us: abs(drawn_us - utime))], "jpeg"))
+            for words, utime in views]  # fmt: skip
+    told.insert(4, ("What was kept of the take, and the model", embedded(out / "shown" / "contact_sheet.jpg", "jpeg")))
+    return told
+
+
+def rows(summary):
+    seconds, flow, scatter_of = summary["seconds"], summary["stream"], summary["pose_scatter"]
+    shown = summary["shown"]
+    return [
+        ("the take, s", seconds["take"]),
+        ("model made, s", seconds["fusing"]),
+        ("taught, s", seconds["training"]),
+        ("from the take's end until it is found, s", seconds["found"]),
+        ("from the take's end until it is posed, s", seconds["posed"]),
+        ("verdict on the model", shown["verdict"]),
+        ("seen from, share of the directions", show(shown["seen_share"], "{:.2f}")),
+        ("drift over the closed turn", f"{show(shown['drift_mm'], '{:.1f}')} mm, {show(shown['drift_deg'], '{:.1f}')} degrees"),
+        ("frames in the stream", flow["frames"]),
+        ("lost, passed over", f"{flow['lost']}, {flow['skipped']}"),
+        ("of these within 2 s of the store's change", f"{flow['lost_at_change']}, {flow['skipped_at_change']}"),
+        ("frames since it is known", summary["frames_later"]),
+        ("found in, posed in, share of them", f"{summary['found_share']:.2f}, {summary['posed_share']:.2f}"),
+        ("poses against the truth, scatter: median, 95 %",
+         f"{scatter_of['mm_50']} mm, {scatter_of['mm_95']} mm; {scatter_of['deg_50']}, {scatter_of['deg_95']} degrees"),
+    ]  # fmt: skip
+
+
+def run(options, programs):
+    out = options.out
+    store = Store(out, programs, units().all(), files="data")
+    make(store, options.fresh)
+    takes = store.path("takes")
+    scene = takes / "test" / f"{read_json(takes / 'takes.json')[0]['scene']:06d}"
+    stream_folder = out / "stream"
+    shutil.rmtree(stream_folder, ignore_errors=True)
+    step("a stream in which nothing is known")
+    stream(programs, stream_folder, scene)
+    step("report")
+    call(programs / "hs-log", "export", "json", stream_folder / "results.lcmlog", stream_folder / "results.json",
+         into=out / "logs" / "export.txt")  # fmt: skip
+    story = Story(stream_folder / "results.lcmlog")
+    summary, found, posed = summarise(stream_folder, scene, story)
+    summary = {**summary, **about(options.command), "network": options.network}
+    write_json(out / "summary.json", summary)
+    page = render("demo/teach_page.html", summary=summary, rows=rows(summary),
+                  steps=steps(stream_folder, story, found, posed))  # fmt: skip
+    (out / "report.html").write_text(page)
+    print("\n" + "\n".join(f"{what:<48}{value}" for what, value in rows(summary)))
+    print(f"\n{out}/report.html, {out}/summary.json")

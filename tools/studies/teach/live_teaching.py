@@ -1,0 +1,144 @@
+"""Teaches an object in a running stream: hs-detect and hs-pose follow a store, frames of a take go by at 30 Hz and then those
+of a scene in which the object stands among others, and hs-teach show --from-stream teaches it meanwhile. Writes OUT/live.json.
+On the bus of $LCM_DEFAULT_URL.
+
+Usage: live_teaching.py --programs DIR --store STORE --name NAME --take LOG --after LOG --out DIR"""
+
+import argparse
+import json
+import pathlib
+import shutil
+import sys
+import time
+
+from studies.lcm_log import DamagedLog, Wire, detections_of, read_log
+from studies.measured import read_csv, read_json, threads
+from studies.stream import ProcessFailed, Processes, Stream
+from studies.teach.joined_log import FIRST_UTIME, frames_of, write_joined
+
+CHANNEL, RATE_HZ = "OPENNI_FRAME", 30.0
+LONGEST_S = 240.0  # after the take
+AFTERWARDS_S = 20.0  # after hs-teach has ended: all frames of the scene have gone by
+FUSING, DONE, FAILED = 4, 6, 7  # states of teaching_t
+
+
+def state_of(data):
+    """(name, state, message) of an encoded teaching_t."""
+    wire = Wire(data)
+    wire.read("q")
+    wire.text()
+    return wire.text(), wire.read("b"), wire.text()
+
+
+def events(log):
+    """Of a log that may still be written: what is whole of it."""
+    found = []
+    try:
+        for event in read_log(log):
+            found.append(event)
+    except DamagedLog:
+        pass
+    return found
+
+
+def first_time(found, wanted):
+    """Seconds of the first event that is wanted, or None."""
+    return next((1e-6 * stamp for stamp, channel, data in found if wanted(channel, data)), None)
+
+
+def times_of(found, name):
+    def in_state(*states):
+        def wanted(channel, data):
+            return channel == "HOUGHSTREAM_TEACHING" and state_of(data)[0] == name and state_of(data)[1] in states
+        return wanted
+
+    def is_found(channel, data):
+        return channel == "HOUGHSTREAM_DETECTIONS" and any(it.name == name for it in detections_of(data))
+
+    return {"take_over": first_time(found, in_state(FUSING)), "done": first_time(found, in_state(DONE)),
+            "failed": first_time(found, in_state(FAILED)), "found": first_time(found, is_found)}  # fmt: skip
+
+
+def teach(options, log):
+    """Plays the frames and teaches; leaves OUT/results.lcmlog and OUT/observe.json."""
+    out, programs = options.out, options.programs
+    with Processes(out / "log") as running:
+        for name in ("detect", "pose"):
+            running.start(name, programs / f"hs-{name}", "--objects", out / "store")
+        running.start("observe", programs / "hs-observe", "--out", out / "observe.json", "--csv", out / "frame_times.csv")
+        running.start("logger", "lcm-logger", "-f", f"--lcm-url={Stream._logger_url()}", "-c", "HOUGHSTREAM_.*",
+                      out / "results.lcmlog")  # fmt: skip
+        running.start("teach", programs / "hs-teach", "show", "--from-stream", "--name", options.name, "--out",
+                      out / "store", "--add", "--keep", out / "kept", "--seconds", options.take_seconds, "--threads",
+                      threads())  # fmt: skip
+        for name in ("detect", "pose", "observe", "teach"):
+            running.by_name[name].wait_until_ready()
+        player = running.start("player", "lcm-logplayer", log)
+        wait_for_end(running.by_name["teach"], player, out / "results.lcmlog", options.name)
+        player.kill()
+        time.sleep(1.0)
+        running.by_name["teach"].kill()
+        running.stop("observe", "logger", "pose", "detect")
+
+
+def wait_for_end(teacher, player, results, name):
+    """Until the object was found, or long enough after hs-teach has ended."""
+    ended = None
+    while player.runs():
+        time.sleep(1.0)
+        if ended is None and not teacher.runs():
+            ended = time.monotonic()
+        if ended is not None:
+            over = time.monotonic() - ended > AFTERWARDS_S
+            if over or times_of(events(results), name)["found"] is not None:
+                return
+
+
+def after(start, moment):
+    return None if start is None or moment is None else round(moment - start, 2)
+
+
+def summarise(out, name):
+    times = times_of(events(out / "results.lcmlog"), name)
+    observed = read_json(out / "observe.json")
+    detector = observed["processes"]["hs-detect"]
+    last = max(int(row["utime"]) for row in read_csv(out / "frame_times.csv"))
+    sent = 1 + round(1e-6 * (last - FIRST_UTIME) * RATE_HZ)
+    report = out / "kept" / "report.json"
+    return {
+        "name": name,
+        "seconds_to_taught": after(times["take_over"], times["done"]),
+        "seconds_to_found": after(times["take_over"], times["found"]),
+        "failed": times["failed"] is not None,
+        "frames": sent,
+        "lost": sent - detector["received"],
+        "skipped": detector["skipped"],
+        "frame_rate_hz": observed["frame_rate_hz"],
+        "report": read_json(report) if report.is_file() else None,
+        "said": (out / "log" / "teach.txt").read_text(errors="replace").splitlines()[-10:],
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    add = parser.add_argument
+    for name in ("--programs", "--store", "--take", "--after", "--out"):
+        add(name, type=pathlib.Path, required=True)
+    add("--name", required=True)
+    options = parser.parse_args()
+    options.out.mkdir(parents=True)
+    shutil.copytree(options.store, options.out / "store")
+    joined = options.out / "joined.lcmlog"
+    take = frames_of(options.take, CHANNEL)
+    options.take_seconds = len(take) / RATE_HZ
+    write_joined(joined, take, frames_of(options.after, CHANNEL), round(LONGEST_S * RATE_HZ), RATE_HZ, CHANNEL)
+    try:
+        teach(options, joined)
+    except ProcessFailed as error:
+        sys.exit(str(error))
+    joined.unlink()
+    (options.out / "live.json").write_text(json.dumps(summarise(options.out, options.name), indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()

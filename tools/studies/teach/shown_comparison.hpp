@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "drivers/files/json_file.hpp"
+#include "tools/studies/teach/kept_takes.hpp"
+
+namespace houghstream::studies {
+
+/// A motion by which two poses differ.
+struct PoseGap {
+  double shift_m = 0.0;  ///< of the object's middle
+  double turn_rad = 0.0;
+};
+
+/// Medians and 95 % points of distances, metres.
+struct Spread {
+  double median = 0.0;
+  double most = 0.0;
+};
+
+/// What was made of an object that was shown, beside the truth.
+struct ShownComparison {
+  /// The taught model's frame in that of the true mesh: as the poses of the first take's frames say on average, then
+  /// registered by shape.
+  Eigen::Isometry3d T_true_taught = Eigen::Isometry3d::Identity();
+  Spread taught_to_true;           ///< from points on the taught surface to the true one
+  Spread seen_to_taught;           ///< from points on the true surface that the takes saw to the taught one
+  double missing_share = 0.0;      ///< of these, farther than 5 mm
+  double seen_surface = 0.0;       ///< share of the true surface that the takes saw
+  PoseGap drift;                   ///< by which the first and the last tracked frame of the first take disagree
+  Spread tracking_shift;           ///< of the tracked frames from their average
+  double tracking_turn_rad = 0.0;  ///< the 95 % point
+  int tracked = 0;                 ///< frames of the first take
+  std::optional<PoseGap> second;   ///< by which the second take's views disagree with the first's; without them none
+  double mask_iou = 0.0;           ///< mean over the kept views
+  double least_mask_iou = 0.0;
+  int views = 0;
+};
+
+/// Compares KEPT (of hs-teach show --keep) with the truth. Throws InputError where KEPT holds no poses or no views.
+ShownComparison compare_shown(const TrueTakes& takes, const std::filesystem::path& kept, const Mesh& taught);
+
+/// Figures in millimetres and degrees.
+OrderedJson to_json(const ShownComparison& comparison);
+
+}  // namespace houghstream::studies

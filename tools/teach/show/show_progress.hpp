@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "pipeline/types/frame_id.hpp"
+
+namespace houghstream::teach {
+
+/// Where showing an object stands.
+enum class ShowState : std::uint8_t {
+  kChoosing,  ///< looks for the object in the first frames
+  kTracking,
+  kLost,      ///< does not know where the camera is; goes on looking
+  kFusing,    ///< the take is over, the model is made
+  kTraining,  ///< the model is taught into the store
+  kDone,
+  kFailed,
+};
+
+/// "choosing", "tracking" ... "failed".
+const char* name_of(ShowState state);
+
+/// What can be said while an object is shown: after each frame, and as fusing and teaching go on.
+struct ShowProgress {
+  static constexpr int kDirections = 60;  ///< of a sphere about the object: reconstruction::sphere_of_directions()
+
+  FrameId frame;     ///< the last that was looked at
+  std::string name;  ///< of the object
+  ShowState state = ShowState::kChoosing;
+  std::string message;                   ///< for a person, one line: what was seen, what is missing, why it failed
+  std::array<bool, kDirections> seen{};  ///< from which directions of the object's frame
+  int frames = 0;                        ///< looked at so far
+  int keyframes = 0;                     ///< kept so far
+  cv::Rect box;                          ///< of the object in the last frame, pixels; empty where it is not known
+  double progress = 0.0;                 ///< 0 to 1: of the sphere while tracking, of the work afterwards
+  std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres, z up, origin at its foot; none while it is not known
+};
+
+/// Is told how far it is; called from the thread that shows. An exception ends the showing.
+struct ShowObserver {
+  virtual ~ShowObserver() = default;
+  virtual void progress(const ShowProgress& now) = 0;
+};
+
+}  // namespace houghstream::teach

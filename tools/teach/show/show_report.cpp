@@ -1,0 +1,293 @@
+#include "tools/teach/show/show_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/files/image_file.hpp"
+#include "drivers/files/json_file.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tools/fuse/model_picture.hpp"
+#include "tools/teach/contact_sheet.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+namespace fs = std::filesystem;
+using reconstruction::FrameTrack;
+using reconstruction::LostSpan;
+using reconstruction::Motion;
+using reconstruction::ShownView;
+using reconstruction::Take;
+
+constexpr double kDegrees = 57.29577951308232;
+
+int tracked_frames(const Take& take) {
+  return static_cast<int>(
+      std::count_if(take.frames.begin(), take.frames.end(), [](const FrameTrack& frame) { return frame.tracked; }));
+}
+
+int lost_frames(const Take& take) {
+  int count = 0;
+  for (const LostSpan& span : take.lost) count += span.to - span.from + 1;
+  return count;
+}
+
+reconstruction::SeenDirections seen_by_all(const Shown& shown) {
+  reconstruction::SeenDirections seen{};
+  for (const Take& take : shown.takes) {
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || take.seen[i];
+  }
+  return seen;
+}
+
+double seen_surface(const Shown& shown) {
+  return static_cast<double>(std::count(shown.seen.begin(), shown.seen.end(), true)) /
+         static_cast<double>(std::max<std::size_t>(1, shown.seen.size()));
+}
+
+std::string span_text(const Take& take, const LostSpan& span) {
+  return fmt::format("lost between second {:.1f} and {:.1f}: {}", second_of(take, span.from), second_of(take, span.to),
+                     span.why);
+}
+
+/// What speaks against a take.
+void judge_take(const Take& take, std::vector<std::string>& reasons) {
+  constexpr int kNearlyRound = 300;
+  constexpr int kRound = 350;
+  constexpr double kMostLost = 0.15;
+  constexpr double kMostGap_m = 0.03;
+  constexpr double kMostGapTurn = 0.12;
+  if (take.motion == Motion::kUnknown)
+    reasons.emplace_back(
+        "neither the camera nor the object was seen to move, expected a turn about it (a plain round "
+        "object that turns by itself looks as if it stood still)");
+  if (take.degrees_round < kNearlyRound)
+    reasons.push_back(fmt::format("too short: seen from {} degrees of the turn, expected all 360", take.degrees_round));
+  else if (take.degrees_round >= kRound && !take.gap)
+    reasons.emplace_back(
+        "it came round, and did not find its beginning again: nothing tells how it turned, or the way was lost");
+  if (lost_frames(take) > kMostLost * static_cast<double>(take.frames.size())) {
+    for (const LostSpan& span : take.lost) {
+      if (reasons.size() < 8) reasons.push_back(span_text(take, span));
+    }
+  }
+  if (take.gap && (take.gap->shift_m > kMostGap_m || take.gap->turn > kMostGapTurn))
+    reasons.push_back(fmt::format("the turn missed its beginning by {:.0f} mm and {:.1f} degrees",
+                                  1e3 * take.gap->shift_m, kDegrees * take.gap->turn));
+}
+
+void write_poses(const Shown& shown, const fs::path& file) {
+  std::ofstream out(file);
+  out << "frame,utime,tracked,r11,r12,r13,t1,r21,r22,r23,t2,r31,r32,r33,t3\n";
+  const Take& take = shown.takes.front();
+  const ShownView& any = shown.views.front().front();
+  const Eigen::Isometry3d T_world_object =
+      take.keyframes[static_cast<std::size_t>(any.keyframe)].T_camera_world.inverse() * any.T_camera_object;
+  for (std::size_t i = 0; i < take.frames.size(); ++i) {
+    const FrameTrack& frame = take.frames[i];
+    out << fmt::format("{},{},{}", i, frame.id.utime, frame.tracked ? 1 : 0);
+    const Eigen::Isometry3d T = frame.tracked ? take.pose_of(frame) * T_world_object : Eigen::Isometry3d::Identity();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column)
+        out << (frame.tracked ? fmt::format(",{:.7f}", T.matrix()(row, column)) : ",");
+    }
+    out << "\n";
+  }
+  out.close();
+  require(out.good(), "{}: cannot be written", file.string());
+}
+
+OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
+  OrderedJson json;
+  int frames = 0, tracked = 0, keyframes = 0;
+  double hz = 1e9;
+  OrderedJson lost = OrderedJson::array();
+  OrderedJson drift_mm, drift_deg;
+  for (const Take& take : shown.takes) {
+    frames += static_cast<int>(take.frames.size());
+    tracked += tracked_frames(take);
+    keyframes += static_cast<int>(take.keyframes.size());
+    hz = std::min(hz, take.tracking_hz);
+    for (const LostSpan& span : take.lost)
+      lost.push_back({{"from", second_of(take, span.from)}, {"to", second_of(take, span.to)}, {"why", span.why}});
+    if (!take.gap || !drift_mm.is_null()) continue;
+    drift_mm = 1e3 * take.gap->shift_m;
+    drift_deg = kDegrees * take.gap->turn;
+  }
+  json["name"] = shown.name;
+  json["verdict"] = verdict.good ? "good" : "poor";
+  json["reasons"] = verdict.reasons;
+  json["frames"] = frames;
+  json["used_frames"] = tracked;
+  json["keyframes"] = keyframes;
+  json["seconds"] = shown.seconds;
+  json["tracking_hz"] = hz;
+  json["drift_mm"] = drift_mm;
+  json["drift_deg"] = drift_deg;
+  json["agreement_mm"] = 1e3 * shown.agreement_m;
+  json["seen_share"] =
+      static_cast<double>(reconstruction::count_seen(seen_by_all(shown))) / reconstruction::kSphereDirections;
+  json["seen_surface"] = seen_surface(shown);
+  json["degrees_round"] = shown.takes.front().degrees_round;
+  json["lost"] = lost;
+  json["diameter_mm"] = 1e3 * mesh_diameter(shown.mesh);
+  return json;
+}
+
+/// Views of a take, at most so many, spread over all.
+std::vector<TrainingView> training_views(const Shown& shown) {
+  std::vector<TrainingView> views;
+  for (std::size_t t = 0; t < shown.takes.size(); ++t) {
+    for (const ShownView& shown_view : shown.views[t]) {
+      TrainingView view;
+      view.frame = shown.takes[t].keyframes[static_cast<std::size_t>(shown_view.keyframe)].frame;
+      view.mask = shown_view.mask;
+      view.class_id = 1;
+      view.class_name = shown.name;
+      view.T_camera_object = shown_view.T_camera_object;
+      views.push_back(std::move(view));
+    }
+  }
+  return views;
+}
+
+/// The model's outline over a keyframe, and its mask where that ends elsewhere.
+cv::Mat outline_picture(const Mesh& mesh, const TrainingView& view) {
+  RgbdFrame nothing_hides = view.frame;
+  nothing_hides.depth = cv::Mat(view.frame.depth.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
+  cv::Mat picture = view.frame.colour.clone();
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(view.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  cv::drawContours(picture, outlines, -1, {0, 200, 255}, 1);
+  cv::findContours(reconstruction::mask_of(mesh, nothing_hides, view.T_camera_object), outlines, cv::RETR_EXTERNAL,
+                   cv::CHAIN_APPROX_NONE);
+  cv::drawContours(picture, outlines, -1, {0, 255, 0}, 1);
+  return picture;
+}
+
+void write_pictures(const Shown& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
+  constexpr std::size_t kOutlines = 12;
+  fs::create_directories(folder / "outlines");
+  const std::size_t step = std::max<std::size_t>(1, views.size() / kOutlines);
+  for (std::size_t i = 0; i < views.size(); i += step)
+    write_png(outline_picture(shown.mesh, views[i]), folder / "outlines" / fmt::format("{:06d}.png", i));
+  cv::Mat sheet = view_picture(views, fmt::format("{}: {} keyframes", shown.name, views.size()));
+  cv::Mat model = draw_model(shown.mesh);
+  cv::resize(model, model, {sheet.cols, model.rows * sheet.cols / model.cols}, 0, 0, cv::INTER_AREA);
+  sheet.push_back(model);
+  const fs::path file = folder / "contact_sheet.jpg";
+  require(cv::imwrite(file.string(), sheet), "{}: cannot be written", file.string());
+}
+
+void write_views(const Shown& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
+  BopWriter writer(folder / "000001");
+  for (const TrainingView& view : views) {
+    TrueObject object;
+    object.object_id = 1;
+    object.T_camera_object = view.T_camera_object;
+    object.box_visible_px = cv::boundingRect(view.mask);
+    writer.add(view.frame, {object}, {view.mask});
+  }
+  writer.finish();
+  write_bop_models({{1, shown.name, shown.mesh, {}}}, folder / "models");
+}
+
+void write_page(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
+  std::ofstream out(folder / "report.html");
+  out << fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
+                     shown.name, verdict.good ? "good" : "poor", describe(shown, verdict));
+  out << "<p>Some keyframes, and the model in its colours and as shape:</p>\n<img src=\"contact_sheet.jpg\" "
+         "width=\"100%\">\n"
+      << "<p>The model's outline (green) and the mask (orange) over keyframes:</p>\n";
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder / "outlines"))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) out << fmt::format("<img src=\"outlines/{}\" width=\"32%\">\n", name);
+  out.close();
+  require(out.good(), "{}: cannot be written", (folder / "report.html").string());
+}
+
+}  // namespace
+
+double second_of(const Take& take, int frame) {
+  return 1e-6 *
+         static_cast<double>(take.frames[static_cast<std::size_t>(frame)].id.utime - take.frames.front().id.utime);
+}
+
+Verdict judge(const Shown& shown) {
+  constexpr double kMostDisagreement_m = 0.003;
+  constexpr double kLeastSurface = 0.55;
+  constexpr std::size_t kFewestKeyframes = 8;
+  Verdict verdict;
+  judge_take(shown.takes.front(), verdict.reasons);
+  if (shown.agreement_m > kMostDisagreement_m)
+    verdict.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
+                                          1e3 * shown.agreement_m, 1e3 * kMostDisagreement_m));
+  if (seen_surface(shown) < kLeastSurface)
+    verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * seen_surface(shown)));
+  if (shown.views.front().size() < kFewestKeyframes)
+    verdict.reasons.push_back(fmt::format("only {} keyframes show it", shown.views.front().size()));
+  verdict.good = verdict.reasons.empty();
+  return verdict;
+}
+
+std::string describe(const Shown& shown, const Verdict& verdict) {
+  const Take& take = shown.takes.front();
+  std::string text = fmt::format("{}: {}\n", shown.name, verdict.good ? "good" : "poor");
+  for (const std::string& reason : verdict.reasons) text += "  " + reason + "\n";
+  const Eigen::Vector3d front = take.chosen.T_camera_stand.inverse().translation();
+  text += fmt::format("  {}\n", reconstruction::describe_seen(seen_by_all(shown), front));
+  for (const Take& one : shown.takes) {
+    text += fmt::format(
+        "  {} frames in {:.1f} s, {} tracked, {} keyframes, {} blurred, {} badly exposed; {} moved; tracked at {:.0f} "
+        "Hz\n",
+        one.frames.size(), second_of(one, static_cast<int>(one.frames.size()) - 1), tracked_frames(one),
+        one.keyframes.size(), one.blurred, one.badly_exposed,
+        one.motion == Motion::kObject   ? "the object"
+        : one.motion == Motion::kCamera ? "the camera"
+                                        : "nothing",
+        one.tracking_hz);
+    for (const LostSpan& span : one.lost) text += "  " + span_text(one, span) + "\n";
+    text += one.gap
+                ? fmt::format("  the turn's end missed its beginning by {:.1f} mm and {:.2f} degrees, and was closed\n",
+                              1e3 * one.gap->shift_m, kDegrees * one.gap->turn)
+                : "  the turn was not closed\n";
+  }
+  text +=
+      fmt::format("  {:.0f} mm across, views agree within {:.2f} mm, {:.0f} % of the surface seen; {:.1f} s\n",
+                  1e3 * mesh_diameter(shown.mesh), 1e3 * shown.agreement_m, 100.0 * seen_surface(shown), shown.seconds);
+  return text;
+}
+
+void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
+  const fs::path whole = fs::absolute(folder).lexically_normal();
+  require(!fs::exists(whole) || fs::is_empty(whole) || fs::exists(whole / "report.json"),
+          "{}: holds something else, expected a new folder or one of an earlier showing", folder.string());
+  const fs::path partial = whole.parent_path() / fmt::format(".{}.partial-{}", whole.filename().string(), getpid());
+  try {
+    fs::create_directories(partial);
+    const std::vector<TrainingView> views = training_views(shown);
+    save_ply(shown.mesh, partial / "model.ply");
+    write_views(shown, views, partial / "views");
+    write_pictures(shown, views, partial);
+    write_poses(shown, partial / "camera_poses.csv");
+    write_json(report_json(shown, verdict), partial / "report.json");
+    write_page(shown, verdict, partial);
+    fs::remove_all(whole);
+    fs::rename(partial, whole);
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    fs::remove_all(partial, ignored);
+    fail("{}: cannot be written: {}", folder.string(), error.what());
+  }
+}
+
+}  // namespace houghstream::teach

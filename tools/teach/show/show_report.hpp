@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pose/reconstruction/take_model.hpp"
+
+namespace houghstream::teach {
+
+/// What is judged: takes that were followed, and the model of all of them.
+struct Shown {
+  std::string name;
+  std::vector<reconstruction::Take> takes;
+  std::vector<std::vector<reconstruction::ShownView>> views;  ///< of each take
+  Mesh mesh;
+  std::vector<bool> seen;  ///< per vertex
+  double agreement_m = 0.0;
+  double seconds = 0.0;  ///< that it took until the model was there
+};
+
+/// Whether a model is worth teaching.
+struct Verdict {
+  bool good = true;
+  std::vector<std::string> reasons;  ///< why not, a line each
+};
+
+Verdict judge(const Shown& shown);
+
+/// Second of the take at which a frame was taken.
+double second_of(const reconstruction::Take& take, int frame);
+
+/// The verdict and its figures in words, a few lines.
+std::string describe(const Shown& shown, const Verdict& verdict);
+
+/// What was asked to be kept, in a folder that appears as a whole: model.ply, views/ (BOP: the keyframes with poses and
+/// masks), contact_sheet.jpg, outlines/, camera_poses.csv, report.json and report.html. One of an earlier time is
+/// replaced, anything else is not. Throws InputError where it cannot be written.
+void keep_shown(const Shown& shown, const Verdict& verdict, const std::filesystem::path& folder);
+
+}  // namespace houghstream::teach

@@ -1,0 +1,85 @@
+#include "tools/teach/show/show_sources.hpp"
+
+#include <memory>
+
+#include "drivers/frame_source.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "tools/capture/capture_options.hpp"
+#include "tools/log/recording.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+bool starts_with(const std::string& text, const std::string& start) {
+  return text.rfind(start, 0) == 0;
+}
+
+/// A camera's frames come at their own time; a take of them has an end.
+class LiveFrames {
+ public:
+  LiveFrames(std::unique_ptr<FrameSource> source, double longest_s)
+      : source_(std::move(source)), longest_us_(static_cast<std::int64_t>(1e6 * longest_s)) {}
+
+  std::optional<RgbdFrame> next() {
+    if (stop_requested()) return std::nullopt;
+    std::optional<RgbdFrame> frame = source_->next();
+    if (!frame) return frame;
+    if (first_ == 0) first_ = frame->id.utime;
+    if (frame->id.utime - first_ > longest_us_) return std::nullopt;
+    return frame;
+  }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  std::int64_t longest_us_;
+  std::int64_t first_ = 0;
+};
+
+/// Frames of a log or a recorder's file, with what was lost of it said at the end.
+class RecordedFrames {
+ public:
+  explicit RecordedFrames(const log_tools::RecordingSettings& settings) : next_(open_recording(settings, losses_)) {}
+
+  std::optional<RgbdFrame> next() {
+    if (const std::optional<log_tools::RecordedFrame> frame = next_())
+      return frame_from_message(frame->message, frame->channel, std::nullopt);
+    if (const std::string line = losses_.line(); !line.empty()) log_warning("{}", line);
+    return std::nullopt;
+  }
+
+ private:
+  log_tools::LossAccount losses_;
+  log_tools::NextFrame next_;
+};
+
+}  // namespace
+
+ShownFrames open_shown(const std::string& source, const ShowOptions& options) {
+  if (starts_with(source, "openni2")) {
+    capture::SourceOptions camera;
+    camera.source = source;
+    camera.camera = options.camera;
+    openni::CameraListener listener;
+    listener.stop_requested = [] { return stop_requested(); };
+    catch_stop_signals();
+    const auto live = std::make_shared<LiveFrames>(capture::open_source(camera, listener), options.longest_s);
+    return [live] { return live->next(); };
+  }
+  for (const char* kind : {"bop:", "uw:", "tum:"}) {
+    if (!starts_with(source, kind)) continue;
+    require(options.camera.empty(), "--camera goes with frames that come without, not with {}", source);
+    const std::shared_ptr<FrameSource> frames = open_frame_source(source);
+    return [frames] { return frames->next(); };
+  }
+  log_tools::RecordingSettings settings;
+  settings.source = starts_with(source, "log:") ? source.substr(4) : source;
+  settings.channel = options.channel;
+  if (!options.camera.empty()) settings.camera = parse_camera(options.camera);
+  const auto recorded = std::make_shared<RecordedFrames>(settings);
+  return [recorded] { return recorded->next(); };
+}
+
+}  // namespace houghstream::teach

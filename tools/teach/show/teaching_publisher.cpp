@@ -1,0 +1,101 @@
+#include "tools/teach/show/teaching_publisher.hpp"
+
+#include <algorithm>
+
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/messages.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+constexpr std::chrono::milliseconds kApart(100);
+constexpr std::chrono::milliseconds kRepeat(1000);
+
+TeachingState state_of(ShowState state) {
+  switch (state) {
+    case ShowState::kChoosing: return TeachingState::kChoosing;
+    case ShowState::kTracking: return TeachingState::kTracking;
+    case ShowState::kLost: return TeachingState::kLost;
+    case ShowState::kFusing: return TeachingState::kFusing;
+    case ShowState::kTraining: return TeachingState::kTraining;
+    case ShowState::kDone: return TeachingState::kDone;
+    case ShowState::kFailed: return TeachingState::kFailed;
+  }
+  return TeachingState::kInvalid;
+}
+
+}  // namespace
+
+Teaching teaching_of(const ShowProgress& now,
+                     const std::array<Eigen::Vector3d, ShowProgress::kDirections>& directions) {
+  Teaching teaching;
+  teaching.frame = now.frame;
+  teaching.name = now.name;
+  teaching.state = state_of(now.state);
+  teaching.message = now.message;
+  teaching.progress = static_cast<float>(std::clamp(now.progress, 0.0, 1.0));
+  teaching.frames = now.frames;
+  teaching.keyframes = now.keyframes;
+  if (!now.box.empty()) teaching.box_px = now.box;
+  teaching.T_camera_object = now.T_camera_object;
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    teaching.directions.push_back({directions[i].cast<float>().normalized(), now.seen[i]});
+  return teaching;
+}
+
+TeachingPublisher::TeachingPublisher(LcmBus& bus,
+                                     const std::array<Eigen::Vector3d, ShowProgress::kDirections>& directions)
+    : bus_(bus), directions_(directions) {
+  const BlockStopSignals block;
+  thread_ = std::thread([this] { repeat(); });
+}
+
+TeachingPublisher::~TeachingPublisher() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void TeachingPublisher::progress(const ShowProgress& now) {
+  Teaching teaching = teaching_of(now, directions_);
+  const std::lock_guard lock(mutex_);
+  const bool is_new = !last_ || last_->state != teaching.state;
+  last_ = std::move(teaching);
+  is_told_ = false;
+  if (is_new || Clock::now() - sent_ >= kApart) publish();
+}
+
+void TeachingPublisher::publish() {
+  bus_.publish(channel::kTeaching, to_message(*last_));
+  is_told_ = true;
+  sent_ = Clock::now();
+}
+
+void TeachingPublisher::repeat() noexcept {
+  std::unique_lock lock(mutex_);
+  while (!changed_.wait_for(lock, kApart, [this] { return ending_; })) {
+    if (!last_ || Clock::now() - sent_ < (is_told_ ? kRepeat : kApart)) continue;
+    try {
+      publish();
+    } catch (const std::exception& error) {
+      log_warning("{}", error.what());
+    }
+  }
+}
+
+bool EnoughSeen::operator()(const ShowProgress& now) {
+  constexpr std::int64_t kLeast_us = 6'000'000;
+  const int seen = static_cast<int>(std::count(now.seen.begin(), now.seen.end(), true));
+  if (begin_us_ == 0) begin_us_ = now.frame.utime;
+  if (seen != seen_) since_us_ = now.frame.utime;
+  seen_ = seen;
+  const std::int64_t nothing_new_us = now.frame.utime - since_us_;
+  return 2 * seen > ShowProgress::kDirections && nothing_new_us > std::max(kLeast_us, (since_us_ - begin_us_) / 2);
+}
+
+}  // namespace houghstream::teach

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/types/teaching.hpp"
+#include "tools/teach/show/show_progress.hpp"
+
+namespace houghstream::teach {
+
+/// What is said while an object is shown, for the bus; `directions` are those of its sphere.
+Teaching teaching_of(const ShowProgress& now, const std::array<Eigen::Vector3d, ShowProgress::kDirections>& directions);
+
+/// Publishes how far the showing of an object is, as teaching_t: at most ten times a second, each change of state at
+/// once, and the last again each second: who listens can tell work that takes its time from a process that is gone.
+class TeachingPublisher : public ShowObserver {
+ public:
+  /// `bus` must outlive it.
+  TeachingPublisher(LcmBus& bus, const std::array<Eigen::Vector3d, ShowProgress::kDirections>& directions);
+  ~TeachingPublisher() override;
+  TeachingPublisher(const TeachingPublisher&) = delete;
+  TeachingPublisher& operator=(const TeachingPublisher&) = delete;
+
+  void progress(const ShowProgress& now) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void publish();
+  void repeat() noexcept;
+
+  LcmBus& bus_;
+  std::array<Eigen::Vector3d, ShowProgress::kDirections> directions_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Teaching> last_;
+  bool is_told_ = true;  // the last one was sent as it is
+  Clock::time_point sent_{};
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+/// Tells when a take shows nothing new any more: more than half of the directions were seen, and for some seconds of
+/// the frames' time, or half as long as that took, no further one. Over the last third of a turn nothing new is seen,
+/// and still it has to be closed.
+class EnoughSeen {
+ public:
+  bool operator()(const ShowProgress& now);
+
+ private:
+  int seen_ = 0;
+  std::int64_t begin_us_ = 0;
+  std::int64_t since_us_ = 0;
+};
+
+}  // namespace houghstream::teach

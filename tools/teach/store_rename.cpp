@@ -1,0 +1,83 @@
+#include "tools/teach/store_rename.hpp"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "detector/forest/forest_file.hpp"
+#include "drivers/datasets/bop_writer.hpp"
+#include "drivers/files/image_file.hpp"
+#include "drivers/store/object_store.hpp"
+#include "drivers/store/store_build.hpp"
+#include "pipeline/base/checks.hpp"
+#include "tools/teach/contact_sheet.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+namespace fs = std::filesystem;
+using store::ObjectStore;
+using store::StoredObject;
+
+StoredObject& object_called(const std::string& name, ObjectStore& store) {
+  std::vector<std::string> names;
+  for (const StoredObject& object : store.objects) names.push_back(object.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  require(found != names.end(), "{}: no '{}', expected one of {}", store.json_file().string(), name,
+          fmt::join(names, ", "));
+  return store.objects[static_cast<std::size_t>(found - names.begin())];
+}
+
+/// All but the list, which comes last: what has none is no store.
+void copy_files(const ObjectStore& from, const fs::path& to) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(from.folder)) {
+    if (entry.path() == from.json_file() || entry.path() == from.forest_file()) continue;
+    std::error_code error;
+    fs::copy(entry.path(), to / entry.path().filename(), fs::copy_options::recursive, error);
+    require(!error, "{}: cannot be copied to {}: {}", entry.path().string(), to.string(), error.message());
+  }
+}
+
+void write_names(const ObjectStore& store) {
+  std::map<int, std::string> names;
+  for (const StoredObject& object : store.objects) names[object.id] = object.name;
+  write_bop_names(names, store.models_folder() / "names.json");
+}
+
+void write_pictures(const ObjectStore& store, const StoredObject& renamed) {
+  cv::Mat picture = read_colour_image(store.view_picture(renamed.id));
+  write_title(title_of(renamed), picture);
+  write_png(picture, store.view_picture(renamed.id));
+  std::vector<fs::path> pictures;
+  for (const StoredObject& object : store.objects) pictures.push_back(store.view_picture(object.id));
+  write_contact_sheet(pictures, store.contact_sheet());
+}
+
+}  // namespace
+
+void rename_in_store(const fs::path& folder, const std::string& old_name, const std::string& new_name) {
+  ObjectStore store = store::read_store(folder);  // nothing is made beside what is no store
+  store::StoreBuild build(folder);
+  store = store::read_store(folder);  // nobody else changes it from here on
+  StoredObject& object = object_called(old_name, store);
+  require(!new_name.empty(), "{}: a new name of '{}' without a letter, expected one", store.json_file().string(),
+          old_name);
+  const bool is_taken = std::any_of(store.objects.begin(), store.objects.end(),
+                                    [&](const StoredObject& other) { return other.name == new_name; });
+  require(!is_taken, "{}: has a '{}' already, expected a new name for '{}'", store.json_file().string(), new_name,
+          old_name);
+  Forest forest = load_forest(store.forest_file());
+  copy_files(store, build.folder());
+  store.folder = build.folder();
+  object.name = new_name;
+  for (ObjectClass& known : forest.classes) {
+    if (known.name == old_name) known.name = new_name;
+  }
+  save_forest(forest, store.forest_file());
+  write_names(store);
+  write_pictures(store, object);
+  store::write_store_json(store);
+  build.publish();
+}
+
+}  // namespace houghstream::teach
