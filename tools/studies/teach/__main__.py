@@ -31,7 +31,7 @@ def parse(words):
                                     "finds the objects in rendered scenes beside those taught from their true "
                                     "meshes.")  # fmt: skip
     add = parser.add_argument
-    add("--quick", action="store_true", help="two objects, one take of each, few frames: some minutes")
+    add("--quick", action="store_true", help="two objects, one take of each, fewer frames to look for them in")
     add("--objects", type=known_objects, metavar="NAMES", help="of the twelve, separated by commas; default all")
     add("--takes", type=int, choices=(1, 2), help="1: upright only, 2: the object laid down as well (default 2)")
     add("--frames", type=positive, metavar="N", help="of a take, a closed turn at 15 Hz (default 240)")
@@ -45,7 +45,7 @@ def parse(words):
     options = parser.parse_args(words)
     options.objects = options.objects or (QUICK if options.quick else OBJECTS)
     options.takes = options.takes or (1 if options.quick else 2)
-    options.frames = options.frames or (160 if options.quick else 240)
+    options.frames = options.frames or 240
     options.every = options.every or (6 if options.quick else 2)
     options.out = options.out.resolve()
     return options

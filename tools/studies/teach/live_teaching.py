@@ -17,7 +17,7 @@ from studies.stream import ProcessFailed, Processes, Stream
 from studies.teach.joined_log import FIRST_UTIME, frames_of, write_joined
 
 CHANNEL, RATE_HZ = "OPENNI_FRAME", 30.0
-LONGEST_S = 240.0  # after the take
+LONGEST_S = 180.0  # after the take
 AFTERWARDS_S = 20.0  # after hs-teach has ended: all frames of the scene have gone by
 FUSING, DONE, FAILED = 4, 6, 7  # states of teaching_t
 
@@ -89,8 +89,8 @@ def wait_for_end(teacher, player, results, name):
         if ended is None and not teacher.runs():
             ended = time.monotonic()
         if ended is not None:
-            over = time.monotonic() - ended > AFTERWARDS_S
-            if over or times_of(events(results), name)["found"] is not None:
+            times = times_of(events(results), name)
+            if times["failed"] or times["found"] or time.monotonic() - ended > AFTERWARDS_S:
                 return
 
 

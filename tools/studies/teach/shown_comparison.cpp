@@ -59,6 +59,7 @@ Eigen::Isometry3d robust_mean(const std::vector<Eigen::Isometry3d>& poses, const
   double least = std::numeric_limits<double>::infinity();
   for (const Eigen::Isometry3d& candidate : poses) {
     std::vector<double> sizes;
+    sizes.reserve(poses.size());
     for (const Eigen::Isometry3d& pose : poses) sizes.push_back(size_of(gap_between(candidate, pose, middle)));
     const double median = quantile(sizes, 0.5);
     if (median < least) {

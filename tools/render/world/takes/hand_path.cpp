@@ -14,6 +14,7 @@ constexpr double kGentleSeconds = 0.8;  // in which a movement starts or ends
 
 std::vector<Wander> three(double slowest_hz, double fastest_hz, double deviation, Random& random) {
   std::vector<Wander> axes;
+  axes.reserve(3);
   for (int axis = 0; axis < 3; ++axis) axes.emplace_back(slowest_hz, fastest_hz, deviation, random);
   return axes;
 }
