@@ -1,6 +1,7 @@
 #include "drivers/store/store_watch.hpp"
 
 #include <fmt/ranges.h>
+#include <sched.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -39,6 +40,15 @@ std::string state_of_store(const fs::path& folder) {
   ObjectStore store;
   store.folder = folder;
   return state_of_store(store);
+}
+
+/// Of the calling thread only, as Linux has it: frames go first, and still it gets its turn. A robot's processes may be
+/// scheduled in real time; this is none of that.
+void lower_priority() {
+  constexpr int kPolite = 10;
+  const sched_param none{};
+  const bool is_lower = sched_setscheduler(0, SCHED_OTHER, &none) == 0 && nice(kPolite) != -1;
+  if (!is_lower) log_warning("the priority of loading a store cannot be lowered");
 }
 
 bool holds(const std::vector<KnownObject>& objects, const std::string& name) {
@@ -96,8 +106,7 @@ KnownObjects StoreFollower::known() const {
 }
 
 void StoreFollower::live(std::chrono::milliseconds period) {
-  constexpr int kPolite = 10;  // on Linux of this thread only: frames go first, and still it gets its turn
-  if (nice(kPolite) == -1) log_warning("{}: is loaded at full priority: it cannot be lowered", folder_.string());
+  lower_priority();
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, period, [this] { return ending_; })) {
     lock.unlock();

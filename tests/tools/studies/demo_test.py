@@ -165,6 +165,17 @@ class Teach(unittest.TestCase):
         self.assertAlmostEqual(found["deg_95"], 5.0, places=1)
         self.assertEqual(teach.scatter([]), {})
 
+    def test_what_is_found_may_have_a_pose_a_reason_or_nothing(self):
+        def mug(pose):
+            return {"class_name": "mug", "pose": pose}
+
+        frames = [{"utime": 1, "detections": []}, {"utime": 2, "detections": [mug(None), {"class_name": "bowl", "pose": None}]},
+                  {"utime": 3, "detections": [mug({"status": "no model"})]},
+                  {"utime": 4, "detections": [mug({"status": "valid"})]}]  # fmt: skip
+        found = teach.found_in(frames)
+        self.assertEqual([utime for utime, _ in found], [2, 3, 4])
+        self.assertEqual([utime for utime, _ in teach.posed_in(found)], [4])
+
     def test_what_was_lost_is_told_apart_around_the_change_of_the_store(self):
         class Told:
             known_us = 10_000_000

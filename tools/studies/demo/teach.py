@@ -200,7 +200,8 @@ def found_in(frames):
 
 
 def posed_in(found):
-    return [(utime, detection) for utime, detection in found if detection["pose"]["status"] == "valid"]
+    """Those with a valid pose; a detection that hs-pose passed over has none at all."""
+    return [(utime, detection) for utime, detection in found if detection["pose"] and detection["pose"]["status"] == "valid"]
 
 
 def pose_figures(posed, scene, shutter):
