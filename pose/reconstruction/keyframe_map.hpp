@@ -32,6 +32,7 @@ struct MapSettings {
   double least_inlier_share = 0.75;
   double least_seen_share = 0.25;
   double most_light_rms = 0.62;
+  int coarsest = 2;                                  ///< level on which registration begins
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
   std::optional<PlaneKnown> plane;                   ///< where the camera stands still
   int threads = 1;

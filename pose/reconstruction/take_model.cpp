@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/base/checks.hpp"
@@ -48,6 +49,12 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
     view.frame.depth = keyframe.frame.depth(region);
     view.frame.camera = keyframe.frame.camera.cropped(region.x, region.y, region.width, region.height);
     view.mask = cv::Mat(region.size(), CV_8UC1, cv::Scalar(255));
+    if (take.motion == Motion::kObject && !take.chosen.like_skin) {  // the hand that turns it
+      cv::Mat skin;
+      cv::dilate(skin_pixels(view.frame.colour), skin, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
+      view.frame.depth = view.frame.depth.clone();
+      view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN(), skin);
+    }
     view.T_camera_object = keyframe.T_camera_world;
     views[static_cast<std::size_t>(i)] = fusion::make_depth_view(view);
   });
