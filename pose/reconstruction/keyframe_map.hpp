@@ -41,7 +41,9 @@ struct MapSettings {
 /// All keyframes of a take, what ties them together, and the part of them that the next frame is laid on.
 class KeyframeMap {
  public:
-  explicit KeyframeMap(const MapSettings& settings) : settings_(settings) {}
+  /// `keyframes`: such as are there already, with poses that are nearly right.
+  explicit KeyframeMap(const MapSettings& settings, std::vector<Keyframe> keyframes = {})
+      : settings_(settings), keyframes_(std::move(keyframes)) {}
   MapSettings& settings() { return settings_; }
 
   /// Adds a keyframe; `alignment` is how it was laid on the local map (not asked for with the first). Closes a loop

@@ -11,8 +11,9 @@
 
 namespace houghstream::reconstruction {
 
-/// What moves: the camera about the object, or the object before a camera that stands still.
-enum class Motion : std::uint8_t { kUnknown, kCamera, kObject };
+/// What moves: the camera about the object, the object before a camera that stands still, or a turntable with
+/// known masks (not of the tracker).
+enum class Motion : std::uint8_t { kUnknown, kCamera, kObject, kTurntable };
 
 enum class TrackState : std::uint8_t { kChoosing, kTracking, kLost };
 

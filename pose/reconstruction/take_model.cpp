@@ -11,6 +11,7 @@
 #include "pose/fusion/distance_grid.hpp"
 #include "pose/fusion/grid_surface.hpp"
 #include "pose/fusion/view_colours.hpp"
+#include "pose/reconstruction/take_merging.hpp"
 
 namespace houghstream::reconstruction {
 namespace {
@@ -226,17 +227,6 @@ void cut_out(const Filled& filled, const ModelMaking& settings, DistanceGrid& gr
   }
 }
 
-/// The middle of what is lowest.
-Eigen::Vector3d foot_of(const Mesh& mesh) {
-  constexpr float kFoot_m = 0.01F;
-  Eigen::AlignedBox2f foot;
-  const float lowest = mesh_bounds(mesh).min().z();
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    if (vertex.z() < lowest + kFoot_m) foot.extend(vertex.head<2>());
-  }
-  return {foot.center().x(), foot.center().y(), 0.0};
-}
-
 /// Median distance of measured points on the mask from the model along the line of sight, times how steeply it meets
 /// the surface.
 void add_distances(const Mesh& mesh, const RgbdFrame& frame, const ShownView& view, std::vector<float>& distances) {
@@ -298,6 +288,7 @@ ShownModel make_model(const Take& take, const ModelMaking& settings) {
   require(!model.mesh.triangles.empty(), "the views have no common surface, expected an object that all of them show");
   model.seen = fusion::colour_mesh(views, 4.0 * voxel, settings.threads, model.mesh);
   model.T_world_object.translation() = foot_of(model.mesh);
+  model.T_world_object.translation().z() = 0.0;  // of the table
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= model.T_world_object.translation().cast<float>();
   const int n = static_cast<int>(take.keyframes.size());
   std::vector<ShownView> shown(static_cast<std::size_t>(n));
