@@ -76,12 +76,16 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
   } else {
     FrameLevels levels = make_levels(frame, levels_);
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
-    if (motion_ == Motion::kUnknown) see_what_moves(levels);
-    if (motion_ == Motion::kObject && levels.levels[0].depth.size() != levels_.region_px.size())
-      levels = make_levels(frame, levels_);  // of the object only, from here on
-    if (motion_ == Motion::kObject) mark_what_stays(levels);
     std::optional<Alignment> found;
+    if (motion_ == Motion::kObject) mark_what_stays(levels);
     if (state_.state == TrackState::kTracking) found = follow(levels);
+    if (found && motion_ == Motion::kUnknown) {
+      see_what_moves(levels, found->T_camera_world);
+      if (motion_ == Motion::kObject) {  // of the object only, from here on
+        levels = make_levels(frame, levels_);
+        found = follow(levels);
+      }
+    }
     if (!found) found = find_again(frame, levels, false);
     if (found) {
       accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
@@ -115,6 +119,14 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   cv::dilate(on_it, about_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
   cv::dilate(on_it, away_from_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {41, 41}));
   away_from_object_ = away_from_object_ == 0;
+  first_rest_ = choose_points(levels, away_from_object_, {});
+  const Eigen::Isometry3f T_world_camera = chosen_.T_camera_stand.inverse().cast<float>();
+  for (std::vector<SurfacePoint>& level : first_rest_) {
+    for (SurfacePoint& point : level) {
+      point.point = T_world_camera * point.point;
+      point.normal = T_world_camera.linear() * point.normal;
+    }
+  }
   Alignment at_start;
   at_start.T_camera_world = chosen_.T_camera_stand;
   accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
@@ -143,7 +155,9 @@ Alignment ObjectTracker::lay_on_map(const FrameLevels& levels, const Eigen::Isom
 }
 
 std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
-  constexpr double kMostTurn = 0.15;  // radians a frame, from rest
+  constexpr double kMostTurn = 0.15;     // radians a frame, from rest
+  constexpr double kMostEver = 0.4;      // radians a frame
+  constexpr double kMostShift_m = 0.02;  // a frame, of an object that turns where it stands
   const Eigen::Isometry3d T_goes_on =
       motion_ == Motion::kObject ? T_last_ * (T_before_.inverse() * T_last_) : T_last_ * T_before_.inverse() * T_last_;
   const LevelPoints& points = map_.local_map(T_last_);
@@ -160,8 +174,10 @@ std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
       if (agreement_of(other) > agreement_of(best)) best = other;
     }
   }
-  const double most = kMostTurn + 2.0 * map_.difference(T_last_, T_before_);
-  if (!map_.is_good(best) || map_.difference(T_last_, best.T_camera_world) > most) return std::nullopt;
+  const double most = std::min(kMostTurn + 2.0 * map_.difference(T_last_, T_before_), kMostEver);
+  const double shift = (T_last_.inverse() * best.T_camera_world).translation().norm();
+  const bool too_far = motion_ == Motion::kObject && shift > kMostShift_m;
+  if (!map_.is_good(best) || too_far || map_.difference(T_last_, best.T_camera_world) > most) return std::nullopt;
   usual_light_rms_ += 0.2 * (best.light_rms - usual_light_rms_);
   return best;
 }
@@ -215,7 +231,6 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   T_last_ = alignment.T_camera_world;
   FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
   const bool fit = !track.left_out;
-  if (motion_ == Motion::kUnknown && !map_.empty()) T_last_ = T_before_ = chosen_.T_camera_stand;  // nothing moves yet
   const int nearest = map_.nearest(T_last_);
   const double away =
       nearest < 0 ? 1e9 : map_.difference(T_last_, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
@@ -234,15 +249,19 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   round_[at] = round_[at] || fit;
 }
 
-void ObjectTracker::see_what_moves(const FrameLevels& levels) {
+/// While nothing is decided: whether the surroundings look as a moved camera would see them, or as they did at first.
+void ObjectTracker::see_what_moves(const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
   constexpr int kSure = 3;
-  constexpr double kStill = 0.5;
-  constexpr double kMoved = 0.35;
-  constexpr double kLess = 0.2;
+  constexpr double kBetter = 0.01;  // of light
+  constexpr double kLess = 0.2;     // share of edges
+  const double as_moved = look_at(first_rest_, levels, T_camera_world, 0).light_rms;
+  const double as_still = look_at(first_rest_, levels, chosen_.T_camera_stand, 0).light_rms;
+  const bool is_still = as_still < as_moved + kBetter;
   const double around = unchanged_share(levels.levels[0].light, first_light_, away_from_object_);
   const double on_it = unchanged_share(levels.levels[0].light, first_light_, about_object_);
-  camera_moves_ = around < kMoved ? camera_moves_ + 1 : 0;
-  object_moves_ = around > kStill && on_it < around - kLess ? object_moves_ + 1 : 0;
+  camera_moves_ = is_still ? 0 : camera_moves_ + 1;
+  object_moves_ = is_still && on_it < around - kLess ? object_moves_ + 1 : 0;
+  if (is_still) T_camera_world = chosen_.T_camera_stand;
   if (camera_moves_ >= kSure) motion_ = Motion::kCamera;
   if (object_moves_ >= kSure) follow_object_only();
 }

@@ -94,7 +94,7 @@ class ObjectTracker {
   void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
   bool is_fit_for_model(const PictureQuality& quality);
-  void see_what_moves(const FrameLevels& levels);
+  void see_what_moves(const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
   void mark_what_stays(FrameLevels& levels);
   void remove_seen_through(const FrameLevel& level, cv::Mat& mask) const;
   void follow_object_only();
@@ -110,6 +110,7 @@ class ObjectTracker {
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;
   cv::Mat first_light_, about_object_, away_from_object_;  ///< of the first keyframe's finest level
+  LevelPoints first_rest_;                                 ///< points away from the object, world frame
   RgbdFrame first_frame_;
   int first_number_ = 0;
   std::deque<std::vector<cv::Mat>> lights_;  ///< of the last frames, by level, while the object turns
