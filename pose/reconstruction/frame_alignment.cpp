@@ -102,6 +102,8 @@ class Look {
 
  private:
   void add_light(const SurfacePoint& point, const Eigen::Vector3f& p, const Eigen::Vector2f& px, Sums& sums) const {
+    const bool stays = !frame_.stays.empty() && frame_.stays.at<std::uint8_t>(cvRound(px.y()), cvRound(px.x())) != 0;
+    if (stays || !std::isfinite(point.light)) return;
     const Light seen = light_between(frame_.light, px.x(), px.y());
     const double residual = seen.value - point.light;
     const double weight = tukey(residual / (2.0 * limits_.light_sigma));

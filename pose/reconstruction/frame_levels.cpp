@@ -147,7 +147,8 @@ std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask
       if (!fit_normal(level, px.x, px.y, point.normal)) continue;
       point.point = level.camera.backproject(px.x, px.y, level.depth.at<float>(px)).cast<float>();
       if (-point.normal.dot(point.point.normalized()) < static_cast<float>(least_facing)) continue;
-      point.light = level.light.at<float>(px);
+      const bool stays = !level.stays.empty() && level.stays.at<std::uint8_t>(px) != 0;
+      point.light = stays ? kNone : level.light.at<float>(px);
       points.push_back(point);
     }
   }
@@ -176,7 +177,7 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings) {
       depth = half_depth(depth);
       camera = half_camera(camera);
     }
-    out.levels.push_back({camera, normalised_light(grey), depth});
+    out.levels.push_back({camera, normalised_light(grey), depth, {}});
   }
   return out;
 }

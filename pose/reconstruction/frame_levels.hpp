@@ -13,6 +13,7 @@ struct FrameLevel {
   Camera camera;
   cv::Mat light;  ///< CV_32FC1, brightness less the mean around, in deviations around: the same at any exposure
   cv::Mat depth;  ///< CV_32FC1, metres, NaN = none
+  cv::Mat stays;  ///< CV_8UC1, 255 where the light tells nothing, as it stayed while the object turned; empty = nowhere
 };
 
 /// How good a picture is, for leaving out what would blur a model.
@@ -41,7 +42,7 @@ FrameLevels make_levels(const RgbdFrame& frame, const LevelSettings& settings);
 struct SurfacePoint {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit length, towards the camera
-  float light = 0.0F;                                ///< of FrameLevel::light there
+  float light = 0.0F;                                ///< of FrameLevel::light there; NaN where it tells nothing
   bool on_table = false;                             ///< of the plane z = 0 of the world, as far as is known
 };
 

@@ -125,11 +125,13 @@ std::optional<LoopGap> KeyframeMap::close_loop(int last) {
   for (const auto& [d, k] : candidates) {
     const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
     const LevelPoints points = points_of({k});
-    Alignment found = align_frame(points, now.levels, now.T_camera_world, settings_.plane, {});
+    AlignmentLimits limits;
+    limits.coarsest = settings_.coarsest;
+    Alignment found = align_frame(points, now.levels, now.T_camera_world, settings_.plane, limits);
     if (!is_good(found)) {
       const auto match = match_landmarks(old.landmarks, now.landmarks);
       if (!match) continue;
-      found = align_frame(points, now.levels, match->T_b_a * old.T_camera_world, settings_.plane, {});
+      found = align_frame(points, now.levels, match->T_b_a * old.T_camera_world, settings_.plane, limits);
     }
     const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
     if (!is_good(found) || gap.shift_m > kMostShift_m) continue;

@@ -32,6 +32,7 @@ struct MapSettings {
   double least_inlier_share = 0.75;
   double least_seen_share = 0.25;
   double most_light_rms = 0.62;
+  int coarsest = 2;                                  ///< level on which registration begins
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
   std::optional<PlaneKnown> plane;                   ///< where the camera stands still
   int threads = 1;
@@ -40,7 +41,9 @@ struct MapSettings {
 /// All keyframes of a take, what ties them together, and the part of them that the next frame is laid on.
 class KeyframeMap {
  public:
-  explicit KeyframeMap(const MapSettings& settings) : settings_(settings) {}
+  /// `keyframes`: such as are there already, with poses that are nearly right.
+  explicit KeyframeMap(const MapSettings& settings, std::vector<Keyframe> keyframes = {})
+      : settings_(settings), keyframes_(std::move(keyframes)) {}
   MapSettings& settings() { return settings_; }
 
   /// Adds a keyframe; `alignment` is how it was laid on the local map (not asked for with the first). Closes a loop

@@ -227,6 +227,9 @@ ChosenObject make_object(const RgbdFrame& frame, const Plane& plane, const Plane
   ChosenObject object;
   object.mask = clusters.of_pixel == chosen;
   object.box_px = cv::boundingRect(object.mask);
+  constexpr double kLikeSkin = 0.15;
+  object.like_skin =
+      cv::countNonZero(skin_pixels(frame.colour) & object.mask) > kLikeSkin * cv::countNonZero(object.mask);
   const Eigen::Vector3d middle =
       axes.point_at(cluster.cells.x + 0.5 * cluster.cells.width, cluster.cells.y + 0.5 * cluster.cells.height);
   object.plane = refine_plane(frame, object.mask, plane, middle, 0.5);
@@ -319,6 +322,13 @@ Choice choose_on(const RgbdFrame& frame, const Plane& plane, const ChoiceSetting
 }
 
 }  // namespace
+
+cv::Mat skin_pixels(const cv::Mat& colour) {
+  cv::Mat ycrcb, skin;
+  cv::cvtColor(colour, ycrcb, cv::COLOR_BGR2YCrCb);
+  cv::inRange(ycrcb, cv::Scalar(20, 136, 77), cv::Scalar(255, 176, 127), skin);
+  return skin;
+}
 
 std::vector<Plane> find_planes(const RgbdFrame& frame, const ChoiceSettings& settings) {
   constexpr int kMost = 5;

@@ -26,7 +26,8 @@ struct ChosenObject {
   double height_m = 0.0;                                             ///< above the plane
   cv::Mat mask;                                                      ///< CV_8UC1, 255 on it, size of the frame
   cv::Rect box_px;                                                   ///< of the mask
-  bool boxed = false;  ///< by a person: what touches it there is not of it
+  bool like_skin = false;  ///< so that a hand cannot be told from it by its colour
+  bool boxed = false;      ///< by a person: what touches it there is not of it
 };
 
 /// The object, or in words why there is none.
@@ -43,6 +44,9 @@ struct ChoiceSettings {
   double farthest_share = 0.25;  ///< of the image's width: how far from its middle, without a box
   std::uint64_t seed = 1;
 };
+
+/// Pixels of a colour that skin has, CV_8UC1 (Chai & Ngan, "Face segmentation using skin-color map", 1999).
+cv::Mat skin_pixels(const cv::Mat& colour);
 
 /// Planes on which things may stand, the largest first: RANSAC (Fischler & Bolles 1981) on the depth, refined by least
 /// squares; only such as face upwards or the camera.

@@ -27,6 +27,25 @@ Alignment look_at(const LevelPoints& points, const FrameLevels& frame, const Eig
   return align_frame(points, frame, T, std::nullopt, limits);
 }
 
+/// Of the pixels with a clear edge in the first picture, where `mask` is set: the share that looks the same now.
+double unchanged_share(const cv::Mat& light, const cv::Mat& first, const cv::Mat& mask) {
+  constexpr float kEdge_sq = 0.16F;
+  constexpr float kSame = 0.4F;
+  int edges = 0;
+  int same = 0;
+  for (int y = 1; y + 1 < first.rows; ++y) {
+    for (int x = 1; x + 1 < first.cols; ++x) {
+      if (mask.at<std::uint8_t>(y, x) == 0) continue;
+      const float gx = first.at<float>(y, x + 1) - first.at<float>(y, x - 1);
+      const float gy = first.at<float>(y + 1, x) - first.at<float>(y - 1, x);
+      if (gx * gx + gy * gy < kEdge_sq) continue;
+      ++edges;
+      same += std::abs(light.at<float>(y, x) - first.at<float>(y, x)) < kSame ? 1 : 0;
+    }
+  }
+  return edges > 0 ? static_cast<double>(same) / edges : 1.0;
+}
+
 /// What is seen of the object and its box; the whole picture where it is not in it.
 cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   std::vector<cv::Point2f> corners;
@@ -58,7 +77,15 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
     FrameLevels levels = make_levels(frame, levels_);
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
+    if (motion_ == Motion::kObject) mark_what_stays(levels);
     if (state_.state == TrackState::kTracking) found = follow(levels);
+    if (found && motion_ == Motion::kUnknown) {
+      see_what_moves(levels, found->T_camera_world);
+      if (motion_ == Motion::kObject) {  // of the object only, from here on
+        levels = make_levels(frame, levels_);
+        found = follow(levels);
+      }
+    }
     if (!found) found = find_again(frame, levels, false);
     if (found) {
       accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
@@ -88,20 +115,18 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   T_last_ = T_before_ = chosen_.T_camera_stand;
   state_.state = TrackState::kTracking;
   round_.assign(36, false);
-  const auto to_world = [&](LevelPoints points) {
-    const Eigen::Isometry3f T = chosen_.T_camera_stand.inverse().cast<float>();
-    for (std::vector<SurfacePoint>& level : points) {
-      for (SurfacePoint& point : level) {
-        point.point = T * point.point;
-        point.normal = T.linear() * point.normal;
-      }
+  first_light_ = levels.levels[0].light;
+  cv::dilate(on_it, about_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
+  cv::dilate(on_it, away_from_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {41, 41}));
+  away_from_object_ = away_from_object_ == 0;
+  first_rest_ = choose_points(levels, away_from_object_, {});
+  const Eigen::Isometry3f T_world_camera = chosen_.T_camera_stand.inverse().cast<float>();
+  for (std::vector<SurfacePoint>& level : first_rest_) {
+    for (SurfacePoint& point : level) {
+      point.point = T_world_camera * point.point;
+      point.normal = T_world_camera.linear() * point.normal;
     }
-    return points;
-  };
-  PointSettings dense;
-  dense.square_px = 3;
-  first_object_ = to_world(choose_points(levels, on_it, dense));
-  first_rest_ = to_world(choose_points(levels, on_it == 0, {}));
+  }
   Alignment at_start;
   at_start.T_camera_world = chosen_.T_camera_stand;
   accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
@@ -130,22 +155,29 @@ Alignment ObjectTracker::lay_on_map(const FrameLevels& levels, const Eigen::Isom
 }
 
 std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
+  constexpr double kMostTurn = 0.15;     // radians a frame, from rest
+  constexpr double kMostEver = 0.4;      // radians a frame
+  constexpr double kMostShift_m = 0.02;  // a frame, of an object that turns where it stands
   const Eigen::Isometry3d T_goes_on =
       motion_ == Motion::kObject ? T_last_ * (T_before_.inverse() * T_last_) : T_last_ * T_before_.inverse() * T_last_;
   const LevelPoints& points = map_.local_map(T_last_);
-  const bool goes_on =
-      agreement_of(look_at(points, levels, T_goes_on, 2)) > agreement_of(look_at(points, levels, T_last_, 2));
+  const bool goes_on = agreement_of(look_at(points, levels, T_goes_on, map_.settings().coarsest)) >
+                       agreement_of(look_at(points, levels, T_last_, map_.settings().coarsest));
   const Eigen::Isometry3d& T_likely = goes_on ? T_goes_on : T_last_;
-  Alignment best = lay_on_map(levels, T_likely, 2);
+  const int coarsest = map_.settings().coarsest;
+  Alignment best = lay_on_map(levels, T_likely, coarsest);
   // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
   if (!map_.is_good(best) || best.light_rms > 1.4 * usual_light_rms_ + 0.03) {
     for (const Alignment& other :
-         {lay_on_map(levels, T_likely, 0), lay_on_map(levels, goes_on ? T_last_ : T_goes_on, 2),
+         {lay_on_map(levels, T_likely, 0), lay_on_map(levels, goes_on ? T_last_ : T_goes_on, coarsest),
           lay_on_map(levels, goes_on ? T_last_ : T_goes_on, 1)}) {
       if (agreement_of(other) > agreement_of(best)) best = other;
     }
   }
-  if (!map_.is_good(best)) return std::nullopt;
+  const double most = std::min(kMostTurn + 2.0 * map_.difference(T_last_, T_before_), kMostEver);
+  const double shift = (T_last_.inverse() * best.T_camera_world).translation().norm();
+  const bool too_far = motion_ == Motion::kObject && shift > kMostShift_m;
+  if (!map_.is_good(best) || too_far || map_.difference(T_last_, best.T_camera_world) > most) return std::nullopt;
   usual_light_rms_ += 0.2 * (best.light_rms - usual_light_rms_);
   return best;
 }
@@ -160,10 +192,16 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
   for (std::size_t k = 0; k < keyframes.size(); ++k)
     by_distance.emplace_back(map_.difference(T_last_, keyframes[k].T_camera_world), static_cast<int>(k));
   std::sort(by_distance.begin(), by_distance.end());
+  // What is round or a box looks alike from several sides.
+  const double farthest = motion_ == Motion::kObject ? 0.5 : 1e9;
+  AlignmentLimits limits;
+  limits.coarsest = map_.settings().coarsest;
   for (std::size_t i = 0; i < std::min(kTriedByPose, by_distance.size()); ++i) {
     const int k = by_distance[i].second;
-    const Alignment found = align_frame(
-        map_.points_of({k}), levels, keyframes[static_cast<std::size_t>(k)].T_camera_world, map_.settings().plane, {});
+    if (by_distance[i].first > farthest) break;
+    const Alignment found =
+        align_frame(map_.points_of({k}), levels, keyframes[static_cast<std::size_t>(k)].T_camera_world,
+                    map_.settings().plane, limits);
     if (map_.is_good(found) && found.inlier_share > kSure) return found;
   }
   const Landmarks seen = find_landmarks(frame, landmark_mask(frame, T_last_));
@@ -180,7 +218,8 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
   }
   if (!best || best->inliers < fewest_inliers) return std::nullopt;
   const Eigen::Isometry3d T = best->T_b_a * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
-  const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, map_.settings().plane, {});
+  if (map_.difference(T, T_last_) > farthest) return std::nullopt;
+  const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, map_.settings().plane, limits);
   if (map_.is_good(found) && found.inlier_share > kSure) return found;
   return std::nullopt;
 }
@@ -192,8 +231,6 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   T_last_ = alignment.T_camera_world;
   FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
   const bool fit = !track.left_out;
-  if (motion_ == Motion::kUnknown && !map_.empty()) see_what_moves(levels, alignment);
-  if (state_.state != TrackState::kTracking) return;
   const int nearest = map_.nearest(T_last_);
   const double away =
       nearest < 0 ? 1e9 : map_.difference(T_last_, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
@@ -212,17 +249,20 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   round_[at] = round_[at] || fit;
 }
 
-void ObjectTracker::see_what_moves(const FrameLevels& levels, const Alignment& alignment) {
+/// While nothing is decided: whether the surroundings look as a moved camera would see them, or as they did at first.
+void ObjectTracker::see_what_moves(const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
   constexpr int kSure = 3;
-  const Vector6 motion = motion_of(chosen_.T_camera_stand * alignment.T_camera_world.inverse());
-  if (motion.head<3>().norm() > settings_.camera_moves_m || motion.tail<3>().norm() > settings_.camera_turns) {
-    motion_ = Motion::kCamera;
-    return;
-  }
-  const Alignment object = look_at(first_object_, levels, alignment.T_camera_world, 0);
-  const Alignment rest = look_at(first_rest_, levels, alignment.T_camera_world, 0);
-  const bool moves = object.light_rms > 1.5 * rest.light_rms + 0.12 || object.inlier_share < rest.inlier_share - 0.3;
-  object_moves_ = moves ? object_moves_ + 1 : 0;
+  constexpr double kBetter = 0.01;  // of light
+  constexpr double kLess = 0.2;     // share of edges
+  const double as_moved = look_at(first_rest_, levels, T_camera_world, 0).light_rms;
+  const double as_still = look_at(first_rest_, levels, chosen_.T_camera_stand, 0).light_rms;
+  const bool is_still = as_still < as_moved + kBetter;
+  const double around = unchanged_share(levels.levels[0].light, first_light_, away_from_object_);
+  const double on_it = unchanged_share(levels.levels[0].light, first_light_, about_object_);
+  camera_moves_ = is_still ? 0 : camera_moves_ + 1;
+  object_moves_ = is_still && on_it < around - kLess ? object_moves_ + 1 : 0;
+  if (is_still) T_camera_world = chosen_.T_camera_stand;
+  if (camera_moves_ >= kSure) motion_ = Motion::kCamera;
   if (object_moves_ >= kSure) follow_object_only();
 }
 
@@ -236,6 +276,7 @@ void ObjectTracker::follow_object_only() {
   map.plane->normal = chosen_.plane.normal;
   map.plane->offset = chosen_.plane.offset;
   map.least_inlier_share = 0.6;
+  map.coarsest = 1;
   const cv::Rect& box = chosen_.box_px;
   const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
   levels_.region_px =
@@ -243,11 +284,9 @@ void ObjectTracker::follow_object_only() {
       cv::Rect({0, 0}, first_frame_.depth.size());
   map_ = KeyframeMap(map);
   state_.seen = {};
-  for (FrameTrack& track : take_.frames) track.tracked = false;
   T_last_ = T_before_ = chosen_.T_camera_stand;
   FrameLevels levels = make_levels(first_frame_, levels_);
   add_keyframe(first_number_, first_frame_, std::move(levels), {});
-  state_.state = TrackState::kLost;  // until the next frame is laid on the object alone
 }
 
 cv::Mat ObjectTracker::object_pixels(const FrameLevel& level, const Eigen::Isometry3d& T_camera_world) const {
@@ -267,11 +306,58 @@ cv::Mat ObjectTracker::object_pixels(const FrameLevel& level, const Eigen::Isome
   return mask;
 }
 
+/// Before a camera that stands still, shade and shine stay where they are while the object turns: what looks as it did
+/// some frames ago tells nothing of the turn, unless all of it does, and the object rests.
+void ObjectTracker::mark_what_stays(FrameLevels& levels) {
+  constexpr std::size_t kFramesAgo = 5;
+  constexpr float kSame = 0.3F;
+  constexpr double kRests = 0.03;
+  std::vector<cv::Mat> now;
+  for (const FrameLevel& level : levels.levels) now.push_back(level.light);
+  lights_.push_back(std::move(now));
+  if (lights_.size() <= kFramesAgo) return;
+  const double changed =
+      1.0 - unchanged_share(levels.levels[0].light, lights_.front()[0], object_pixels(levels.levels[0], T_last_));
+  if (changed > kRests) {
+    for (std::size_t l = 0; l < levels.levels.size(); ++l) {
+      cv::Mat difference;
+      cv::absdiff(levels.levels[l].light, lights_.front()[l], difference);
+      levels.levels[l].stays = difference < kSame;
+      cv::erode(levels.levels[l].stays, levels.levels[l].stays, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+    }
+  }
+  lights_.pop_front();
+}
+
+/// Takes out of the mask what keyframes have seen through: a hand.
+void ObjectTracker::remove_seen_through(const FrameLevel& level, cv::Mat& mask) const {
+  constexpr double kBehind_m = 0.015;
+  constexpr double kAlike = 1.2;  // radians: what keyframes from farther round see says nothing of this side
+  const Eigen::Isometry3d T_world_camera = T_last_.inverse();
+  for (const Keyframe& keyframe : map_.keyframes()) {
+    if (map_.difference(keyframe.T_camera_world, T_last_) > kAlike) continue;
+    const Eigen::Isometry3d T = keyframe.T_camera_world * T_world_camera;
+    for (int y = 0; y < mask.rows; ++y) {
+      for (int x = 0; x < mask.cols; ++x) {
+        if (mask.at<std::uint8_t>(y, x) == 0) continue;
+        const Eigen::Vector3d p = T * level.camera.backproject(x, y, level.depth.at<float>(y, x));
+        if (p.z() < 0.1) continue;
+        const Eigen::Vector2d px = keyframe.frame.camera.project(p);
+        const cv::Point at(cvRound(px.x()), cvRound(px.y()));
+        if (!cv::Rect({0, 0}, keyframe.frame.depth.size()).contains(at)) continue;
+        const float z = keyframe.frame.depth.at<float>(at);
+        if (z > p.z() + kBehind_m + 3.0 * depth_sigma(z)) mask.at<std::uint8_t>(y, x) = 0;
+      }
+    }
+  }
+  cv::erode(mask, mask, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+}
+
 /// Where corners are looked for: everywhere while the camera moves, else on the object, which may have turned but
 /// stays.
 cv::Mat ObjectTracker::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
   if (motion_ != Motion::kObject) return {};
-  return object_pixels({frame.camera, {}, frame.depth}, T_camera_world);
+  return object_pixels({frame.camera, {}, frame.depth, {}}, T_camera_world);
 }
 
 void ObjectTracker::add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
@@ -284,7 +370,19 @@ void ObjectTracker::add_keyframe(int number, const RgbdFrame& frame, FrameLevels
   const bool object_only = motion_ == Motion::kObject;
   PointSettings points;
   points.square_px = object_only ? 4 : 6;
-  keyframe.points = choose_points(levels, object_only ? object_pixels(levels.levels[0], T_last_) : cv::Mat(), points);
+  cv::Mat mask;
+  if (object_only) {
+    mask = object_pixels(levels.levels[0], T_last_);
+    remove_seen_through(levels.levels[0], mask);
+    if (!chosen_.like_skin) {
+      cv::Mat skin;
+      cv::dilate(skin_pixels(frame.colour(levels_.region_px)), skin,
+                 cv::getStructuringElement(cv::MORPH_ELLIPSE, {7, 7}));
+      cv::resize(skin, skin, mask.size(), 0, 0, cv::INTER_NEAREST);
+      mask.setTo(0, skin);
+    }
+  }
+  keyframe.points = choose_points(levels, mask, points);
   const Eigen::Isometry3f T_world_camera = T_last_.inverse().cast<float>();
   for (std::vector<SurfacePoint>& level : keyframe.points) {
     for (SurfacePoint& point : level) {

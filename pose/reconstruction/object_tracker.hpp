@@ -11,8 +11,9 @@
 
 namespace houghstream::reconstruction {
 
-/// What moves: the camera about the object, or the object before a camera that stands still.
-enum class Motion : std::uint8_t { kUnknown, kCamera, kObject };
+/// What moves: the camera about the object, the object before a camera that stands still, or a turntable with
+/// known masks (not of the tracker).
+enum class Motion : std::uint8_t { kUnknown, kCamera, kObject, kTurntable };
 
 enum class TrackState : std::uint8_t { kChoosing, kTracking, kLost };
 
@@ -21,8 +22,6 @@ struct TrackerSettings {
   MapSettings map;                 ///< middle and plane are those of the object
   int most_frames_to_choose = 45;  ///< without an object in so many frames, there is none
   double keyframe_turn = 0.12;     ///< radians between the views of keyframes
-  double camera_moves_m = 0.025;   ///< what is more is no still camera
-  double camera_turns = 0.03;      ///< radians
   double least_sharpness = 0.5;    ///< of the median of the frames around; what is less is blurred
   double most_dark_share = 0.7;    ///< of a picture; what is more is badly exposed
   double most_bright_share = 0.4;
@@ -95,7 +94,9 @@ class ObjectTracker {
   void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
   bool is_fit_for_model(const PictureQuality& quality);
-  void see_what_moves(const FrameLevels& levels, const Alignment& alignment);
+  void see_what_moves(const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
+  void mark_what_stays(FrameLevels& levels);
+  void remove_seen_through(const FrameLevel& level, cv::Mat& mask) const;
   void follow_object_only();
   void add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
@@ -108,10 +109,13 @@ class ObjectTracker {
   KeyframeMap map_;
   LevelSettings levels_;
   Motion motion_ = Motion::kUnknown;
-  LevelPoints first_object_, first_rest_;  ///< of the first keyframe, world frame: where the object is and elsewhere
+  cv::Mat first_light_, about_object_, away_from_object_;  ///< of the first keyframe's finest level
+  LevelPoints first_rest_;                                 ///< points away from the object, world frame
   RgbdFrame first_frame_;
   int first_number_ = 0;
-  int object_moves_ = 0;  ///< frames in which it did
+  std::deque<std::vector<cv::Mat>> lights_;  ///< of the last frames, by level, while the object turns
+  int object_moves_ = 0;                     ///< frames in which it did, one after the other
+  int camera_moves_ = 0;
   Eigen::Isometry3d T_last_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_before_ = Eigen::Isometry3d::Identity();
   std::vector<std::pair<int, RgbdFrame>> unplaced_;  ///< lost frames, with their numbers

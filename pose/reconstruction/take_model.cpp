@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/base/checks.hpp"
@@ -10,6 +11,7 @@
 #include "pose/fusion/distance_grid.hpp"
 #include "pose/fusion/grid_surface.hpp"
 #include "pose/fusion/view_colours.hpp"
+#include "pose/reconstruction/take_merging.hpp"
 
 namespace houghstream::reconstruction {
 namespace {
@@ -48,6 +50,12 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
     view.frame.depth = keyframe.frame.depth(region);
     view.frame.camera = keyframe.frame.camera.cropped(region.x, region.y, region.width, region.height);
     view.mask = cv::Mat(region.size(), CV_8UC1, cv::Scalar(255));
+    if (take.motion == Motion::kObject && !take.chosen.like_skin) {  // the hand that turns it
+      cv::Mat skin;
+      cv::dilate(skin_pixels(view.frame.colour), skin, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
+      view.frame.depth = view.frame.depth.clone();
+      view.frame.depth.setTo(std::numeric_limits<float>::quiet_NaN(), skin);
+    }
     view.T_camera_object = keyframe.T_camera_world;
     views[static_cast<std::size_t>(i)] = fusion::make_depth_view(view);
   });
@@ -219,17 +227,6 @@ void cut_out(const Filled& filled, const ModelMaking& settings, DistanceGrid& gr
   }
 }
 
-/// The middle of what is lowest.
-Eigen::Vector3d foot_of(const Mesh& mesh) {
-  constexpr float kFoot_m = 0.01F;
-  Eigen::AlignedBox2f foot;
-  const float lowest = mesh_bounds(mesh).min().z();
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    if (vertex.z() < lowest + kFoot_m) foot.extend(vertex.head<2>());
-  }
-  return {foot.center().x(), foot.center().y(), 0.0};
-}
-
 /// Median distance of measured points on the mask from the model along the line of sight, times how steeply it meets
 /// the surface.
 void add_distances(const Mesh& mesh, const RgbdFrame& frame, const ShownView& view, std::vector<float>& distances) {
@@ -291,6 +288,7 @@ ShownModel make_model(const Take& take, const ModelMaking& settings) {
   require(!model.mesh.triangles.empty(), "the views have no common surface, expected an object that all of them show");
   model.seen = fusion::colour_mesh(views, 4.0 * voxel, settings.threads, model.mesh);
   model.T_world_object.translation() = foot_of(model.mesh);
+  model.T_world_object.translation().z() = 0.0;  // of the table
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= model.T_world_object.translation().cast<float>();
   const int n = static_cast<int>(take.keyframes.size());
   std::vector<ShownView> shown(static_cast<std::size_t>(n));

@@ -21,12 +21,13 @@ constexpr int kMostDistractors = 12;
 constexpr int kMostLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
 
-/// Turned hues, or next to none; darker or brighter.
+/// Turned hues, or next to none where there were some; darker or brighter.
 cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   constexpr double kGreyed = 0.35;
+  constexpr double kColourful = 80.0;  // mean saturation, of 255
   cv::Mat hsv_image;
   cv::cvtColor(bgr, hsv_image, cv::COLOR_BGR2HSV);
-  const bool is_grey = chance(random, kGreyed);
+  const bool is_grey = chance(random, kGreyed) && cv::mean(hsv_image)[1] > kColourful;
   const int turn = random.between(40, 140);
   const double strength = random.uniform(0.0, 0.4);
   const double lightness = random.uniform(is_grey ? 0.15 : 0.5, 1.2);
@@ -47,7 +48,7 @@ cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
   return out;
 }
 
-/// The same picture, begun elsewhere: its colours stay, what is printed where does not.
+/// The same picture, begun elsewhere: what is printed where changes.
 cv::Mat moved_round(const cv::Mat& picture, Random& random) {
   const int right = static_cast<int>(picture.cols * random.uniform(0.2, 0.8));
   const int down = static_cast<int>(picture.rows * random.uniform(0.2, 0.8));
@@ -59,11 +60,10 @@ cv::Mat moved_round(const cv::Mat& picture, Random& random) {
   return out;
 }
 
-/// The mesh with another print or in other colours.
-void repaint(bool other_print, bool other_colours, Random& random, Mesh& mesh) {
-  const auto painted = [&](cv::Mat picture) {
-    if (other_print) picture = moved_round(picture, random);
-    return other_colours ? recoloured(picture, random) : picture;
+/// The mesh in other colours, and with another print or not. Another print alone would leave what is plain as it is.
+void repaint(bool other_print, Random& random, Mesh& mesh) {
+  const auto painted = [&](const cv::Mat& picture) {
+    return recoloured(other_print ? moved_round(picture, random) : picture, random);
   };
   if (!mesh.texture.empty()) {
     mesh.texture = painted(mesh.texture);
@@ -73,8 +73,8 @@ void repaint(bool other_print, bool other_colours, Random& random, Mesh& mesh) {
   std::copy_n(colours.clone().ptr<cv::Vec3b>(), mesh.colours.size(), mesh.colours.begin());
 }
 
-/// Nearly the object: clearly smaller or larger, of other proportions, in other colours, or with another print, as
-/// other packages are.
+/// Nearly the object: clearly smaller or larger, of other proportions, or in other colours and often with another
+/// print, as other packages are.
 ThingPtr look_alike(const Thing& thing, Random& random) {
   Mesh mesh = thing.mesh;
   const double sort = random.uniform();
@@ -87,10 +87,8 @@ ThingPtr look_alike(const Thing& thing, Random& random) {
                                 static_cast<float>(random.uniform(0.5, 1.6)));
     for (Eigen::Vector3f& vertex : mesh.vertices) vertex = vertex.cwiseProduct(sizes);
     compute_normals(mesh);
-  } else if (sort < 0.55) {
-    repaint(false, true, random, mesh);
   } else {
-    repaint(true, chance(random, 0.6), random, mesh);
+    repaint(chance(random, 0.6), random, mesh);
   }
   return make_thing(thing.name, std::move(mesh), thing.gloss);
 }

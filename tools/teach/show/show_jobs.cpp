@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <opencv2/imgproc.hpp>
 
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pose/reconstruction/object_tracker.hpp"
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/take_merging.hpp"
 #include "tools/teach/mesh_checks.hpp"
 #include "tools/teach/show/show_report.hpp"
 #include "tools/teach/show/show_sources.hpp"
+#include "tools/teach/show/turntable_videos.hpp"
 #include "tools/teach/teach_jobs.hpp"
 
 namespace houghstream::teach {
@@ -51,6 +54,13 @@ class Telling {
     now_.T_camera_object.reset();
     printed_us_ = 0;
     tell();
+  }
+
+  /// The terminal gets the exception's line itself.
+  void fail(const std::string& message) {
+    now_.state = ShowState::kFailed;
+    now_.message = message;
+    if (observer_ != nullptr) observer_->progress(now_);
   }
 
  private:
@@ -96,10 +106,13 @@ void check_shown_frame(const RgbdFrame& frame, const std::string& source) {
           "{}: frame {}: no depth at all, expected depth registered to colour", source, to_string(frame.id));
 }
 
-Take follow(const ShowOptions& options, const std::string& source, const ShownFrames& frames, Telling& telling) {
+/// A take, its object chosen by itself where `boxed` is empty.
+Take follow(const ShowOptions& options, const std::optional<cv::Rect>& boxed, const ShownFrames& frames,
+            Telling& telling) {
+  const std::string& source = options.source;
   constexpr std::size_t kFewest = 20;
   reconstruction::TrackerSettings settings;
-  settings.choice.box_px = options.box;
+  settings.choice.box_px = boxed;
   settings.choice.seed = options.seed;
   settings.map.threads = options.threads;
   ObjectTracker tracker(settings);
@@ -120,6 +133,18 @@ Take follow(const ShowOptions& options, const std::string& source, const ShownFr
   }
 }
 
+/// What is taught of a view: the object with a margin.
+void crop_to_object(TrainingView& view) {
+  constexpr int kMargin_px = 8;
+  cv::Rect crop = cv::boundingRect(view.mask);
+  crop = cv::Rect(crop.x - kMargin_px, crop.y - kMargin_px, crop.width + 2 * kMargin_px, crop.height + 2 * kMargin_px) &
+         cv::Rect({0, 0}, view.mask.size());
+  view.frame.colour = view.frame.colour(crop).clone();
+  view.frame.depth = view.frame.depth(crop).clone();
+  view.frame.camera = view.frame.camera.cropped(crop.x, crop.y, crop.width, crop.height);
+  view.mask = view.mask(crop).clone();
+}
+
 /// The shown mesh as one that hs-teach mesh could have read, and the keyframes' views of it.
 TeachOptions teaching_of(const ShowOptions& options, const Shown& shown) {
   TeachOptions teach;
@@ -130,6 +155,13 @@ TeachOptions teaching_of(const ShowOptions& options, const Shown& shown) {
   check_mesh(options.name, 1e-3, mesh.mesh);
   mesh.coloured = has_colour(mesh.mesh);
   teach.shown = {std::move(mesh)};
+  for (std::size_t t = 0; t < shown.takes.size(); ++t) {
+    std::vector<TrainingView> own = training_views(shown.takes[t], shown.views[t], options.name);
+    for (TrainingView& view : own) {
+      crop_to_object(view);
+      teach.own_views.push_back(std::move(view));
+    }
+  }
   teach.out = options.out;
   teach.add = options.add;
   teach.rooms.cache = options.rooms_cache;
@@ -139,48 +171,76 @@ TeachOptions teaching_of(const ShowOptions& options, const Shown& shown) {
   return teach;
 }
 
-}  // namespace
+/// Follows one or two takes and makes a model of them.
+Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second, Telling& telling) {
+  const auto begin = std::chrono::steady_clock::now();
+  reconstruction::ModelMaking making;
+  making.threads = options.threads;
+  Shown shown;
+  shown.name = options.name;
+  shown.takes.push_back(follow(options, options.box, frames, telling));
+  telling.step(ShowState::kFusing, 0.3, "the model is made");
+  ShownModel model = make_model(shown.takes.front(), making);
+  if (second) {
+    Take take = follow(options, std::nullopt, second, telling);
+    telling.step(ShowState::kFusing, 0.4, "the second take is laid on the first");
+    ShownModel other = make_model(take, making);
+    shown.second_fits = merge_takes(shown.takes.front(), model, take, other, making);
+    if (shown.second_fits) {
+      shown.takes.push_back(std::move(take));
+      shown.views.push_back(std::move(other.views));
+    }
+  }
+  shown.views.insert(shown.views.begin(), std::move(model.views));
+  shown.mesh = std::move(model.mesh);
+  shown.seen = std::move(model.seen);
+  shown.agreement_m = model.agreement_m;
+  shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return shown;
+}
 
-int show_object(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
-                ShowObserver* observer) {
+/// Judges what was shown, writes what is to be kept, and teaches it. Returns the exit status.
+int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
+  constexpr int kPoor = 3;
+  const Verdict verdict = judge(shown);
+  fmt::print("{}", describe(shown, verdict));
+  if (!options.keep.empty()) keep_shown(shown, verdict, options.keep);
+  if (!verdict.good && !options.go_on) {
+    telling.step(ShowState::kFailed, 1.0, fmt::format("poor: {}", verdict.reasons.front()));
+    return kPoor;
+  }
+  if (options.teach) {
+    telling.step(ShowState::kTraining, 0.5, "the model is taught");
+    teach_meshes(teaching_of(options, shown));
+  }
+  telling.step(ShowState::kDone, 1.0,
+               options.teach ? fmt::format("{} is known", options.name) : fmt::format("{} has a model", options.name));
+  return 0;
+}
+
+/// Says why where it fails.
+int told(const ShowOptions& options, ShowObserver* observer, const std::function<Shown(Telling&)>& show) {
   require_new_name(options);
   Telling telling(options, observer);
   try {
-    const auto begin = std::chrono::steady_clock::now();
-    Shown shown;
-    shown.name = options.name;
-    shown.takes.push_back(follow(options, options.source, frames, telling));
-    telling.step(ShowState::kFusing, 0.3, "the model is made");
-    reconstruction::ModelMaking making;
-    making.threads = options.threads;
-    ShownModel model = make_model(shown.takes.front(), making);
-    require(!second, "--second is not known yet");
-    shown.views.push_back(std::move(model.views));
-    shown.mesh = std::move(model.mesh);
-    shown.seen = std::move(model.seen);
-    shown.agreement_m = model.agreement_m;
-    shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const Verdict verdict = judge(shown);
-    fmt::print("{}", describe(shown, verdict));
-    if (!options.keep.empty()) keep_shown(shown, verdict, options.keep);
-    if (!verdict.good && !options.go_on) {
-      telling.step(ShowState::kFailed, 1.0, fmt::format("poor: {}", verdict.reasons.front()));
-      return 3;
-    }
-    if (options.teach) {
-      telling.step(ShowState::kTraining, 0.5, "the model is taught");
-      teach_meshes(teaching_of(options, shown));
-    }
-    telling.step(ShowState::kDone, 1.0, fmt::format("{} is known", options.name));
-    return 0;
+    return conclude(options, show(telling), telling);
   } catch (const std::exception& error) {
-    telling.step(ShowState::kFailed, 1.0, error.what());
+    telling.fail(error.what());
     throw;
   }
 }
 
+}  // namespace
+
+int show_object(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second,
+                ShowObserver* observer) {
+  return told(options, observer, [&](Telling& telling) { return show_takes(options, frames, second, telling); });
+}
+
 int show_sources(const ShowOptions& options, ShowObserver* observer) {
   require_new_name(options);
+  if (is_turntable_videos(options.source))
+    return told(options, observer, [&](Telling&) { return show_turntable(options); });
   const ShownFrames second = options.second.empty() ? ShownFrames() : open_shown(options.second, options);
   return show_object(options, open_shown(options.source, options), second, observer);
 }

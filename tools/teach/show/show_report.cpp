@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -13,6 +14,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pose/reconstruction/take_merging.hpp"
 #include "tools/fuse/model_picture.hpp"
 #include "tools/teach/contact_sheet.hpp"
 
@@ -141,19 +143,12 @@ OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
   return json;
 }
 
-/// Views of a take, at most so many, spread over all.
-std::vector<TrainingView> training_views(const Shown& shown) {
+/// The keyframes of all takes.
+std::vector<TrainingView> all_views(const Shown& shown) {
   std::vector<TrainingView> views;
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
-    for (const ShownView& shown_view : shown.views[t]) {
-      TrainingView view;
-      view.frame = shown.takes[t].keyframes[static_cast<std::size_t>(shown_view.keyframe)].frame;
-      view.mask = shown_view.mask;
-      view.class_id = 1;
-      view.class_name = shown.name;
-      view.T_camera_object = shown_view.T_camera_object;
-      views.push_back(std::move(view));
-    }
+    std::vector<TrainingView> of_take = training_views(shown.takes[t], shown.views[t], shown.name);
+    std::move(of_take.begin(), of_take.end(), std::back_inserter(views));
   }
   return views;
 }
@@ -227,7 +222,7 @@ Verdict judge(const Shown& shown) {
   constexpr double kLeastSurface = 0.55;
   constexpr std::size_t kFewestKeyframes = 8;
   Verdict verdict;
-  judge_take(shown.takes.front(), verdict.reasons);
+  if (shown.takes.front().motion != Motion::kTurntable) judge_take(shown.takes.front(), verdict.reasons);
   if (shown.agreement_m > kMostDisagreement_m)
     verdict.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
                                           1e3 * shown.agreement_m, 1e3 * kMostDisagreement_m));
@@ -235,6 +230,8 @@ Verdict judge(const Shown& shown) {
     verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * seen_surface(shown)));
   if (shown.views.front().size() < kFewestKeyframes)
     verdict.reasons.push_back(fmt::format("only {} keyframes show it", shown.views.front().size()));
+  if (!shown.second_fits)
+    verdict.reasons.emplace_back("the second take does not fit the first, expected the same object, another side up");
   verdict.good = verdict.reasons.empty();
   return verdict;
 }
@@ -274,7 +271,7 @@ void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& fold
   const fs::path partial = whole.parent_path() / fmt::format(".{}.partial-{}", whole.filename().string(), getpid());
   try {
     fs::create_directories(partial);
-    const std::vector<TrainingView> views = training_views(shown);
+    const std::vector<TrainingView> views = all_views(shown);
     save_ply(shown.mesh, partial / "model.ply");
     write_views(shown, views, partial / "views");
     write_pictures(shown, views, partial);

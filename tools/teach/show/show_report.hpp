@@ -14,7 +14,8 @@ struct Shown {
   std::vector<reconstruction::Take> takes;
   std::vector<std::vector<reconstruction::ShownView>> views;  ///< of each take
   Mesh mesh;
-  std::vector<bool> seen;  ///< per vertex
+  std::vector<bool> seen;   ///< per vertex
+  bool second_fits = true;  ///< the second take, where there was one
   double agreement_m = 0.0;
   double seconds = 0.0;  ///< that it took until the model was there
 };

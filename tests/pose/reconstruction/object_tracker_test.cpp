@@ -1,0 +1,101 @@
+#include "pose/reconstruction/object_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/base/checks.hpp"
+#include "pose/reconstruction/take_model.hpp"
+#include "tests/pose/reconstruction/shown_scene.hpp"
+
+namespace houghstream::reconstruction {
+namespace {
+
+using test_scene::photograph;
+using test_scene::ShownScene;
+using test_scene::table_with;
+
+constexpr int kFrames = 100;
+constexpr double kTurn = 6.283185307179586;
+
+/// The camera goes once about the box, and a little farther.
+Eigen::Isometry3d true_pose(int i) {
+  return test_scene::camera_at(0.3 + 1.04 * kTurn * i / kFrames, 0.55 + 0.1 * std::sin(0.1 * i), 0.65);
+}
+
+Take go_round(const Mesh& mesh, int from, int to, const std::vector<int>& black) {
+  ObjectTracker tracker{TrackerSettings()};
+  for (int i = from; i < to; ++i) {
+    RgbdFrame frame = photograph(mesh, true_pose(i), ShownScene().camera, 1 + 33000 * i);
+    if (std::find(black.begin(), black.end(), i) != black.end()) {
+      frame.colour.setTo(cv::Scalar::all(0));
+      frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+    }
+    tracker.process(frame);
+  }
+  return tracker.finish();
+}
+
+/// How far the last tracked pose is from the first, beside how far it should be: metres at the object.
+double drift_m(const Take& take, int first, int last) {
+  const auto pose = [&](int i) { return take.pose_of(take.frames[static_cast<std::size_t>(i)]); };
+  const Eigen::Isometry3d at_first = pose(first).inverse() * true_pose(first);
+  const Eigen::Isometry3d at_last = pose(last).inverse() * true_pose(last);
+  return (at_first.inverse() * at_last).translation().norm();
+}
+
+TEST(ObjectTracker, ClosesATurnAndMakesAModel) {
+  const Take take = go_round(table_with({}), 0, kFrames, {});
+  EXPECT_EQ(take.motion, Motion::kCamera);
+  EXPECT_EQ(take.degrees_round, 360);
+  EXPECT_TRUE(take.lost.empty());
+  ASSERT_TRUE(take.gap);
+  EXPECT_LT(take.gap->shift_m, 0.01);
+  EXPECT_LT(drift_m(take, 0, kFrames - 1), 0.003);
+  const ShownModel model = make_model(take, {});
+  const Eigen::AlignedBox3f bounds = mesh_bounds(model.mesh);
+  EXPECT_NEAR(bounds.min().z(), 0.0, 0.003);
+  EXPECT_NEAR(bounds.max().z(), 0.16, 0.004);
+  EXPECT_NEAR(bounds.diagonal().head<2>().norm(), std::hypot(bounds.sizes().x(), bounds.sizes().y()), 1e-4);
+  EXPECT_NEAR(mesh_diameter(model.mesh), Eigen::Vector3d(0.12, 0.08, 0.16).norm(), 0.006);
+  EXPECT_LT(model.agreement_m, 0.001);
+}
+
+TEST(ObjectTracker, SaysWhereItWasLostAndGoesOn) {
+  const Take take = go_round(table_with({}), 0, 40, {20, 21});
+  ASSERT_EQ(take.lost.size(), 1U);
+  EXPECT_EQ(take.lost[0].from, 20);
+  EXPECT_EQ(take.lost[0].to, 21);
+  EXPECT_TRUE(take.frames[30].tracked);
+  EXPECT_LT(drift_m(take, 0, 39), 0.003);
+}
+
+TEST(ObjectTracker, FollowsAnObjectThatTurnsBeforeAStillCamera) {
+  const Mesh table = table_with({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, ShownScene().camera});
+  const Eigen::Isometry3d T_camera_table = test_scene::camera_at(0.3, 0.6, 0.65);
+  Mesh box;
+  test_scene::add_box(ShownScene().box, 0.0, box);
+  ObjectTracker tracker{TrackerSettings()};
+  for (int i = 0; i < 40; ++i) {
+    Mesh both = table;
+    const Eigen::Matrix3f turned =
+        Eigen::AngleAxisf(-0.03F * static_cast<float>(i), Eigen::Vector3f::UnitZ()).toRotationMatrix();
+    const auto offset = static_cast<std::uint32_t>(both.vertices.size());
+    for (const Eigen::Vector3f& vertex : box.vertices) both.vertices.push_back(turned * vertex);
+    both.colours.insert(both.colours.end(), box.colours.begin(), box.colours.end());
+    for (const auto& t : box.triangles) both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+    tracker.process(photograph(both, T_camera_table, ShownScene().camera, 1 + 33000 * i));
+  }
+  const Take take = tracker.finish();
+  EXPECT_EQ(take.motion, Motion::kObject);
+  ASSERT_TRUE(take.frames.back().tracked);
+  const Eigen::Isometry3d moved = take.keyframes.front().T_camera_world.inverse() * take.pose_of(take.frames.back());
+  EXPECT_NEAR(Eigen::AngleAxisd(moved.linear()).angle(), 0.03 * 39, 0.03);
+}
+
+TEST(ObjectTracker, RefusesATakeWithoutAnObject) {
+  ShownScene empty;
+  empty.box.setZero();
+  EXPECT_THROW(go_round(table_with(empty), 0, 50, {}), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,88 @@
+#include "tools/teach/show/show_jobs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "pipeline/base/checks.hpp"
+#include "tests/pose/reconstruction/shown_scene.hpp"
+
+namespace houghstream::teach {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Frames of a camera that goes about a box by so many degrees.
+ShownFrames take_of(int frames, double degrees) {
+  const auto mesh = std::make_shared<Mesh>(test_scene::table_with({}));
+  const auto i = std::make_shared<int>(0);
+  return [=]() -> std::optional<RgbdFrame> {
+    if (*i == frames) return std::nullopt;
+    const double azimuth = degrees / 57.3 * *i / frames;
+    ++*i;
+    return test_scene::photograph(*mesh, test_scene::camera_at(azimuth, 0.55, 0.65), test_scene::ShownScene().camera,
+                                  1000000 + 33000 * *i);
+  };
+}
+
+ShowOptions options_for(const std::string& name) {
+  ShowOptions options;
+  options.source = "a take";
+  options.name = name;
+  options.teach = false;
+  return options;
+}
+
+std::string line_of(const ShowOptions& options, const ShownFrames& frames) {
+  try {
+    show_object(options, frames, {}, nullptr);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct Heard : ShowObserver {
+  void progress(const ShowProgress& now) override { states.push_back(now.state); }
+  std::vector<ShowState> states;
+};
+
+TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
+  const fs::path folder = fs::temp_directory_path() / "show_jobs_test";
+  fs::remove_all(folder);
+  ShowOptions options = options_for("box");
+  options.keep = folder;
+  Heard heard;
+  EXPECT_EQ(show_object(options, take_of(40, 90.0), {}, &heard), 3);
+  EXPECT_EQ(heard.states.back(), ShowState::kFailed);
+  for (const char* file : {"model.ply", "camera_poses.csv", "report.json", "report.html", "contact_sheet.jpg",
+                           "views/000001/scene_gt.json", "views/models/models_info.json"})
+    EXPECT_TRUE(fs::exists(folder / file)) << file;
+  std::ifstream in(folder / "report.json");
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_NE(text.find("\"poor\""), std::string::npos);
+  EXPECT_NE(text.find("too short"), std::string::npos);
+  options.go_on = true;
+  EXPECT_EQ(show_object(options, take_of(40, 90.0), {}, nullptr), 0);
+  fs::remove_all(folder);
+}
+
+TEST(ShowJobs, BadInputIsOneLine) {
+  EXPECT_NE(line_of(options_for("two words"), take_of(40, 90.0)).find("--name 'two words'"), std::string::npos);
+  EXPECT_NE(line_of(options_for("box"), take_of(5, 10.0)).find("5 frames, expected at least 20"), std::string::npos);
+  EXPECT_NE(line_of(options_for("box"), take_of(0, 0.0)).find("a take: no frame"), std::string::npos);
+  ShowOptions teaching = options_for("box");
+  teaching.teach = true;
+  EXPECT_NE(line_of(teaching, take_of(40, 90.0)).find("--out is missing"), std::string::npos);
+  const ShownFrames grey = [frames = take_of(40, 90.0)]() -> std::optional<RgbdFrame> {
+    std::optional<RgbdFrame> frame = frames();
+    if (frame) frame->colour.setTo(cv::Scalar::all(128));
+    return frame;
+  };
+  EXPECT_NE(line_of(options_for("box"), grey).find("no colour"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace houghstream::teach
