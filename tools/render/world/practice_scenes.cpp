@@ -78,10 +78,10 @@ void repaint(bool other_print, Random& random, Mesh& mesh) {
 ThingPtr look_alike(const Thing& thing, Random& random) {
   Mesh mesh = thing.mesh;
   const double sort = random.uniform();
-  if (sort < 0.2) {
+  if (sort < 0.25) {
     const auto size = static_cast<float>(chance(random, 0.5) ? random.uniform(0.55, 0.75) : random.uniform(1.33, 1.7));
     for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= size;
-  } else if (sort < 0.4) {
+  } else if (sort < 0.5) {
     const Eigen::Vector3f sizes(static_cast<float>(random.uniform(0.5, 1.6)),
                                 static_cast<float>(random.uniform(0.5, 1.6)),
                                 static_cast<float>(random.uniform(0.5, 1.6)));
@@ -162,7 +162,8 @@ World PracticeScenes::furnished(int room) const {
     const ThingPtr thing = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
     setter.put(put_down(object, thing, object.id, random), middle);
   }
-  for (int i = random.between(0, kMostLookAlikes); i > 0; --i) {
+  const int most_look_alikes = std::min(kMostLookAlikes, (count + 1) / 2);  // such as they are, they are the fewer ones
+  for (int i = random.between(0, most_look_alikes); i > 0; --i) {
     const PracticeObject& object = pick(random, objects_);
     setter.put(put_down(object, look_alike(*object.thing, random), 0, random), all);
   }
