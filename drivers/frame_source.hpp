@@ -8,7 +8,7 @@
 
 namespace houghstream {
 
-/// Where frames come from: a dataset folder, a recording, a camera. The project's only virtual interface,
+/// Where frames come from: a dataset folder, a recording, a camera. One of the few virtual interfaces,
 /// since several sensors stand behind it.
 class FrameSource {
  public:
