@@ -114,7 +114,7 @@ void train_score_model(const ValidationSource& source, const std::set<int>& clas
   const ScoreModel common = fit_score_model(all, ScoreModel{});
   for (ObjectClass& object : forest.classes) {
     if (class_ids.count(object.class_id) == 0) continue;  // an older object, judged before
-    object.score_model = fit_score_model(by_class[object.class_id], common);
+    object.score_model = fit_score_model(by_class[object.class_id], common, source.stiffness);
   }
 }
 

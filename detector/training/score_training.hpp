@@ -16,6 +16,7 @@ namespace houghstream::training {
 struct ValidationSource {
   int count = 0;
   std::function<ValidationFrame(int index)> frame;
+  double stiffness = 1.0;  ///< of an object's weights about those of all objects together, see fit_score_model
 };
 
 /// Rooms into which views are put that trees have not seen there, see TrainingSettings::validation_frames. The views

@@ -11,7 +11,7 @@ namespace houghstream {
 
 /// Smallest score that is reported of a store's objects: theirs is learnt in practice rooms (hs-teach), half of which
 /// hold something that looks nearly like an object, through widely varied cameras; real ones are kinder.
-constexpr float kStoreThreshold = 0.7F;
+constexpr float kStoreThreshold = 0.65F;
 
 /// What a command line changes of a forest's own detection settings.
 struct SearchOptions {

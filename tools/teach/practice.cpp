@@ -44,14 +44,17 @@ std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>&
 }
 
 training::ValidationSource validation_source(const std::vector<world::SceneFrame>& frames) {
-  return {static_cast<int>(frames.size()), [&frames](int index) {
+  constexpr double kStiffness = 5.0;  // a hundred examples of an object do not tell its weights
+  return {static_cast<int>(frames.size()),
+          [&frames](int index) {
             const world::SceneFrame& from = frames[static_cast<std::size_t>(index)];
             training::ValidationFrame frame;
             frame.frame = from.frame;
             for (const TrueObject& object : from.objects)
               frame.objects.push_back({object.object_id, {}, object.box_visible_px, object.visible_fraction});
             return frame;
-          }};
+          },
+          kStiffness};
 }
 
 quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, const Forest& forest,
