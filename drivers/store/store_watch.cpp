@@ -95,6 +95,10 @@ void StoreFollower::follow(std::chrono::milliseconds period) {
   thread_ = std::thread([this, period] { live(period); });
 }
 
+void StoreFollower::hold() const {
+  require(current() != nullptr, "{}: no such folder, expected an object store of hs-teach", folder_.string());
+}
+
 std::shared_ptr<const void> StoreFollower::current() const {
   const std::lock_guard lock(mutex_);
   return current_;

@@ -34,6 +34,9 @@ class StoreFollower {
   /// copies into it is at work for a while.
   void follow(std::chrono::milliseconds period);
 
+  /// Instead of follow(), where all is to go by the same: throws InputError if there is no store yet.
+  void hold() const;
+
   /// What was loaded last; null while there is no store yet.
   std::shared_ptr<const void> current() const;
 
@@ -69,6 +72,7 @@ class StoreWatch {
   StoreWatch(const std::filesystem::path& folder, Load load) : follower_(folder, std::move(load)) {}
 
   void follow(std::chrono::milliseconds period = std::chrono::milliseconds(200)) { follower_.follow(period); }
+  void hold() const { follower_.hold(); }
   std::shared_ptr<const T> current() const { return std::static_pointer_cast<const T>(follower_.current()); }
   KnownObjects known() const { return follower_.known(); }
 

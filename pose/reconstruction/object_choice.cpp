@@ -390,4 +390,16 @@ Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
   return first;
 }
 
+std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,
+                                 const Eigen::Isometry3d& T_camera_box) {
+  std::vector<cv::Point2f> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d p = T_camera_box * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    if (p.z() < 0.05) return std::nullopt;
+    const Eigen::Vector2d px = camera.project(p);
+    corners.emplace_back(static_cast<float>(px.x()), static_cast<float>(px.y()));
+  }
+  return cv::boundingRect(corners);
+}
+
 }  // namespace houghstream::reconstruction

@@ -57,6 +57,10 @@ std::vector<Plane> find_planes(const RgbdFrame& frame, const ChoiceSettings& set
 Plane refine_plane(const RgbdFrame& frame, const cv::Mat& mask, const Plane& plane, const Eigen::Vector3d& middle,
                    double radius_m);
 
+/// The rectangle about a box as the camera sees it, also beyond the picture; none where a corner is nearer than 5 cm.
+std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,
+                                 const Eigen::Isometry3d& T_camera_box);
+
 /// What stands on the dominant plane nearest to the image's middle, or in the box: points above the plane that hang
 /// together. Planes are tried in their order until one carries something.
 Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings);

@@ -46,18 +46,11 @@ double unchanged_share(const cv::Mat& light, const cv::Mat& first, const cv::Mat
   return edges > 0 ? static_cast<double>(same) / edges : 1.0;
 }
 
-/// What is seen of the object and its box; the whole picture where it is not in it.
+/// Where the object is seen; empty where the camera is too near for that.
 cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
-  std::vector<cv::Point2f> corners;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d corner((i & 1 ? 1 : -1) * object.radius_m * 0.8, (i & 2 ? 1 : -1) * object.radius_m * 0.8,
-                                 i & 4 ? object.height_m : 0.0);
-    const Eigen::Vector3d p = T_camera_world * corner;
-    if (p.z() < 0.05) return {};
-    const Eigen::Vector2d px = camera.project(p);
-    corners.emplace_back(static_cast<float>(px.x()), static_cast<float>(px.y()));
-  }
-  return cv::boundingRect(corners) & cv::Rect(0, 0, camera.width, camera.height);
+  const double half = object.radius_m * 0.8;
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, 0.0), Eigen::Vector3d(half, half, object.height_m));
+  return seen_box(box, camera, T_camera_world).value_or(cv::Rect()) & cv::Rect(0, 0, camera.width, camera.height);
 }
 
 }  // namespace
@@ -235,9 +228,8 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   const double away =
       nearest < 0 ? 1e9 : map_.difference(T_last_, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
   if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
-    Alignment laid = alignment;
-    if (nearest >= 0) map_.local_map(T_last_);
-    add_keyframe(number, frame, std::move(levels), laid);
+    if (nearest >= 0) map_.local_map(T_last_);  // the keyframes that the new one is tied to
+    add_keyframe(number, frame, std::move(levels), alignment);
   }
   track.tracked = true;
   track.keyframe = map_.nearest(T_last_);

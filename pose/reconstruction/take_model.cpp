@@ -19,22 +19,15 @@ namespace {
 using fusion::DepthView;
 using fusion::DistanceGrid;
 
-/// Where a box is seen, a few pixels wider.
+/// Where a box is seen, a few pixels wider; the whole picture where the camera is too near.
 cv::Rect region_of(const Eigen::AlignedBox3d& box, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
   constexpr int kMargin_px = 8;
-  std::vector<cv::Point2f> corners;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d p = T_camera_world * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
-    if (p.z() < 0.05) return {0, 0, camera.width, camera.height};
-    const Eigen::Vector2d px = camera.project(p);
-    corners.emplace_back(static_cast<float>(px.x()), static_cast<float>(px.y()));
-  }
-  cv::Rect region = cv::boundingRect(corners);
-  region.x -= kMargin_px;
-  region.y -= kMargin_px;
-  region.width += 2 * kMargin_px;
-  region.height += 2 * kMargin_px;
-  return region & cv::Rect(0, 0, camera.width, camera.height);
+  const cv::Rect picture(0, 0, camera.width, camera.height);
+  const std::optional<cv::Rect> seen = seen_box(box, camera, T_camera_world);
+  if (!seen) return picture;
+  const cv::Rect region(seen->x - kMargin_px, seen->y - kMargin_px, seen->width + 2 * kMargin_px,
+                        seen->height + 2 * kMargin_px);
+  return region & picture;
 }
 
 /// All surface that the keyframes show about a box; nothing counts as outside but what is seen through.

@@ -52,9 +52,7 @@ void run_with_store(DetectOptions options) {
       options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options.search); });
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);
-  if (!bus.is_log()) watch.follow();  // all of a log goes by the same
-  require(!bus.is_log() || watch.current(), "{}: no such folder, expected an object store of hs-teach",
-          options.objects);
+  bus.is_log() ? watch.hold() : watch.follow();
   DetectorWorkspace workspace;
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const Detector> detector = watch.current();

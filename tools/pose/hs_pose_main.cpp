@@ -62,9 +62,7 @@ void run_with_store(PoseOptions options) {
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);
-  if (!bus.is_log()) watch.follow();  // all of a log goes by the same
-  require(!bus.is_log() || watch.current(), "{}: no such folder, expected an object store of hs-teach",
-          options.objects);
+  bus.is_log() ? watch.hold() : watch.follow();
   run(bus, options.process, [&] {
     std::shared_ptr<const PoseEstimator> estimator = watch.current();
     return estimator ? estimator : without_models;
