@@ -18,6 +18,7 @@ struct DepthView {
   cv::Mat depth;    ///< CV_32FC1, metres, NaN off the object and where no normal is
   cv::Mat normals;  ///< CV_32FC3, camera frame, unit length, towards the camera; meaningless where depth is NaN
   cv::Mat outside;  ///< CV_8UC1, 255 where the ray through the pixel misses the object
+  int light = -1;   ///< views of one number, from 0 on, have a light that stands still about the object; -1: who knows
 
   Eigen::Vector3d normal(const cv::Point& px) const {
     const cv::Vec3f& n = normals.at<cv::Vec3f>(px);

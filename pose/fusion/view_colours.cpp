@@ -1,28 +1,122 @@
 #include "pose/fusion/view_colours.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/base/parallel.hpp"
+#include "pose/fusion/shade.hpp"
 
 namespace houghstream::fusion {
 namespace {
 
 struct Sum {
-  Eigen::Vector3d colour = Eigen::Vector3d::Zero();  // BGR
+  Eigen::Vector3d colour = Eigen::Vector3d::Zero();  // BGR, linear
   double weight = 0.0;
 };
 
-void add_view(const DepthView& view, const Eigen::Vector3d& vertex, const Eigen::Vector3d& normal, double tolerance_m,
-              Sum& sum) {
+/// How a view sees a vertex.
+struct Sight {
+  cv::Vec3b colour;
+  double facing = 0.0;  ///< cosine between surface and line of sight; 0: it does not see it
+};
+
+Sight sight(const DepthView& view, const Eigen::Vector3d& vertex, const Eigen::Vector3d& normal, double tolerance_m) {
   const Eigen::Vector3d p = view.T_camera_object * vertex;
   const double facing = -(view.T_camera_object.linear() * normal).dot(p.normalized());
   const auto px = view.pixel_of(p);
-  if (facing <= 0.0 || !px || !(std::abs(view.depth.at<float>(*px) - p.z()) < tolerance_m)) return;
-  // The few most frontal views decide: with all of them, errors of a pixel would blur the print.
-  const double weight = std::pow(facing, 8);
-  const cv::Vec3b& colour = view.colour.at<cv::Vec3b>(*px);
-  sum.colour += weight * Eigen::Vector3d(colour[0], colour[1], colour[2]);
-  sum.weight += weight;
+  if (facing <= 0.0 || !px || !(std::abs(view.depth.at<float>(*px) - p.z()) < tolerance_m)) return {};
+  return {view.colour.at<cv::Vec3b>(*px), facing};
+}
+
+bool is_clipped(const cv::Vec3b& colour) {
+  return std::max({colour[0], colour[1], colour[2]}) > 250 || std::max({colour[0], colour[1], colour[2]}) < 8;
+}
+
+/// What the cameras and the light did to the colours of a mesh's vertices.
+class Lighting {
+ public:
+  Lighting(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
+
+  /// Log of how much brighter than its paint a view shows surface of this normal.
+  double operator()(int view, const Eigen::Vector3d& normal) const {
+    const auto at = static_cast<std::size_t>(view);
+    return exposures_[at] + (light_[at] >= 0 ? shades_[static_cast<std::size_t>(light_[at])](normal) : 0.0);
+  }
+
+ private:
+  void add_samples(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh);
+  void take_out_shade(const Mesh& mesh, int light);
+
+  std::vector<int> light_;     ///< of each view
+  std::vector<int> vertices_;  ///< those that are looked at
+  std::vector<ColourSample> samples_;
+  std::vector<Eigen::Vector3d> colours_;  ///< of the samples
+  std::vector<double> exposures_;
+  std::vector<Shade> shades_;
+};
+
+Lighting::Lighting(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh) {
+  int lights = 0;
+  for (const DepthView& view : views) {
+    light_.push_back(view.light);
+    lights = std::max(lights, view.light + 1);
+  }
+  add_samples(views, tolerance_m, mesh);
+  exposures_.assign(views.size(), 0.0);
+  shades_.resize(static_cast<std::size_t>(lights));
+  for (int light = 0; light < lights; ++light) take_out_shade(mesh, light);
+  // Views of several lights agree on the paint only now.
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    ColourSample& sample = samples_[i];
+    if (light_[static_cast<std::size_t>(sample.view)] < 0) continue;
+    const int vertex = vertices_[static_cast<std::size_t>(sample.vertex)];
+    sample.level -= shades_[static_cast<std::size_t>(light_[static_cast<std::size_t>(sample.view)])](
+        mesh.normals[static_cast<std::size_t>(vertex)].cast<double>());
+  }
+  exposures_ = exposures(samples_, static_cast<int>(vertices_.size()), static_cast<int>(views.size()));
+}
+
+void Lighting::add_samples(const std::vector<DepthView>& views, double tolerance_m, const Mesh& mesh) {
+  constexpr std::size_t kMost = 4000;
+  constexpr double kLeastFacing = 0.3;
+  const std::size_t step = std::max<std::size_t>(mesh.vertices.size() / kMost, 1);
+  for (std::size_t v = 0; v < mesh.vertices.size(); v += step) vertices_.push_back(static_cast<int>(v));
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const auto v = static_cast<std::size_t>(vertices_[i]);
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      const Sight seen = sight(views[k], mesh.vertices[v].cast<double>(), mesh.normals[v].cast<double>(), tolerance_m);
+      if (seen.facing < kLeastFacing || is_clipped(seen.colour)) continue;
+      const Eigen::Vector3d colour = linear_colour(seen.colour);
+      samples_.push_back(
+          {static_cast<int>(i), static_cast<int>(k), std::log(colour.mean()), seen.facing * seen.facing});
+      colours_.push_back(colour);
+    }
+  }
+}
+
+void Lighting::take_out_shade(const Mesh& mesh, int light) {
+  std::vector<ColourSample> lit;
+  for (const ColourSample& sample : samples_) {
+    if (light_[static_cast<std::size_t>(sample.view)] == light) lit.push_back(sample);
+  }
+  const std::vector<double> exposed =
+      exposures(lit, static_cast<int>(vertices_.size()), static_cast<int>(light_.size()));
+  std::vector<Sum> sums(vertices_.size());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const ColourSample& sample = samples_[i];
+    const auto view = static_cast<std::size_t>(sample.view);
+    if (light_[view] != light) continue;
+    Sum& sum = sums[static_cast<std::size_t>(sample.vertex)];
+    sum.colour += sample.weight * std::exp(-exposed[view]) * colours_[i];
+    sum.weight += sample.weight;
+  }
+  std::vector<Eigen::Vector3d> colours, normals;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (sums[i].weight <= 0.0) continue;
+    colours.emplace_back(sums[i].colour / sums[i].weight);
+    normals.push_back(mesh.normals[static_cast<std::size_t>(vertices_[i])].cast<double>());
+  }
+  shades_[static_cast<std::size_t>(light)] = fit_shade(colours, normals);
 }
 
 /// From the seen to the unseen, ring by ring.
@@ -51,10 +145,17 @@ void spread(const Mesh& mesh, std::vector<Sum>& sums) {
 }  // namespace
 
 std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolerance_m, int threads, Mesh& mesh) {
+  const Lighting lighting(views, tolerance_m, mesh);
   std::vector<Sum> sums(mesh.vertices.size());
   parallel_for(threads, static_cast<int>(sums.size()), [&](int i) {
-    for (const DepthView& view : views) {
-      add_view(view, mesh.vertices[i].cast<double>(), mesh.normals[i].cast<double>(), tolerance_m, sums[i]);
+    const Eigen::Vector3d normal = mesh.normals[i].cast<double>();
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      const Sight seen = sight(views[k], mesh.vertices[i].cast<double>(), normal, tolerance_m);
+      if (seen.facing <= 0.0) continue;
+      // The few most frontal views decide: with all of them, errors of a pixel would blur the print.
+      const double weight = std::pow(seen.facing, 8);
+      sums[i].colour += weight * std::exp(-lighting(static_cast<int>(k), normal)) * linear_colour(seen.colour);
+      sums[i].weight += weight;
     }
   });
   std::vector<bool> seen;
@@ -63,9 +164,8 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
   spread(mesh, sums);
   mesh.colours.clear();
   for (const Sum& sum : sums) {
-    const Eigen::Vector3d c = sum.weight > 0.0 ? Eigen::Vector3d(sum.colour / sum.weight) : Eigen::Vector3d::Zero();
-    mesh.colours.emplace_back(cv::saturate_cast<std::uint8_t>(c[0]), cv::saturate_cast<std::uint8_t>(c[1]),
-                              cv::saturate_cast<std::uint8_t>(c[2]));
+    mesh.colours.push_back(
+        coded_colour(sum.weight > 0.0 ? Eigen::Vector3d(sum.colour / sum.weight) : Eigen::Vector3d::Zero()));
   }
   return seen;
 }

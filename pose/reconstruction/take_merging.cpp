@@ -113,11 +113,13 @@ void register_views(std::vector<TrainingView>& views, int threads) {
   for (std::size_t i = 0; i < views.size(); ++i) views[i].T_camera_object = map.keyframes()[i].T_camera_world;
 }
 
-ModelOfViews fuse_masked_views(const std::string& name, const std::vector<TrainingView>& views, const Mesh& known,
+ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
                                std::optional<double> foot_m, const ModelMaking& settings) {
-  std::vector<fusion::DepthView> depth_views(views.size());
-  parallel_for(settings.threads, static_cast<int>(views.size()), [&](int i) {
-    depth_views[static_cast<std::size_t>(i)] = depth_view(views[static_cast<std::size_t>(i)], known);
+  std::vector<fusion::DepthView> depth_views(views.views.size());
+  parallel_for(settings.threads, static_cast<int>(depth_views.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    depth_views[at] = depth_view(views.views[at], known);
+    if (!views.lights.empty()) depth_views[at].light = views.lights[at];
   });
   fusion::GridSettings grid_settings;
   const Eigen::AlignedBox3d bounds = mesh_bounds(known).cast<double>();
@@ -145,9 +147,11 @@ bool merge_takes(const Take& first, ShownModel& model, const Take& second, Shown
   other.T_world_object = other.T_world_object * T_other_model;
   Mesh both = model.mesh;  // its outline is that of both
   append_mesh(other.mesh, found->T_a_b, both);
-  std::vector<TrainingView> views = training_views(first, model.views, "");
+  MaskedViews views{training_views(first, model.views, ""), {}};
+  views.lights.assign(views.views.size(), light_of(first, 0));
   std::vector<TrainingView> more = training_views(second, other.views, "");
-  std::move(more.begin(), more.end(), std::back_inserter(views));
+  std::move(more.begin(), more.end(), std::back_inserter(views.views));
+  views.lights.resize(views.views.size(), light_of(second, 1));
   ModelOfViews fused = fuse_masked_views("both takes", views, both, std::nullopt, settings);
   model.mesh = std::move(fused.mesh);
   model.seen = std::move(fused.seen);

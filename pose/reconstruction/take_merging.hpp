@@ -14,10 +14,15 @@ struct ModelOfViews {
   std::vector<bool> seen;  ///< per vertex
 };
 
+struct MaskedViews {
+  std::vector<TrainingView> views;
+  std::vector<int> lights;  ///< DepthView::light of each view; empty: all -1
+};
+
 /// Fuses masked views from all sides (Curless & Levoy 1996). What hides the object in a view, within the outline of
 /// `known`, says nothing; what is beside that outline is free. Where `foot_m` is set, the object ends there: nobody has
 /// seen it from below. Throws InputError naming `name` where nothing is left.
-ModelOfViews fuse_masked_views(const std::string& name, const std::vector<TrainingView>& views, const Mesh& known,
+ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
                                std::optional<double> foot_m, const ModelMaking& settings);
 
 /// Registers views of an object to one another, by their masks' pixels alone, from poses that are nearly right, and

@@ -51,6 +51,7 @@ std::vector<DepthView> views_about(const Take& take, const Eigen::AlignedBox3d& 
     }
     view.T_camera_object = keyframe.T_camera_world;
     views[static_cast<std::size_t>(i)] = fusion::make_depth_view(view);
+    views[static_cast<std::size_t>(i)].light = light_of(take, 0);
   });
   views.erase(std::remove_if(views.begin(), views.end(), [](const DepthView& view) { return view.depth.empty(); }),
               views.end());
@@ -247,6 +248,10 @@ double median(std::vector<float> values) {
 }
 
 }  // namespace
+
+int light_of(const Take& take, int number) {
+  return take.motion == Motion::kCamera ? number : -1;
+}
 
 cv::Mat mask_of(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_object) {
   const cv::Mat model =

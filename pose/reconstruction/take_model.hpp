@@ -36,6 +36,10 @@ struct ModelMaking {
 /// of the depth, so that they hold neither table nor hand. Throws InputError where there is no such part.
 ShownModel make_model(const Take& take, const ModelMaking& settings);
 
+/// DepthView::light of the take's keyframes: `number` where the camera moved and the light stood still about the
+/// object.
+int light_of(const Take& take, int number);
+
 /// Pixels of the frame in which the model is seen at this pose, and neither hidden nor seen through.
 cv::Mat mask_of(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_object);
 

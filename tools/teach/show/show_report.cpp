@@ -134,6 +134,7 @@ OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
   json["drift_mm"] = drift_mm;
   json["drift_deg"] = drift_deg;
   json["agreement_mm"] = 1e3 * shown.agreement_m;
+  json["outline_overlap"] = shown.outline_overlap ? OrderedJson(*shown.outline_overlap) : OrderedJson();
   json["seen_share"] =
       static_cast<double>(reconstruction::count_seen(seen_by_all(shown))) / reconstruction::kSphereDirections;
   json["seen_surface"] = seen_surface(shown);
@@ -220,12 +221,16 @@ double second_of(const Take& take, int frame) {
 Verdict judge(const Shown& shown) {
   constexpr double kMostDisagreement_m = 0.003;
   constexpr double kLeastSurface = 0.55;
+  constexpr double kLeastOverlap = 0.9;
   constexpr std::size_t kFewestKeyframes = 8;
   Verdict verdict;
   if (shown.takes.front().motion != Motion::kTurntable) judge_take(shown.takes.front(), verdict.reasons);
   if (shown.agreement_m > kMostDisagreement_m)
     verdict.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
                                           1e3 * shown.agreement_m, 1e3 * kMostDisagreement_m));
+  if (shown.outline_overlap.value_or(1.0) < kLeastOverlap)
+    verdict.reasons.push_back(fmt::format("the model's outline overlaps with the masks by {:.2f}, expected at least {}",
+                                          *shown.outline_overlap, kLeastOverlap));
   if (seen_surface(shown) < kLeastSurface)
     verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * seen_surface(shown)));
   if (shown.views.front().size() < kFewestKeyframes)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct Shown {
   std::vector<bool> seen;   ///< per vertex
   bool second_fits = true;  ///< the second take, where there was one
   double agreement_m = 0.0;
-  double seconds = 0.0;  ///< that it took until the model was there
+  std::optional<double> outline_overlap;  ///< median over the views, with masks that were given
+  double seconds = 0.0;                   ///< that it took until the model was there
 };
 
 /// Whether a model is worth teaching.

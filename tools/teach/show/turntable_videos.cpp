@@ -4,12 +4,14 @@
 #include <chrono>
 #include <iterator>
 #include <map>
+#include <tuple>
 
 #include "drivers/datasets/uw_dataset.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/fusion/fuse_views.hpp"
 #include "pose/reconstruction/model_registration.hpp"
+#include "pose/reconstruction/outline_placement.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 
 namespace houghstream::teach {
@@ -25,24 +27,41 @@ constexpr const char* kNominalCamera = "640x480,525,525,319.5,239.5";
 struct Video {
   std::vector<TrainingView> views;
   fusion::FusedModel model;
+  double overlap = 0.0;  ///< median over its views, of the model's outline and the masks
 };
 
-fusion::FusedModel fuse(const std::string& name, const std::vector<TrainingView>& views, int threads) {
+/// Median overlap of the model's outline with the views' masks.
+double outline_overlap(const Mesh& mesh, const std::vector<TrainingView>& views) {
+  std::vector<double> overlaps;
+  for (const TrainingView& view : views) overlaps.push_back(reconstruction::outline_overlap(mesh, view));
+  const auto middle = overlaps.begin() + static_cast<std::ptrdiff_t>(overlaps.size() / 2);
+  std::nth_element(overlaps.begin(), middle, overlaps.end());
+  return *middle;
+}
+
+Video fuse(const std::string& name, std::vector<TrainingView> views, int threads) {
   fusion::FusionSettings settings;
   settings.align = false;
   settings.threads = threads;
-  return fusion::fuse_views(name, views, settings);
+  Video video{std::move(views), {}, 0.0};
+  video.model = fusion::fuse_views(name, video.views, settings);
+  video.overlap = outline_overlap(video.model.mesh, video.views);
+  return video;
 }
 
-/// The better of the poses that the axis gives and of those that registration makes of them.
-Video make_video(const std::string& name, std::vector<TrainingView> views, int threads) {
-  Video by_axis{views, fuse(name, views, threads)};
-  reconstruction::register_views(views, threads);
-  Video by_registration{views, fuse(name, views, threads)};
-  const bool is_better = by_registration.model.after.median_m < by_axis.model.after.median_m;
-  log_info("{}: {} views agree within {:.2f} mm by the axis, {:.2f} mm registered", name, views.size(),
-           1e3 * by_axis.model.after.median_m, 1e3 * by_registration.model.after.median_m);
-  return is_better ? by_registration : by_axis;
+/// The best of the poses that the axis gives, of those that registration makes of them, and of those that the outlines
+/// do: the masks, of which none is made, tell.
+Video make_video(const std::string& name, const std::vector<TrainingView>& views, int threads) {
+  std::vector<TrainingView> registered = views;
+  reconstruction::register_views(registered, threads);
+  std::vector<Video> videos = {fuse(name, views, threads), fuse(name, std::move(registered), threads)};
+  std::vector<TrainingView> placed = views;
+  reconstruction::place_by_outlines(videos.front().model.mesh, threads, placed);
+  videos.push_back(fuse(name, std::move(placed), threads));
+  log_info("{}: {} views, whose outlines overlap by {:.3f} by the axis, {:.3f} registered, {:.3f} placed by outlines",
+           name, views.size(), videos[0].overlap, videos[1].overlap, videos[2].overlap);
+  return *std::max_element(videos.begin(), videos.end(),
+                           [](const Video& a, const Video& b) { return a.overlap < b.overlap; });
 }
 
 std::vector<Video> read_videos(const ShowOptions& options) {
@@ -55,34 +74,77 @@ std::vector<Video> read_videos(const ShowOptions& options) {
                               parse_camera(options.camera.empty() ? kNominalCamera : options.camera)))
     by_video[view.object_frame].push_back(std::move(view));
   std::vector<Video> videos;
-  for (auto& [name, views] : by_video) videos.push_back(make_video(name, std::move(views), options.threads));
-  std::stable_sort(videos.begin(), videos.end(),
-                   [](const Video& a, const Video& b) { return a.model.after.median_m < b.model.after.median_m; });
+  for (auto& [name, views] : by_video) videos.push_back(make_video(name, views, options.threads));
+  std::stable_sort(videos.begin(), videos.end(), [](const Video& a, const Video& b) { return a.overlap > b.overlap; });
   return videos;
 }
 
 /// All videos' views in the first one's frame; what does not fit is left out.
-std::vector<TrainingView> merge(const std::vector<Video>& videos, Mesh& outline, int threads) {
-  std::vector<TrainingView> all = videos.front().views;
-  const fusion::FusedModel& first = videos.front().model;
-  outline = first.mesh;
-  for (std::size_t i = 1; i < videos.size(); ++i) {
-    const fusion::FusedModel& model = videos[i].model;
-    const auto found =
-        reconstruction::register_models({&first.mesh, &first.seen}, {&model.mesh, &model.seen}, true, threads);
-    if (!found) {
-      log_warning("{} does not fit {}, and is left out", videos[i].views.front().object_frame,
-                  videos.front().views.front().object_frame);
-      continue;
-    }
-    for (TrainingView view : videos[i].views) {
-      view.T_camera_object = view.T_camera_object * found->T_a_b.inverse();
-      all.push_back(std::move(view));
-    }
-    reconstruction::append_mesh(model.mesh, found->T_a_b, outline);
+class Merging {
+ public:
+  Merging(const ShowOptions& options, const Video& first) : options_(options), first_(first), views_(first.views) {
+    making_.threads = options.threads;
+    outline_ = first.model.mesh;
+    model_ = fuse(views_, outline_);
+    overlap_ = teach::outline_overlap(model_.mesh, views_);
   }
-  return all;
-}
+
+  /// Adds a video where the outlines of all views still fit.
+  void add(const Video& video) {
+    constexpr double kMostLost = 0.02;
+    const auto found = reconstruction::register_models({&first_.model.mesh, &first_.model.seen},
+                                                       {&video.model.mesh, &video.model.seen}, true, options_.threads);
+    double overlap = 0.0;
+    if (found) {
+      std::vector<TrainingView> all = views_;
+      for (TrainingView view : video.views) {
+        view.T_camera_object = view.T_camera_object * found->T_a_b.inverse();
+        all.push_back(std::move(view));
+      }
+      Mesh outline = outline_;
+      reconstruction::append_mesh(video.model.mesh, found->T_a_b, outline);
+      ModelOfViews model = fuse(all, outline);
+      overlap = teach::outline_overlap(model.mesh, all);
+      if (overlap > overlap_ - kMostLost) {
+        std::tie(views_, outline_, model_, overlap_) =
+            std::tuple(std::move(all), std::move(outline), std::move(model), overlap);
+        return;
+      }
+    }
+    log_warning("{} does not fit {}, and is left out: the outlines would overlap by {:.3f} instead of {:.3f}",
+                video.views.front().object_frame, first_.views.front().object_frame, overlap, overlap_);
+  }
+
+  /// Moves the views to the model's outline, and makes it again, for as long as that helps.
+  void settle() {
+    constexpr int kRounds = 4;
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<TrainingView> placed = views_;
+      reconstruction::place_by_outlines(model_.mesh, options_.threads, placed);
+      ModelOfViews again = fuse(placed, model_.mesh);
+      const double overlap = teach::outline_overlap(again.mesh, placed);
+      if (overlap <= overlap_) return;
+      std::tie(views_, model_, overlap_) = std::tuple(std::move(placed), std::move(again), overlap);
+    }
+  }
+
+  std::vector<TrainingView>& views() { return views_; }
+  ModelOfViews& model() { return model_; }
+  double overlap() const { return overlap_; }
+
+ private:
+  ModelOfViews fuse(const std::vector<TrainingView>& views, const Mesh& outline) const {
+    return fuse_masked_views(options_.name, {views, {}}, outline, mesh_bounds(outline).min().z(), making_);
+  }
+
+  const ShowOptions& options_;
+  const Video& first_;
+  reconstruction::ModelMaking making_;
+  std::vector<TrainingView> views_;
+  Mesh outline_;
+  ModelOfViews model_;
+  double overlap_ = 0.0;
+};
 
 /// The views as a take that is over.
 Take take_of(const std::vector<TrainingView>& views, std::vector<ShownView>& shown) {
@@ -117,17 +179,11 @@ bool is_turntable_videos(const std::string& source) {
 Shown show_turntable(const ShowOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<Video> videos = read_videos(options);
-  Mesh outline;
-  std::vector<TrainingView> views = merge(videos, outline, options.threads);
-  std::vector<TrainingView> registered = views;
-  reconstruction::register_views(registered, options.threads);
-  const double before = fuse(options.name, views, options.threads).after.median_m;
-  const double after = fuse(options.name, registered, options.threads).after.median_m;
-  if (after < before) views = std::move(registered);
-  reconstruction::ModelMaking making;
-  making.threads = options.threads;
-  ModelOfViews model =
-      fuse_masked_views(options.name, views, outline, mesh_bounds(videos.front().model.mesh).min().z(), making);
+  Merging merging(options, videos.front());
+  for (std::size_t i = 1; i < videos.size(); ++i) merging.add(videos[i]);
+  merging.settle();
+  std::vector<TrainingView>& views = merging.views();
+  ModelOfViews& model = merging.model();
   const Eigen::Vector3d foot = reconstruction::foot_of(model.mesh);
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= foot.cast<float>();
   for (TrainingView& view : views) view.T_camera_object = view.T_camera_object * Eigen::Translation3d(foot);
@@ -137,7 +193,8 @@ Shown show_turntable(const ShowOptions& options) {
   shown.takes.push_back(take_of(views, shown.views.front()));
   shown.mesh = std::move(model.mesh);
   shown.seen = std::move(model.seen);
-  shown.agreement_m = std::min(before, after);
+  shown.agreement_m = fuse(options.name, views, options.threads).model.after.median_m;
+  shown.outline_overlap = merging.overlap();
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return shown;
 }

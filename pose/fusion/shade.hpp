@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace houghstream::fusion {
+
+/// A pixel's colour in linear light: what its bytes mean as sRGB (IEC 61966-2-1), BGR in [0,1].
+Eigen::Vector3d linear_colour(const cv::Vec3b& colour);
+/// The inverse, clipped.
+cv::Vec3b coded_colour(const Eigen::Vector3d& linear);
+
+/// A vertex as a view shows it.
+struct ColourSample {
+  int vertex = 0;
+  int view = 0;
+  double level = 0.0;   ///< log of the linear brightness
+  double weight = 0.0;  ///< more for a frontal view
+};
+
+/// How much brighter than the others each view was exposed, log; its median is 0. Brightness is taken to be
+/// exposure times what the vertex sends out; medians, so that shine and shadows that come and go do not matter. A view
+/// that shares no vertex with others has 0. (Gain compensation of panoramas: Brown and Lowe 2007, with medians.)
+std::vector<double> exposures(const std::vector<ColourSample>& samples, int vertices, int views);
+
+/// How brightly light that stands still about the object falls on surface that faces one way: log, spherical harmonics
+/// to the second order (Ramamoorthi and Hanrahan 2001 show that these hold diffuse light).
+class Shade {
+ public:
+  /// Log of the light on a surface of this normal, relative to the best lit fifth of the object.
+  double operator()(const Eigen::Vector3d& normal) const;
+
+ private:
+  friend Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
+  Eigen::Matrix<double, 8, 1> weights_ = Eigen::Matrix<double, 8, 1>::Zero();
+  double best_ = 0.0;
+};
+
+/// Parts light from paint. Neither is seen alone: what has the same hue and saturation on sides that face differently
+/// is taken to be painted alike in most places (absolute deviations are least), and what remains unsure is paint.
+/// `colours`: linear BGR of points of the surface, without exposure; `normals`: unit length. Both of one size.
+Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
+
+}  // namespace houghstream::fusion
