@@ -1,18 +1,23 @@
 # One place for how our code is compiled: C++17, warnings are errors, one floating-point result on every machine.
+# As a part of another project (add_subdirectory, FetchContent) it leaves that one's folders, build type and warnings alone.
 
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 
-if(NOT CMAKE_BUILD_TYPE)
+if(NOT CMAKE_BUILD_TYPE AND PROJECT_IS_TOP_LEVEL)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER sh "${CMAKE_SOURCE_DIR}/.cmake/cached_compile.sh" "${CCACHE_PROGRAM}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER sh "${PROJECT_SOURCE_DIR}/.cmake/cached_compile.sh" "${CCACHE_PROGRAM}")
+endif()
+
+if(PROJECT_IS_TOP_LEVEL)
+  set(HOUGHSTREAM_WERROR -Werror)
 endif()
 
 set(HOUGHSTREAM_SUMMARY "" CACHE INTERNAL "")
@@ -31,12 +36,12 @@ endfunction()
 
 # Our targets only: generated and third-party headers are system headers.
 function(houghstream_compile_options target)
-  target_include_directories(${target} PUBLIC "${CMAKE_SOURCE_DIR}")
+  target_include_directories(${target} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>")
   # Contraction to fused multiply-add would make results depend on the machine. lcm_coretypes.h reads doubles and floats
   # through integer pointers; optimised under the aliasing rules, g++ 12 drops the stores and sends zeros: all of our code
   # goes without them, as precompiled headers have one set of options.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                                           -Wno-float-conversion -Werror -ffp-contract=off -fno-strict-aliasing)
+                                           -Wno-float-conversion ${HOUGHSTREAM_WERROR} -ffp-contract=off -fno-strict-aliasing)
   if(HOUGHSTREAM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer -g)
@@ -62,7 +67,7 @@ function(houghstream_share_headers name)
   if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_SANITIZE)
     return()
   endif()
-  set(source "${CMAKE_BINARY_DIR}/${name}.cpp")
+  set(source "${PROJECT_BINARY_DIR}/${name}.cpp")
   file(CONFIGURE OUTPUT "${source}" CONTENT "// ${name}: a target needs a source.\n")
   add_library(${name} OBJECT "${source}")
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
@@ -114,7 +119,7 @@ function(houghstream_tests name)
   endforeach()
   add_executable(${name} ${sources})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest_main)
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   houghstream_compile_options(${name})
   houghstream_compile_quickly(${name})
   houghstream_use_shared_headers(${name} test_headers)

@@ -10,6 +10,7 @@
 #include "pipeline/geometry/renderer.hpp"
 #include "pose/fusion/distance_grid.hpp"
 #include "pose/fusion/grid_surface.hpp"
+#include "pose/fusion/surface_smoothing.hpp"
 #include "pose/fusion/view_colours.hpp"
 #include "pose/reconstruction/model_registration.hpp"
 
@@ -134,6 +135,7 @@ ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views
   ModelOfViews model;
   model.mesh = fusion::largest_part(fusion::extract_surface(grid));
   require(!model.mesh.triangles.empty(), "{}: the views have no common surface, expected those of one object", name);
+  fusion::smooth_surface(settings.threads, model.mesh);
   model.seen = fusion::colour_mesh(depth_views, 4.0 * grid.voxel, settings.threads, model.mesh);
   return model;
 }

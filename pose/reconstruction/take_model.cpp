@@ -10,6 +10,7 @@
 #include "pipeline/geometry/renderer.hpp"
 #include "pose/fusion/distance_grid.hpp"
 #include "pose/fusion/grid_surface.hpp"
+#include "pose/fusion/surface_smoothing.hpp"
 #include "pose/fusion/view_colours.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 
@@ -284,6 +285,7 @@ ShownModel make_model(const Take& take, const ModelMaking& settings) {
   ShownModel model;
   model.mesh = fusion::largest_part(fusion::extract_surface(grid));
   require(!model.mesh.triangles.empty(), "the views have no common surface, expected an object that all of them show");
+  fusion::smooth_surface(settings.threads, model.mesh);
   model.seen = fusion::colour_mesh(views, 4.0 * voxel, settings.threads, model.mesh);
   model.T_world_object.translation() = foot_of(model.mesh);
   model.T_world_object.translation().z() = 0.0;  // of the table

@@ -26,8 +26,9 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     hush_log();  // the bus would warn of small buffers itself
     std::error_code unknown;
-    settings.types_jar =
-        std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path() / "houghstream_types.jar";
+    const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+    settings.types_jar = own / "houghstream_types.jar";
+    if (!std::filesystem::exists(settings.types_jar)) settings.types_jar = own / "../share/java/houghstream_types.jar";
     const Findings findings = examine(this_machine(), settings);
     fmt::print("{}", to_text(findings));
     std::fflush(stdout);

@@ -133,6 +133,13 @@ class Processes:
             self.by_name[name].wait(seconds)
 
 
+def virtual_camera_of(programs):
+    """LD_LIBRARY_PATH of a process that is to see the virtual camera: built beside the programs, or installed with them."""
+    built = programs.parent / "virtual_camera"
+    installed = programs.parent.glob("lib/**/houghstream/virtual_camera")
+    return str(built if built.is_dir() else next(installed, built))
+
+
 def cpu_seconds(pid, proc=pathlib.Path("/proc")):
     """CPU time of all threads so far. The name of a process may hold spaces and brackets: count from the last one."""
     fields = (proc / str(pid) / "stat").read_text().rpartition(")")[2].split()

@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kMostAttitudes = 10;
 constexpr double kSameAttitudeDeg = 40.0;  // nearer ways of resting are one: views between them are jittered
+constexpr double kNearlyFlat_m = 0.001;    // the foot of a scan
 constexpr double kTiltDeviationDeg = 4.0;  // no table is level, no camera upright
 constexpr double kLeastLeanDeg = 10.0;
 constexpr double kMostLeanDeg = 45.0;
@@ -48,7 +49,7 @@ Mesh about_its_middle(Mesh mesh) {
 /// What stands firmest comes first; what differs by less than kSameAttitudeDeg is left out.
 std::vector<Eigen::Vector3d> resting_ups(const Mesh& mesh) {
   std::vector<RestingAttitude> all;
-  for (const RestingFamily& family : resting_families(about_its_middle(mesh)))
+  for (const RestingFamily& family : resting_families(about_its_middle(mesh), kNearlyFlat_m))
     all.insert(all.end(), family.begin(), family.end());
   std::stable_sort(all.begin(), all.end(), [](const RestingAttitude& a, const RestingAttitude& b) {
     return a.steepest_slope_rad() > b.steepest_slope_rad();

@@ -9,7 +9,7 @@ from studies.command import RECORDED_CAMERA, call, die, recorded_views, step
 from studies.demo import live, report, teach
 from studies.lcm_log import count_events
 from studies.measured import threads, write_json
-from studies.stream import Stream
+from studies.stream import Stream, virtual_camera_of
 from studies.work import Store, Units, make
 
 RATE, SINGLE_PICTURES_RATE = 30, 2  # Hz; single pictures are sent slowly enough that each is looked at
@@ -123,7 +123,7 @@ def run_live(options, programs):
     hand = Hand(frames // 2, script, shutter)
     if options.unplug:
         hand.start()
-    camera = {"LD_LIBRARY_PATH": str(programs.parent / "virtual_camera"), "HOUGHSTREAM_VIRTUAL_CAMERA": str(script)}
+    camera = {"LD_LIBRARY_PATH": virtual_camera_of(programs), "HOUGHSTREAM_VIRTUAL_CAMERA": str(script)}
     capture = (programs / "hs-capture", "--source", "openni2", "--frames", frames)
     demo.stream("stream", frames, demo.store.path("training") / "models").play(*capture, **camera)
     if options.unplug:

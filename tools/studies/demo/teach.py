@@ -12,7 +12,7 @@ from studies.demo.live import HALF_PERIOD_US
 from studies.lcm_log import known_objects_of, read_log, status_of, teaching_of
 from studies.measured import about, read_json, threads, write_json
 from studies.report.page import embedded, render, show
-from studies.stream import Processes
+from studies.stream import Processes, virtual_camera_of
 from studies.work import Store, Units, make
 
 OBJECT, NAME = "coffee_mug", "mug"
@@ -41,7 +41,7 @@ def start_stream(running, programs, out, store, scene):
         running.by_name[name].wait_until_ready()
     script, shutter = out / "camera_script", out / "shutter.txt"
     script.write_text(f"scene {scene}\nrate_hz {TAKE_HZ}\nshutter_file {shutter}\n")
-    camera = {"LD_LIBRARY_PATH": str(programs.parent / "virtual_camera"), "HOUGHSTREAM_VIRTUAL_CAMERA": str(script)}
+    camera = {"LD_LIBRARY_PATH": virtual_camera_of(programs), "HOUGHSTREAM_VIRTUAL_CAMERA": str(script)}
     running.start("capture", programs / "hs-capture", "--source", "openni2", "--mode", f"640x480@{TAKE_HZ}", **camera)
 
 

@@ -32,13 +32,13 @@ Eigen::Matrix3d turn_down(Eigen::Vector3d down) {
   return Eigen::Quaterniond::FromTwoVectors(down, -Eigen::Vector3d::UnitZ()).toRotationMatrix() * over;
 }
 
-RestingAttitude attitude_of(const TippingBody& body, const Eigen::Vector3d& down) {
+RestingAttitude attitude_of(const TippingBody& body, const Eigen::Vector3d& down, double nearly_m) {
   const Support support = body.support(down);
   RestingAttitude attitude;
   attitude.R_table_object = turn_down(down);
   attitude.centre_height_m = support.height_m;
   attitude.origin_height_m = support.height_m + down.dot(body.centre_of_mass());
-  attitude.margin_m = support.margin_m();
+  attitude.margin_m = nearly_m > 0.0 ? body.support(down, nearly_m).margin_m() : support.margin_m();
   return attitude;
 }
 
@@ -71,11 +71,11 @@ double RestingAttitude::steepest_slope_rad() const {
   return std::atan2(margin_m, centre_height_m);
 }
 
-std::vector<RestingFamily> resting_families(const Mesh& mesh) {
+std::vector<RestingFamily> resting_families(const Mesh& mesh, double nearly_m) {
   const TippingBody body(mesh);
   std::vector<RestingFamily> families;
   for (int i = 0; i < kDrops; ++i) {
-    const RestingAttitude attitude = attitude_of(body, body.settled(spread_direction(i, kDrops)));
+    const RestingAttitude attitude = attitude_of(body, body.settled(spread_direction(i, kDrops)), nearly_m);
     if (attitude.steepest_slope_rad() >= kLeastSlopeRad) add_to_family(attitude, families);
   }
   return families;

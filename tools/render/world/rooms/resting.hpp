@@ -22,8 +22,9 @@ struct RestingAttitude {
 using RestingFamily = std::vector<RestingAttitude>;
 
 /// All families that a thing of even density, dropped in any attitude, is found in; each attitude once. What tips over
-/// on a slope of 1 degree does not rest. Same result on every call. Throws InputError for a mesh without volume.
-std::vector<RestingFamily> resting_families(const Mesh& mesh);
+/// on a slope of 1 degree does not rest. Surface within `nearly_m` of the table carries it too: that of a scan is never
+/// quite flat. Same result on every call. Throws InputError for a mesh without volume.
+std::vector<RestingFamily> resting_families(const Mesh& mesh, double nearly_m = 0.0);
 
 /// Those without the family that stands upright, z up. Throws InputError where nothing is left.
 std::vector<RestingFamily> lying_families(const std::vector<RestingFamily>& families);

@@ -90,7 +90,7 @@ TippingBody::TippingBody(const Mesh& mesh) {
   for (const Eigen::Vector3f& vertex : mesh.vertices) points_.emplace_back(vertex.cast<double>() - centre_of_mass_);
 }
 
-Support TippingBody::support(const Eigen::Vector3d& down) const {
+Support TippingBody::support(const Eigen::Vector3d& down, double nearly_m) const {
   Support support;
   // Of an open surface, the centre of mass may lie below all of it.
   support.height_m = down.dot(points_.front());
@@ -99,7 +99,7 @@ Support TippingBody::support(const Eigen::Vector3d& down) const {
   support.across = support.along.cross(down);
   std::vector<Eigen::Vector2d> touching;
   for (const Eigen::Vector3d& point : points_) {
-    if (down.dot(point) < support.height_m - kTouchM) continue;
+    if (down.dot(point) < support.height_m - std::max(kTouchM, nearly_m)) continue;
     touching.emplace_back(support.along.dot(point), support.across.dot(point));
   }
   support.corners = convex_hull(std::move(touching));

@@ -1,0 +1,99 @@
+# What is installed, where the GNU directories want it, in four components that become Debian packages (packages.cmake):
+# programs, development, python, java.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(shared_data "${CMAKE_INSTALL_DATADIR}/houghstream")
+
+# Programs
+set(programs hs-capture hs-detect hs-pose hs-view hs-log hs-stream hs-doctor hs-teach hs-train hs-fuse hs-evaluate
+             hs-import hs-render hs-observe)
+if(TARGET hs-track)
+  list(APPEND programs hs-track)
+endif()
+install(TARGETS ${programs} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
+install(PROGRAMS "${PROJECT_BINARY_DIR}/bin/hs-spy" "${PROJECT_SOURCE_DIR}/tools/houghstream-demo"
+        DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/studies" DESTINATION "${shared_data}" COMPONENT programs
+        FILES_MATCHING PATTERN "*.py" PATTERN "*.html" PATTERN "__pycache__" EXCLUDE)
+install(FILES "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/stream/systemd/" DESTINATION lib/systemd/user COMPONENT programs
+        FILES_MATCHING PATTERN "*.service" PATTERN "*.target")
+install(FILES "${PROJECT_SOURCE_DIR}/tools/stream/systemd/houghstream.env"
+              "${PROJECT_SOURCE_DIR}/tools/stream/houghstream.pmd"
+        DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples" COMPONENT programs)
+
+# The virtual camera: LD_LIBRARY_PATH of its folder makes programs see it.
+set(virtual_camera "${CMAKE_INSTALL_LIBDIR}/houghstream/virtual_camera")
+install(TARGETS virtual_camera LIBRARY DESTINATION "${virtual_camera}/OpenNI2/Drivers" COMPONENT programs)
+install(FILES "${PROJECT_BINARY_DIR}/virtual_camera/libOpenNI2.so.0" DESTINATION "${virtual_camera}" COMPONENT programs)
+install(FILES "${PROJECT_BINARY_DIR}/virtual_camera/OpenNI2/Drivers/libOniFile.so.0"
+        DESTINATION "${virtual_camera}/OpenNI2/Drivers" COMPONENT programs)
+
+# Manual pages and completions are made of --help.
+find_program(HELP2MAN help2man)
+set(manual "${PROJECT_BINARY_DIR}/man")
+set(pages)
+foreach(program IN LISTS programs)
+  install(FILES "${PROJECT_SOURCE_DIR}/tools/stream/bash_completion" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
+          RENAME "${program}" COMPONENT programs)
+  if(HELP2MAN)
+    add_custom_command(OUTPUT "${manual}/${program}.1" DEPENDS ${program}
+      COMMAND "${CMAKE_COMMAND}" -E make_directory "${manual}"
+      COMMAND "${HELP2MAN}" --no-info --no-discard-stderr --output "${manual}/${program}.1" "$<TARGET_FILE:${program}>"
+      VERBATIM)
+    list(APPEND pages "${manual}/${program}.1")
+  endif()
+endforeach()
+if(pages)
+  add_custom_target(houghstream_manual ALL DEPENDS ${pages})
+  install(FILES ${pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT programs)
+else()
+  houghstream_summary("manual pages      no (help2man not found)")
+endif()
+
+# Libraries and headers
+set(libraries lcmtypes pipeline pipeline_lcm drivers detector pose stored_quality finder)
+foreach(library IN LISTS libraries)
+  get_target_property(type ${library} TYPE)
+  if(NOT type STREQUAL INTERFACE_LIBRARY)
+    set_target_properties(${library} PROPERTIES OUTPUT_NAME houghstream_${library})
+  endif()
+  add_library(houghstream::${library} ALIAS ${library})
+endforeach()
+set_target_properties(lcmtypes PROPERTIES EXPORT_NAME types)
+add_library(houghstream::types ALIAS lcmtypes)
+install(TARGETS ${libraries} EXPORT houghstream_targets
+        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development
+        INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" "${CMAKE_INSTALL_INCLUDEDIR}/houghstream")
+install(DIRECTORY "${PROJECT_BINARY_DIR}/lcmtypes/generated/houghstream" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+        COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/lcmtypes/" DESTINATION "${shared_data}/lcmtypes" COMPONENT development
+        FILES_MATCHING PATTERN "*.lcm")
+file(STRINGS "${PROJECT_SOURCE_DIR}/.cmake/public_headers.txt" headers REGEX "^[a-z]")
+foreach(header IN LISTS headers)
+  get_filename_component(folder "${header}" DIRECTORY)
+  install(FILES "${PROJECT_SOURCE_DIR}/${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/houghstream/${folder}"
+          COMPONENT development)
+endforeach()
+set(cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/houghstream")
+install(EXPORT houghstream_targets NAMESPACE houghstream:: DESTINATION "${cmake_folder}" COMPONENT development)
+configure_package_config_file("${PROJECT_SOURCE_DIR}/.cmake/houghstreamConfig.cmake.in" "${PROJECT_BINARY_DIR}/houghstreamConfig.cmake"
+                              INSTALL_DESTINATION "${cmake_folder}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/houghstreamConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/houghstreamConfig.cmake" "${PROJECT_BINARY_DIR}/houghstreamConfigVersion.cmake"
+              "${PROJECT_SOURCE_DIR}/.cmake/find_lcm.cmake"
+        DESTINATION "${cmake_folder}" COMPONENT development)
+configure_file("${PROJECT_SOURCE_DIR}/.cmake/houghstream.pc.in" "${PROJECT_BINARY_DIR}/houghstream.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/houghstream.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/examples/" DESTINATION share/doc/libhoughstream-dev/examples
+        COMPONENT development PATTERN "README.md" EXCLUDE)
+
+# Python and Java
+install(DIRECTORY "${PROJECT_BINARY_DIR}/python/houghstream" DESTINATION lib/python3/dist-packages COMPONENT python
+        FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+if(TARGET houghstream_types_jar)
+  install(FILES "${PROJECT_BINARY_DIR}/bin/houghstream_types.jar" "${PROJECT_BINARY_DIR}/bin/houghstream_spy.jar"
+          DESTINATION "${CMAKE_INSTALL_DATADIR}/java" COMPONENT java)
+endif()
+
+include(packages)

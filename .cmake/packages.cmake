@@ -1,0 +1,75 @@
+# Debian packages, with cpack in the build folder: houghstream, libhoughstream-dev, python3-houghstream, houghstream-java.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME houghstream)
+set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
+set(CPACK_PACKAGE_VENDOR Houghstream)
+set(CPACK_PACKAGE_CONTACT "The Houghstream engineers <houghstream@example.org>")
+set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL programs development python java)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME houghstream)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "python3, python3-matplotlib, python3-jinja2, python3-pil, liblcm-bin, iproute2, util-linux")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "houghstream-java, libopenni2-0")
+set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "finds taught objects in an RGB-D camera's stream, and their poses
+ Processes for capture, detection (a depth-normalised Hough forest) and pose
+ estimation (ICP) that exchange LCM messages, and tools that teach, view, log,
+ measure and mend.")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhoughstream-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblcm-dev, libopencv-dev, libturbojpeg0-dev, libdeflate-dev, zlib1g-dev, libeigen3-dev, libhwy-dev, libassimp-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "finds taught objects in an RGB-D camera's stream: libraries
+ Static libraries, headers, message definitions, CMake and pkg-config files,
+ and examples.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-houghstream)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, python3-pil")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Python
+ Message types, logs, and frames as numpy arrays.")
+
+set(CPACK_DEBIAN_JAVA_PACKAGE_NAME houghstream-java)
+set(CPACK_DEBIAN_JAVA_PACKAGE_SECTION java)
+set(CPACK_DEBIAN_JAVA_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_JAVA_PACKAGE_DEPENDS "default-jre, liblcm-java, libjchart2d-java")
+set(CPACK_COMPONENT_JAVA_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Java
+ Message types, and viewers for lcm-spy.")
+
+# Each package has its copyright file and a changelog.
+file(WRITE "${PROJECT_BINARY_DIR}/copyright"
+"Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: houghstream
+
+Files: *
+Copyright: The Houghstream engineers
+License: none-chosen
+ No licence has been chosen yet. Nobody has been given the right to copy, change
+ or distribute this work.
+")
+string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(WRITE "${PROJECT_BINARY_DIR}/changelog"
+"houghstream (${PROJECT_VERSION}) unstable; urgency=low
+
+  * As built.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${now}
+")
+find_program(GZIP gzip REQUIRED)
+execute_process(COMMAND "${GZIP}" -9nf "${PROJECT_BINARY_DIR}/changelog")
+foreach(pair programs:houghstream development:libhoughstream-dev python:python3-houghstream java:houghstream-java)
+  string(REPLACE ":" ";" pair "${pair}")
+  list(GET pair 0 component)
+  list(GET pair 1 package)
+  install(FILES "${PROJECT_BINARY_DIR}/copyright" "${PROJECT_BINARY_DIR}/changelog.gz"
+          DESTINATION "share/doc/${package}" COMPONENT ${component})
+endforeach()
+
+include(CPack)

@@ -1,0 +1,167 @@
+"""What `cmake --install` leaves: programs that run from there, libraries and headers that the examples build with, and types
+for Python. Arguments: the source folder, the build folder."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE, BUILD = (pathlib.Path(word) for word in sys.argv[1:3])
+HOME = None  # where it is installed; a blank in its name
+PRIVATE = ("unshare", "-rn", "sh", "-c", "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo && exec \"$@\"", "sh")  # fmt: skip
+
+
+def setUpModule():
+    global HOME
+    folder = tempfile.mkdtemp(prefix="houghstream install ")
+    unittest.addModuleCleanup(shutil.rmtree, folder)
+    HOME = pathlib.Path(folder) / "usr"
+    run("cmake", "--install", BUILD, "--prefix", HOME)
+
+
+def run(*words, status=0, **options):
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=240, check=False, **options)
+    if done.returncode != status:
+        raise AssertionError(f"{words}: status {done.returncode}, expected {status}\n{done.stdout}\n{done.stderr}")
+    return done.stdout + done.stderr
+
+
+def public_headers():
+    lines = (SOURCE / ".cmake" / "public_headers.txt").read_text().splitlines()
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def python_of_installation():
+    return {**os.environ, "PYTHONPATH": str(HOME / "lib/python3/dist-packages"), "PYTHONDONTWRITEBYTECODE": "1",
+            "LCM_DEFAULT_URL": "udpm://239.255.76.67:7667?ttl=0"}  # fmt: skip
+
+
+class Headers(unittest.TestCase):
+    def test_public_ones_include_public_ones_only(self):
+        known = set(public_headers())
+        for header in sorted(known):
+            text = (HOME / "include/houghstream" / header).read_text()
+            for included in re.findall(r'#include "(.+)"', text):
+                self.assertIn(included, known, f"{header} includes it")
+
+
+class Libraries(unittest.TestCase):
+    def test_names_are_in_the_namespace(self):
+        for library in sorted(HOME.glob("lib/**/lib*.a")):
+            for line in run("nm", "--demangle", "--defined-only", "--extern-only", library).splitlines():
+                found = re.match(r"[0-9a-f]+ ([TDBR]) (.+)", line)
+                if found:
+                    self.assertIn("houghstream::", found[2], f"{library.name} defines it")
+
+
+class Programs(unittest.TestCase):
+    def test_they_run_from_where_they_are_and_have_manual_pages(self):
+        programs = sorted(HOME.glob("bin/hs-*"))
+        self.assertGreater(len(programs), 14)
+        for program in programs:
+            self.assertRegex(
+                run(program, "--version", cwd="/", env={"PATH": "/usr/bin:/bin"}), rf"^{program.name} \d+\.\d+\.\d+\n$"
+            )
+
+    def test_nothing_names_the_source_folder(self):
+        for file in HOME.rglob("*"):
+            if file.is_file() and not file.is_symlink() and file.suffix != ".a":
+                self.assertNotIn(str(SOURCE).encode(), file.read_bytes(), file)
+
+
+class Examples(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = HOME.parent / "examples"
+        cls.source = HOME / "share/doc/libhoughstream-dev/examples"
+        run("cmake", "-S", cls.source / "cpp", "-B", cls.folder, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={HOME}",
+            "-DCMAKE_BUILD_TYPE=Debug", f"-DCMAKE_EXE_LINKER_FLAGS={os.environ.get('EXAMPLE_LINK_FLAGS', '')}")  # fmt: skip
+        run("cmake", "--build", cls.folder)
+        cls.log = cls.folder / "poses.lcmlog"
+        script = """
+import struct, sys
+from houghstream import object_pose_t, object_poses_t
+log = open(sys.argv[1], "wb")
+for number in range(100):
+    pose = object_pose_t()
+    pose.class_name, pose.status, pose.trans, pose.quat, pose.quality = "mug", object_pose_t.VALID, [0.1, 0.2, 1.5], [1, 0, 0, 0], 0.9
+    lost = object_pose_t()
+    lost.class_name, lost.status = "can", object_pose_t.REJECTED_BY_DEPTH
+    message = object_poses_t()
+    message.utime, message.source_channel, message.n_poses, message.poses = 10**15 + 20000 * number, "OPENNI_FRAME", 2, [pose, lost]
+    data, channel = message.encode(), b"HOUGHSTREAM_POSES"
+    log.write(struct.pack(">Iqqii", 0xEDA1DA01, number, message.utime, len(channel), len(data)) + channel + data)
+"""
+        run("/usr/bin/python3", "-c", script, cls.log, env=python_of_installation())
+
+    def listen(self, *words):
+        """What a program prints while the log of poses is played in a private network."""
+        start = (
+            'timeout -s INT 60 stdbuf -oL "$@" & sleep 2; lcm-logplayer "$LOG" > /dev/null 2>&1; sleep 1; kill %1; wait; true'
+        )
+        return run(*PRIVATE, "bash", "-c", start, "bash", *words, env={**python_of_installation(), "LOG": str(self.log)})
+
+    def test_find_in_images_says_what_is_wrong(self):
+        self.assertIn("find_in_images: expected STORE COLOUR DEPTH", run(self.folder / "find_in_images", status=1))
+
+    def test_poses_in_base_turns_them_into_the_frame_of_the_base(self):
+        self.assertIn(
+            "mug                  at 1.100 1.500 -0.200 m",
+            self.listen(self.folder / "poses_in_base", "1", "0", "0", "-90", "0", "0"),
+        )
+
+    def test_the_log_is_read_by_python(self):
+        plot = self.folder / "plot.png"
+        said = run("/usr/bin/python3", self.source / "python/read_log.py", self.log, plot, env=python_of_installation())
+        self.assertEqual(said.count("mug                  at 0.100 0.200 1.500 m, quality 0.90"), 100)
+        self.assertNotIn("can", said)
+        self.assertEqual(plot.read_bytes()[:4], b"\x89PNG")
+
+    def test_without_the_lcm_module_python_says_so(self):
+        try:
+            import lcm  # noqa: F401
+        except ImportError:
+            said = run("/usr/bin/python3", self.source / "python/subscribe.py", status=1, env=python_of_installation())
+            self.assertIn("no Python module 'lcm': install it with", said)
+
+    def test_java_prints_poses(self):
+        jars = [HOME / "share/java/houghstream_types.jar", pathlib.Path("/usr/share/java/lcm.jar")]
+        if not shutil.which("java") or not all(jar.is_file() for jar in jars):
+            self.skipTest("no Java")
+        said = self.listen(
+            "java", "-Djava.net.preferIPv4Stack=true", "-cp", ":".join(map(str, jars)), self.source / "java/PrintPoses.java"
+        )
+        self.assertIn("mug at 0.100 0.200 1.500 m, quality 0.90", said)
+
+    def test_frames_of_ones_own_camera_arrive_and_are_numpy_arrays(self):
+        log = self.folder / "frames.lcmlog"
+        start = 'lcm-logger -f "$LOG" > /dev/null 2>&1 & sleep 1; "$@"; sleep 1; kill -INT %1; wait; true'
+        run(
+            *PRIVATE,
+            "bash",
+            "-c",
+            start,
+            "bash",
+            self.folder / "own_camera",
+            "10",
+            env={**python_of_installation(), "LOG": str(log)},
+        )
+        script = """
+import sys
+from houghstream.event_log import read_log
+from houghstream.frames import decode_frame
+for event in read_log(sys.argv[1]):
+    frame = decode_frame(event.data)
+    print(event.channel, frame.colour.shape, frame.colour.dtype, round(float(frame.depth[0, 0]), 3), round(float(frame.depth[240, 320]), 3), frame.camera.fx)
+"""
+        lines = run("/usr/bin/python3", "-c", script, log, env=python_of_installation()).splitlines()
+        self.assertGreaterEqual(len(lines), 8)
+        self.assertRegex(lines[-1], r"^OPENNI_FRAME \(480, 640, 3\) uint8 1.0 0.89\d? 525.0$")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

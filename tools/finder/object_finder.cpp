@@ -1,0 +1,57 @@
+#include "tools/finder/object_finder.hpp"
+
+#include "detector/detector.hpp"
+#include "detector/forest/forest_file.hpp"
+#include "detector/stages.hpp"
+#include "drivers/store/object_store.hpp"
+#include "pose/pose_estimator.hpp"
+#include "tools/common/search_options.hpp"
+#include "tools/common/stored_quality.hpp"
+
+namespace houghstream {
+namespace {
+
+Detector make_detector(const store::ObjectStore& store, const FinderOptions& options) {
+  Forest forest = load_forest(store.forest_file());
+  std::vector<std::string> names;
+  for (const ObjectClass& object : forest.classes) names.push_back(object.name);
+  store::require_same_objects(store, names);
+  SearchOptions search;
+  search.threads = options.threads;
+  search.threshold = options.threshold.value_or(kStoreThreshold);
+  const DetectionSettings settings = search.settings_for(forest);
+  return Detector(std::move(forest), settings);
+}
+
+PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOptions& options) {
+  PoseSettings settings;
+  settings.threads = options.threads;
+  settings.quality.least = options.min_quality.value_or(kStoreQuality);
+  settings.class_quality = stored_quality(store, settings.quality);
+  return PoseEstimator(store::load_store_meshes(store), settings);
+}
+
+}  // namespace
+
+struct ObjectFinder::State {
+  State(const store::ObjectStore& store, const FinderOptions& options)
+      : detector(make_detector(store, options)), estimator(make_estimator(store, options)) {}
+
+  Detector detector;
+  PoseEstimator estimator;
+  DetectorWorkspace workspace;
+};
+
+ObjectFinder::ObjectFinder(const std::filesystem::path& store, const FinderOptions& options)
+    : state_(std::make_unique<State>(store::read_store(store), options)) {}
+ObjectFinder::~ObjectFinder() = default;
+ObjectFinder::ObjectFinder(ObjectFinder&&) noexcept = default;
+
+FoundObjects ObjectFinder::find(const RgbdFrame& frame) {
+  FoundObjects found;
+  found.detections = state_->detector.detect(frame, state_->workspace);
+  found.poses = state_->estimator.estimate(frame, found.detections);
+  return found;
+}
+
+}  // namespace houghstream

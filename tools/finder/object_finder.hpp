@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/object_pose.hpp"
+
+namespace houghstream {
+
+struct FinderOptions {
+  int threads = 2;                   ///< any number gives the same result
+  std::optional<float> threshold;    ///< smallest score that is reported, 0 to 1; default: that of hs-detect
+  std::optional<float> min_quality;  ///< smallest quality of a pose that is valid, 0 to 1; default: that of hs-pose
+};
+
+/// What one frame shows. Both have the same frame; poses[i] is of detections[i].
+struct FoundObjects {
+  Detections detections;  ///< strongest first: class, score, box in pixels, centre in metres
+  ObjectPoses poses;      ///< a pose into the camera's frame where status is kValid, else the reason why there is none
+};
+
+/// Finds the objects of an object store (hs-teach) in single frames, within one's own program and without LCM: what
+/// hs-detect and hs-pose do in a stream. Calls of one finder follow one another; several threads take one each.
+class ObjectFinder {
+ public:
+  /// Throws InputError with one line where the store is none, half written or of another version.
+  explicit ObjectFinder(const std::filesystem::path& store, const FinderOptions& options = {});
+  ~ObjectFinder();
+  ObjectFinder(ObjectFinder&&) noexcept;
+
+  /// Colour, depth and camera as RgbdFrame states them; the frame's name may be empty. Same frame, same result, bit for
+  /// bit. Throws InputError where they do not agree.
+  FoundObjects find(const RgbdFrame& frame);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,21 @@
+"""Messages as they come, where LCM's Python module is there; Debian 12 has none, and logs need none (event_log)."""
+
+import os
+
+URL = "udpm://239.255.76.67:7667?ttl=0"
+
+
+def subscribe(channels, handler, url=None):
+    """Calls handler(channel, data) for each message whose whole channel name matches the regular expression, for ever.
+    `url`: default $LCM_DEFAULT_URL, else udpm with ttl=0. Of each channel the newest message is kept while the handler works.
+    Raises ImportError, with what helps, where the lcm module is missing."""
+    try:
+        import lcm
+    except ImportError as error:
+        raise ImportError(
+            "no Python module 'lcm': install it with `pip install lcm`, or read a log with houghstream.event_log"
+        ) from error
+    bus = lcm.LCM(url or os.environ.get("LCM_DEFAULT_URL") or URL)
+    bus.subscribe(channels, handler).set_queue_capacity(1)
+    while True:
+        bus.handle()
