@@ -75,6 +75,16 @@ foreach(header IN LISTS headers)
   install(FILES "${PROJECT_SOURCE_DIR}/${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/houghstream/${folder}"
           COMPONENT development)
 endforeach()
+
+find_program(DOXYGEN doxygen)
+if(DOXYGEN)
+  list(TRANSFORM headers PREPEND "${PROJECT_SOURCE_DIR}/" OUTPUT_VARIABLE api_headers)
+  list(TRANSFORM api_headers REPLACE "(.+)" "\"\\1\"")
+  list(JOIN api_headers " " api_headers)
+  configure_file("${PROJECT_SOURCE_DIR}/.cmake/Doxyfile.in" "${PROJECT_BINARY_DIR}/Doxyfile" @ONLY)
+  add_custom_target(houghstream_api COMMAND "${DOXYGEN}" "${PROJECT_BINARY_DIR}/Doxyfile" VERBATIM)
+endif()
+
 set(cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/houghstream")
 install(EXPORT houghstream_targets NAMESPACE houghstream:: DESTINATION "${cmake_folder}" COMPONENT development)
 configure_package_config_file("${PROJECT_SOURCE_DIR}/.cmake/houghstreamConfig.cmake.in" "${PROJECT_BINARY_DIR}/houghstreamConfig.cmake"
