@@ -1,10 +1,51 @@
 #include "tools/common/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <iostream>
 
 namespace houghstream {
+namespace {
+
+/// Letters to change, add or take away (Levenshtein 1966).
+std::size_t edits_between(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// The long name that looks most like `key`.
+std::string nearest_option(const CLI::App& app, const std::string& key) {
+  std::string nearest;
+  for (const CLI::Option* option : app.get_options()) {
+    if (!option->get_configurable()) continue;
+    for (const std::string& name : option->get_lnames()) {
+      if (nearest.empty() || edits_between(name, key) < edits_between(nearest, key)) nearest = name;
+    }
+  }
+  return nearest;
+}
+
+/// The line for a fault of the configuration file. CLI11's own names the key last.
+std::string fault_of_config(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string words = error.what();
+  const std::string key = words.substr(words.find_last_of(' ') + 1);
+  const std::string file = app.get_config_ptr()->as<std::string>();
+  return file + ": '" + key + "' is no key, expected one of the options' long names; the nearest is '" +
+         nearest_option(app, key) + "'";
+}
+
+}  // namespace
 
 CommandOption& CommandOption::required() {
   option_->required();
@@ -96,6 +137,16 @@ CommandOption CommandLine::get_option(const std::string& name) {
   return CommandOption(app_->get_option(name));
 }
 
+void CommandLine::add_config_file() {
+  app_->set_config("--config", "", "TOML file of these options (see init): key = value")->configurable(false);
+  app_->allow_config_extras(CLI::config_extras_mode::error);
+  app_->get_help_ptr()->configurable(false);
+}
+
+std::string CommandLine::config_template() const {
+  return app_->config_to_str(true, true);
+}
+
 CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& words) {
   return CommandLine({app_, app_->add_subcommand(name, words)});  // lives as long as the whole line
 }
@@ -120,6 +171,9 @@ std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last one first
     return std::nullopt;
+  } catch (const CLI::ConfigError& error) {
+    std::cerr << fault_of_config(*app_, error) << "\n";
+    return error.get_exit_code();
   } catch (const CLI::ParseError& end) {
     return app_->exit(end);
   }

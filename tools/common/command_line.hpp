@@ -51,6 +51,12 @@ class CommandLine {
   CommandOption add_clearing_flag(const std::string& names, bool& clears, const std::string& words);
   CommandOption get_option(const std::string& name);
 
+  /// `--config FILE`: the long names of all options as keys of a TOML file, `key = value`; what stands on the command
+  /// line goes before. A key that is no option is refused with the nearest that is.
+  void add_config_file();
+  /// Such a file with every option, its default and what it does.
+  std::string config_template() const;
+
   CommandLine add_subcommand(const std::string& name, const std::string& words);
   void require_subcommand();  ///< exactly one
   bool given() const;         ///< this subcommand was asked for

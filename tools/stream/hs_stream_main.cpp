@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cstdlib>
 
 #include "pipeline/base/checks.hpp"
@@ -106,5 +108,13 @@ int main(int argc, char** argv) {
   StreamOptions options;
   Pace pace;
   add_options(app, options, pace);
-  return run_tool(app, argc, argv, [&] { run_stream(options, pace); });
+  app.add_config_file();
+  const CommandLine init = app.add_subcommand("init", "prints a file for --config that says what each option does");
+  return run_tool(app, argc, argv, [&] {
+    if (init.given()) {
+      fmt::print("{}", app.config_template());
+      return;
+    }
+    run_stream(options, pace);
+  });
 }

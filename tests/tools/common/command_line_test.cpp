@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 namespace houghstream {
 namespace {
 
@@ -112,6 +115,54 @@ TEST(CommandLine, HelpSaysWhatItIsFor) {
     EXPECT_NE(help.find(words), std::string::npos) << words;
   }
   EXPECT_EQ(help.find("unsaid"), std::string::npos);
+}
+
+/// A line with options of a file.
+struct Configured {
+  CommandLine line{"words", "tool"};
+  int count = 3;
+  std::string objects = "none";
+  std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "command_line_test.toml";
+
+  explicit Configured(const std::string& text) {
+    line.add_option("--count", count, "how many").capture_default_str();
+    line.add_option("--objects", objects, "which");
+    line.add_config_file();
+    std::ofstream(file) << text;
+  }
+};
+
+TEST(CommandLine, OptionsComeFromAFileAndTheCommandLineGoesBefore) {
+  Configured given("# what is known\nobjects = \"my.store\"\ncount = 5\n");
+  EXPECT_EQ(given.line.parse({"--config", given.file.string(), "--count", "7"}), std::nullopt);
+  EXPECT_EQ(given.objects, "my.store");
+  EXPECT_EQ(given.count, 7);
+}
+
+TEST(CommandLine, AnUnknownKeyOfAFileIsRefusedWithTheNearestOne) {
+  Configured given("object = \"my.store\"\n");
+  testing::internal::CaptureStderr();
+  EXPECT_NE(given.line.parse({"--config", given.file.string()}).value_or(0), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            given.file.string() +
+                ": 'object' is no key, expected one of the options' long names; the nearest is 'objects'\n");
+}
+
+TEST(CommandLine, AWrongValueOfAFileIsRefused) {
+  Configured given("count = \"many\"\n");
+  testing::internal::CaptureStderr();
+  EXPECT_NE(given.line.parse({"--config", given.file.string()}).value_or(0), 0);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("many"), std::string::npos);
+}
+
+TEST(CommandLine, ATemplateOfAFileIsSuchAFile) {
+  Configured first("");
+  EXPECT_EQ(first.line.parse({}), std::nullopt);
+  const std::string text = first.line.config_template();
+  EXPECT_NE(text.find("how many"), std::string::npos) << text;
+  Configured second(text);
+  EXPECT_EQ(second.line.parse({"--config", second.file.string()}), std::nullopt);
+  EXPECT_EQ(second.count, 3);
 }
 
 }  // namespace
