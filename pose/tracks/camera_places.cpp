@@ -84,13 +84,17 @@ Eigen::Isometry3d chained(const Links& links, const std::string& camera, const s
   return T;
 }
 
-// OpenCV reads YAML that starts with its own header, and no more than one document; ROS writes none, and ends with one.
+// OpenCV reads YAML that starts with its own header, holds one document, and indents the entries of a list; ROS prints
+// none, ends with a line of ---, and does not.
 cv::FileStorage parse_yaml(const std::filesystem::path& file) {
   std::ifstream in(file);
   require(in.good(), "{}: cannot be read, expected a YAML file of camera poses", file.string());
   std::string text = "%YAML:1.0\n---\n";
+  bool in_list = false;
   for (std::string line; std::getline(in, line);) {
-    if (line.rfind("---", 0) != 0 && line.rfind("%YAML", 0) != 0) text += line + "\n";
+    if (line.empty() || line.rfind("---", 0) == 0 || line.rfind("%YAML", 0) == 0) continue;
+    if (line[0] != ' ') in_list = line[0] == '-';
+    text += (in_list ? "  " : "") + line + "\n";
   }
   try {
     return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
