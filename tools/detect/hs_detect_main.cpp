@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
@@ -37,6 +39,13 @@ struct DetectOptions {
   SearchOptions search;
   DetectProcessOptions process;
 };
+
+/// Looks by a budget come at leisure: who follows objects from frame to frame goes first. Of all threads that are
+/// started from here on.
+void give_way() {
+  constexpr int kPolite = 5;
+  if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
+}
 
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options) {
@@ -88,6 +97,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);
+    if (options.process.looks_per_second > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
     options.objects.empty() ? run_with_forest(options) : run_with_store(options);
   });
