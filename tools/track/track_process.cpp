@@ -225,15 +225,16 @@ class TrackProcess {
       StageClock clock;
       const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(view(waiting.messages.detections)));
       check_.add(poses, T_world_camera);
-      if (!options_.check) publish_objects(waiting, poses, T_world_camera, clock);
-      status_.count_processed(std::chrono::steady_clock::now() - waiting.messages.arrival);
+      if (options_.check || publish_objects(waiting, poses, T_world_camera, clock))
+        status_.count_processed(std::chrono::steady_clock::now() - waiting.messages.arrival);
       tell_contradictions();
     } catch (const std::exception& error) {
       status_.count_refused(error.what(), "work");
     }
   }
 
-  void publish_objects(const Waiting& waiting, const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
+  /// False for a frame that is too late.
+  bool publish_objects(const Waiting& waiting, const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                        StageClock& clock) {
     if (const auto models = models_(); models != used_models_) {
       used_models_ = models;
@@ -251,13 +252,14 @@ class TrackProcess {
     };
     std::optional<WorldObjects> objects = tracker_.update({poses, &detections, T_world_camera, decode});
     if (!objects) {
-      status_.note_bad_message(fmt::format("poses of frame {} are older than the last ones", to_string(poses.frame)));
-      return;
+      status_.count_skipped(1);  // what a detector said late of a frame whose successors are known
+      return false;
     }
     clock.mark("track.update");
     objects->world = world_;
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
     bus_.publish(channel::kObjects, to_message(*objects));
+    return true;
   }
 
   /// All that any detector found in the frame.
