@@ -35,16 +35,23 @@ struct Waiting {
   std::int64_t since_us = 0;  ///< on the bus' clock
 };
 
-/// Processes that send a status, and those that have fallen silent.
+/// Processes that send a status, and those that have fallen silent. May be used from any thread.
 class Silence {
  public:
-  void hear(const status_t& status, std::int64_t now_us) {
-    last_[fmt::format("{} (process {})", status.process, status.pid)] = now_us;
+  /// What is no status is somebody else's.
+  void hear(const Arrival& arrival) {
+    try {
+      const auto status = decode_message<status_t>(arrival.bytes);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      last_[fmt::format("{} (process {})", status.process, status.pid)] = arrival.event_us;
+    } catch (const InputError&) {
+    }
   }
 
   /// Names of those that have been silent for too long since they were asked for last; each is told once.
   std::vector<std::string> fallen_silent(std::int64_t now_us) {
     constexpr std::int64_t kSilentUs = 3000000;
+    const std::lock_guard<std::mutex> lock(mutex_);
     std::vector<std::string> out;
     for (auto it = last_.begin(); it != last_.end();) {
       const bool silent = now_us - it->second > kSilentUs;
@@ -55,6 +62,7 @@ class Silence {
   }
 
  private:
+  std::mutex mutex_;
   std::map<std::string, std::int64_t> last_;
 };
 
@@ -79,7 +87,8 @@ class TrackProcess {
     bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
     bus_.subscribe(channel::kPoses, [this](const Arrival& arrival) { receive_poses(arrival); });
     bus_.subscribe(".*_TO_WORLD", [this](const Arrival& arrival) { receive_transform(arrival); });
-    bus_.subscribe(channel::kStatus, [this](const Arrival& arrival) { receive_status(arrival); });
+    // Its own last status may come when it has ended itself.
+    bus_.subscribe(channel::kStatus, [silence = silence_](const Arrival& arrival) { silence->hear(arrival); });
     log_info("ready: frames from {}, poses from {} at {}", options_.frame_channels, channel::kPoses, bus_.url());
     run_process_loop(bus_, status_, [this](milliseconds timeout) { return step(timeout); });
     inbox_.give_up_waiting();
@@ -149,16 +158,6 @@ class TrackProcess {
       const Eigen::Isometry3d T_world_camera = transform_from_message(message);
       const std::lock_guard<std::mutex> lock(mutex_);
       places_.add(arrival.channel.substr(0, arrival.channel.size() - kSuffix), message.utime, T_world_camera);
-    } catch (const InputError& error) {
-      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
-    }
-  }
-
-  void receive_status(const Arrival& arrival) {
-    try {
-      const auto status = decode_message<status_t>(arrival.bytes);
-      const std::lock_guard<std::mutex> lock(mutex_);
-      silence_.hear(status, arrival.event_us);
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
@@ -286,8 +285,7 @@ class TrackProcess {
 
   void tell_silence() {
     if (bus_.is_log()) return;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (const std::string& name : silence_.fallen_silent(now_us()))
+    for (const std::string& name : silence_->fallen_silent(now_us()))
       log_warning("{} has fallen silent: its objects are not seen any more", name);
   }
 
@@ -313,6 +311,7 @@ class TrackProcess {
   tracks::Tracker tracker_;
   tracks::ExtrinsicCheck check_;
   LimitedLines lines_;
+  std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
   std::deque<Waiting> waiting_;
   std::string world_;
   std::set<std::string> cameras_;  // whose place is not known
@@ -322,7 +321,6 @@ class TrackProcess {
   std::int64_t event_us_ = 0;
   std::deque<Detections> detections_;
   tracks::CameraPlaces places_;
-  Silence silence_;
   std::atomic<std::int64_t> poses_{0};
 };
 

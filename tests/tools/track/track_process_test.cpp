@@ -114,6 +114,7 @@ TEST(TrackProcess, ASecondCameraWithoutAPlaceIsRefused) {
 }
 
 TEST(TrackProcess, ALogGivesTheSameObjectsEachTime) {
+  catch_stop_signals();
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "houghstream_track_process";
   std::filesystem::create_directories(folder);
   LogWriter writer(folder / "in.lcmlog");
@@ -150,6 +151,7 @@ TEST(TrackProcess, ALogGivesTheSameObjectsEachTime) {
 }
 
 TEST(TrackProcess, ALogWithoutPosesIsRefused) {
+  catch_stop_signals();
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "houghstream_track_no_poses.lcmlog";
   LogWriter writer(file);
   const std::vector<std::uint8_t> bytes = encode_message(to_message(make_test_frame(1), WireFormat{}, 0));
