@@ -34,7 +34,7 @@ struct ExistenceSettings {
   double crowded_out = 12.0;   ///< a second, where another class is recognised in its place
   double goes_on = 3.0;        ///< a second, where depth agrees but the surface is larger
   double unrecognised = 0.6;   ///< a second, where depth agrees but nothing is recognised
-  double lost = 6.0;           ///< a second, where it moved when it was seen last
+  double lost = 14.0;          ///< a second, where it moved when it was seen last; hidden, a quarter of it
   double unconfirmed = 4.0;    ///< a second, of what is not yet published and not seen
 };
 

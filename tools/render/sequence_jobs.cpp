@@ -60,7 +60,7 @@ OrderedJson empty_frames(const Sequence& sequence, int frames, double fps) {
     const SequenceTruth truth = sequence.truth(i / fps);
     OrderedJson objects = OrderedJson::array();
     for (const auto& T : truth.T_world_object) objects.push_back(T ? pose_entry(*T) : OrderedJson());
-    out.push_back({{"utime", dataset_utime(static_cast<std::size_t>(i))},
+    out.push_back({{"utime", dataset_utime(0) + std::llround(i * 1e6 / fps)},
                    {"objects", objects},
                    {"cameras", OrderedJson::array()}});
   }

@@ -28,7 +28,7 @@ TEST(SequenceJobs, EveryFrameHasTheTruthOfAllInstancesAndOfTheCamera) {
   ASSERT_EQ(json["frames"].size(), 13U);
   const BopScene scene(folder / "removed" / "000001");
   ASSERT_EQ(scene.images().size(), 13U);
-  EXPECT_EQ(json["frames"][1]["utime"], dataset_utime(1));
+  EXPECT_EQ(json["frames"][1]["utime"], dataset_utime(0) + 1000000);
   EXPECT_TRUE(json["frames"][6]["objects"][3].is_null());  // the can has been taken away
   EXPECT_FALSE(json["frames"][11]["objects"][3].is_null());
   EXPECT_EQ(json["frames"][6]["cameras"][0]["visible"][3], 0.0);
