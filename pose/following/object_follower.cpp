@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/types/frame_results.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -82,7 +84,7 @@ ObjectPoses ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFra
   for (const FollowedPose& followed : shown.poses) result.poses.push_back(followed.pose);
   camera.shown.push_back(std::move(shown));
   if (camera.shown.size() > kShown) camera.shown.pop_front();
-  clock.mark("pose.following");
+  clock.mark(kFollowingStage);
   result.stages.push_back(clock.times().front());
   return result;
 }
