@@ -144,13 +144,12 @@ class FollowProcess {
     const std::optional<EncodedFrame> encoded = frames_.take(timeout);
     if (!encoded) return false;
     try {
-      const auto decoded =
-          std::make_shared<const DecodedFrame>(decode_for_poses(encoded->bytes, encoded->id.channel, options_.camera));
-      recent_.keep(decoded);
-      ObjectPoses poses = poses_.follow(decoded->frame);
+      DecodedFrame decoded = decode_for_poses(encoded->bytes, encoded->id.channel, options_.camera);
+      decoded.frame.stages.push_back(decoded.decoding);
+      const Decoded frame = std::make_shared<const DecodedFrame>(std::move(decoded));
+      recent_.keep(frame);
+      ObjectPoses poses = poses_.follow(frame->frame);
       poses.frame = encoded->id;
-      poses.stages.insert(poses.stages.begin() + static_cast<std::ptrdiff_t>(decoded->frame.stages.size()),
-                          decoded->decoding);
       bus_.publish(channel::kPoses, to_message(poses));
       transforms_.publish(poses);
       status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);

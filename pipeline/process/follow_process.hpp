@@ -9,7 +9,7 @@ namespace houghstream {
 /// Who follows objects from frame to frame. Both functions are called at the same time from two threads on a network,
 /// one after the other where a log is worked on.
 struct FollowPoses {
-  /// Poses of what is followed in the newest frame of a camera.
+  /// Poses of what is followed in the newest frame of a camera; with the frame's stages, that of its decoding the last.
   std::function<ObjectPoses(const RgbdFrame&)> follow;
   /// Poses of a frame's detections, which come later; what is found is followed from then on.
   std::function<ObjectPoses(const RgbdFrame&, const Detections&)> answer;

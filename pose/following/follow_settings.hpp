@@ -8,14 +8,14 @@ struct FollowSettings {
   int coarse_iterations = 5;
   int coarse_points = 150;
   double start_distance_m = 0.02;  ///< pairs farther apart have no weight, at first
-  int fine_iterations = 4;
-  int fine_points = 300;
+  int fine_iterations = 8;
+  int fine_points = 400;
   double max_jump_m = 0.04;  ///< of the middle, from where it was expected: what ended farther away is something else
 
   // The print turns a round thing back, which depth alone lets drift.
-  double settle_step_deg = 1.0;
-  double settle_step_m = 0.001;
-  int settle_rounds = 2;
+  double settle_step_deg = 2.0;
+  double settle_step_m = 0.002;
+  int settle_rounds = 4;
   int settle_points = 250;
 
   float hidden_share = 0.5F;   ///< of the rendered pixels, behind something: it is hidden rather than gone

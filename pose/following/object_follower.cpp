@@ -3,15 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/types/frame_results.hpp"
+
 namespace houghstream {
 namespace {
 
 constexpr double kSecond = 1e-6;  // in a microsecond
 
-double log_odds(double probability) {
-  constexpr double kMargin = 0.001;  // a score of exactly 0 or 1 is not certainty
-  const double p = std::clamp(probability, kMargin, 1.0 - kMargin);
+double log_odds(double probability, double margin) {
+  const double p = std::clamp(probability, margin, 1.0 - margin);
   return std::log(p / (1.0 - p));
+}
+
+/// A score of exactly 0 or 1 is not certainty.
+double score_log_odds(double score) {
+  return log_odds(score, 1e-3);
+}
+
+/// Beside another one's of the same object, where small differences count.
+double quality_log_odds(double quality) {
+  return log_odds(quality, 1e-6);
 }
 
 float probability(double odds) {
@@ -73,7 +84,7 @@ ObjectPoses ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFra
   for (const FollowedPose& followed : shown.poses) result.poses.push_back(followed.pose);
   camera.shown.push_back(std::move(shown));
   if (camera.shown.size() > kShown) camera.shown.pop_front();
-  clock.mark("pose.following");
+  clock.mark(kFollowingStage);
   result.stages.push_back(clock.times().front());
   return result;
 }
@@ -186,6 +197,7 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, Camera& camera, Sho
 ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFrame& frame,
                                    const Detections& detections) {
   Matches matches(detections.detections.size(), -1);
+  int doubted = -1;
   Shown shown;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -196,25 +208,63 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
       shown = *then;
       matches = match(detections, shown);
       note_look(detections, matches, shown, camera);
+      doubted = choose_doubted(matches, shown, camera);
     }
   }
-  Detections others{detections.frame, {}, detections.stages};
+  const auto is_looked_for = [&](std::size_t i) { return matches[i] < 0 || matches[i] == doubted; };
+  Detections looked_for{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (matches[i] < 0) others.detections.push_back(detections.detections[i]);
+    if (is_looked_for(i)) looked_for.detections.push_back(detections.detections[i]);
   }
-  ObjectPoses found = estimator.estimate(frame, others);
+  ObjectPoses found = estimator.estimate(frame, looked_for);
   ObjectPoses result{detections.frame, {}, found.stages};
   const std::lock_guard<std::mutex> lock(mutex_);
+  Camera& camera = cameras_[frame.id.channel];
   std::size_t next = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const bool followed = matches[i] >= 0;
-    ObjectPose pose = followed ? shown.poses[static_cast<std::size_t>(matches[i])].pose : found.poses[next++];
-    if (!followed && pose.T_camera_object) take_up(estimator, frame.id, pose, cameras_[frame.id.channel]);
+    ObjectPose pose = is_looked_for(i) ? std::move(found.poses[next++]) : ObjectPose();
+    if (matches[i] >= 0) {
+      const auto place = static_cast<std::size_t>(matches[i]);
+      Followed* object = find(shown.numbers[place], camera);
+      if (pose.T_camera_object && object != nullptr) settle_doubt(pose, shown.poses[place], *object);
+      pose = shown.poses[place].pose;
+    } else if (pose.T_camera_object) {
+      take_up(estimator, frame.id, pose, camera);
+    }
     pose.detection_index = static_cast<int>(i);
     pose.detection_score = detections.detections[i].score;
     result.poses.push_back(std::move(pose));
   }
   return result;
+}
+
+ObjectFollower::Followed* ObjectFollower::find(std::int64_t number, Camera& camera) {
+  const auto found = std::find_if(camera.objects.begin(), camera.objects.end(),
+                                  [&](const Followed& one) { return one.number == number; });
+  return found == camera.objects.end() ? nullptr : &*found;
+}
+
+/// The place in `shown` of the detected object whose last doubt lies farthest back, if it is time; else -1.
+int ObjectFollower::choose_doubted(const Matches& matches, const Shown& shown, Camera& camera) const {
+  Followed* chosen = nullptr;
+  int place = -1;
+  for (const int match : matches) {
+    Followed* object = match >= 0 ? find(shown.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
+    if (object == nullptr || seconds_between(object->doubted_utime, shown.utime) < settings_.doubted_after_s) continue;
+    if (chosen != nullptr && chosen->doubted_utime <= object->doubted_utime) continue;
+    chosen = object;
+    place = match;
+  }
+  if (chosen != nullptr) chosen->doubted_utime = shown.utime;
+  return place;
+}
+
+/// Where the pose of a detection is better than the followed one of that frame, the object goes on from it: what is
+/// between the two stays the same in the object's own frame.
+void ObjectFollower::settle_doubt(const ObjectPose& pose, const FollowedPose& followed, Followed& object) const {
+  const double better = quality_log_odds(pose.quality) - quality_log_odds(followed.pose.quality);
+  if (better < settings_.better_log_odds) return;
+  object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
 }
 
 /// The nearest ones first, each pose of one detection; withheld ones are nobody's.
@@ -250,9 +300,8 @@ void ObjectFollower::note_look(const Detections& detections, const Matches& matc
                                Camera& camera) const {
   constexpr float kFullView = 0.7F;  // visible fraction
   for (std::size_t p = 0; p < shown.poses.size(); ++p) {
-    const auto object = std::find_if(camera.objects.begin(), camera.objects.end(),
-                                     [&](const Followed& one) { return one.number == shown.numbers[p]; });
-    if (object == camera.objects.end()) continue;
+    Followed* object = find(shown.numbers[p], camera);
+    if (object == nullptr) continue;
     const auto found = std::find(matches.begin(), matches.end(), static_cast<int>(p));
     double score = settings_.missed_score;
     if (found != matches.end()) {
@@ -262,7 +311,7 @@ void ObjectFollower::note_look(const Detections& detections, const Matches& matc
                seconds_between(object->found_utime, shown.utime) < settings_.missed_after_s) {
       continue;
     }
-    object->log_odds += settings_.score_gain * (log_odds(score) - object->log_odds);
+    object->log_odds += settings_.score_gain * (score_log_odds(score) - object->log_odds);
   }
 }
 
@@ -274,9 +323,9 @@ void ObjectFollower::take_up(const PoseEstimator& estimator, const FrameId& fram
   found.number = found_++;
   found.class_id = pose.class_id;
   found.class_name = pose.class_name;
-  found.log_odds = log_odds(pose.detection_score);
+  found.log_odds = score_log_odds(pose.detection_score);
   found.T_camera_object = *pose.T_camera_object;
-  found.utime = found.valid_utime = found.found_utime = frame.utime;
+  found.utime = found.valid_utime = found.found_utime = found.doubted_utime = frame.utime;
   bring_up_to_date(frame.utime, camera, found);
   const PlacedObject here{found.class_name, found.T_camera_object};
   std::vector<Followed> others;

@@ -28,6 +28,9 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
   app.add_clearing_flag("--no-view", options.view, "no window");
+  app.add_flag("--follow", options.follow,
+               "poses for each frame at once: hs-pose --follow, and hs-detect --looks-per-second 5 unless "
+               "--detect-options say how many");
   app.add_option("--capture-options", options.capture_options,
                  "further options for hs-capture: --capture-options='--loop --rate 5'");
   app.add_option("--detect-options", options.detect_options, "further options for hs-detect");

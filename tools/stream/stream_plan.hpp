@@ -19,6 +19,7 @@ struct StreamOptions {
   std::string channel = "OPENNI_FRAME";
   std::string lcm_url;  ///< "" = LCM's default
   bool view = true;
+  bool follow = false;          ///< hs-pose follows known objects, hs-detect looks a few times a second
   std::string capture_options;  ///< further options, words between spaces
   std::string detect_options;
   std::string pose_options;

@@ -79,7 +79,7 @@ int valid_ones(const ObjectPoses& poses) {
 /// A follower that has found what stands there.
 class Following {
  public:
-  explicit Following(Film start) : film(std::move(start)) {
+  explicit Following(Film start, FollowerSettings settings = {}) : film(std::move(start)), follower(settings) {
     const RgbdFrame frame = film.next();
     EXPECT_TRUE(follower.follow(estimator(), frame).poses.empty());
     const ObjectPoses found = follower.answer(estimator(), frame, film.detected(frame.id));
@@ -219,6 +219,33 @@ TEST(ObjectFollower, WhatIsFoundFramesLaterIsFollowedFromThere) {
   const ObjectPoses poses = it.next();
   ASSERT_EQ(valid_ones(poses), 3);
   EXPECT_LT((poses.poses[2].T_camera_object->translation() - it.film.truth(2).translation()).norm(), 0.004);
+}
+
+/// How far the mug's handle is from where it is, radians, after the mug was turned at one blow and looked at again.
+double handle_error_after_a_turn(FollowerSettings settings) {
+  Following it(Film().with("mug", mug(), 0.0, 0.05), settings);
+  it.next();
+  it.film.things[0].T_table_object.rotate(Eigen::AngleAxisd(1.6, Eigen::Vector3d::UnitZ()));
+  double error = 1e9;
+  for (int i = 0; i < 4; ++i) {
+    it.film.utime += 20 * kPeriod;
+    const RgbdFrame frame = it.film.next();
+    it.follower.follow(estimator(), frame);
+    it.follower.answer(estimator(), frame, it.film.detected(frame.id));
+    const ObjectPoses poses = it.next();
+    if (valid_ones(poses) == 0) continue;
+    const Eigen::Vector3d handle = poses.poses[0].T_camera_object->linear().col(0);
+    error = std::acos(std::min(1.0, handle.dot(it.film.truth(0).linear().col(0))));
+  }
+  return error;
+}
+
+TEST(ObjectFollower, AWrongTurnIsNoticedByLookingAsIfItWereNotFollowed) {
+  FollowerSettings trusting;
+  trusting.doubted_after_s = 1e9;
+  trusting.missed_after_s = 1e9;
+  EXPECT_GT(handle_error_after_a_turn(trusting), 1.0);
+  EXPECT_LT(handle_error_after_a_turn({}), 0.45) << "as good as a single look at it";
 }
 
 TEST(ObjectFollower, WhatTheDetectorMissesThoughItIsInFullViewBecomesLessSure) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace houghstream::stream {
 namespace {
 
@@ -36,6 +38,20 @@ TEST(StreamPlan, AnObjectStoreIsForAll) {
   EXPECT_EQ(plans[0].command, (Words{"/bin/hs-detect", "--channel", "OPENNI_FRAME", "--objects", "store"}));
   EXPECT_EQ(plans[1].command, (Words{"/bin/hs-pose", "--channel", "OPENNI_FRAME", "--objects", "store"}));
   EXPECT_EQ(plans[2].command, (Words{"/bin/hs-view", "--channel", "OPENNI_FRAME", "--objects", "store"}));
+}
+
+TEST(StreamPlan, WhoFollowsLooksSeldom) {
+  StreamOptions options;
+  options.objects = "store";
+  options.follow = true;
+  options.pose_options = "--threads 2";
+  EXPECT_EQ(plan_stream(options)[0].command.back(), "5");
+  EXPECT_EQ(plan_stream(options)[1].command,
+            (Words{"hs-pose", "--channel", "OPENNI_FRAME", "--objects", "store", "--follow", "--threads", "2"}));
+  options.detect_options = "--looks-per-second 3";
+  const Words own = plan_stream(options)[0].command;
+  EXPECT_EQ(own.back(), "3");
+  EXPECT_EQ(std::count(own.begin(), own.end(), "--looks-per-second"), 1);
 }
 
 TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
