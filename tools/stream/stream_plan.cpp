@@ -45,6 +45,8 @@ std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
   plans.push_back(plan(options, "detect", with_camera(has_store ? store : forest), looks + options.detect_options));
   if (has_store || !models.empty())
     plans.push_back(plan(options, "pose", with_camera(has_store ? store : models), follow + options.pose_options));
+  if (options.track)
+    plans.push_back(plan(options, "track", with_camera(has_store ? store : models), options.track_options));
   if (options.view) {
     plans.push_back(plan(options, "view", with_camera(has_store ? store : models), options.view_options));
     plans.back().ends_stream = true;

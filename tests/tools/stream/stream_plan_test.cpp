@@ -66,5 +66,20 @@ TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
                                      options.camera}));
 }
 
+TEST(StreamPlan, TrackingIsAskedForAndTakesTheModels) {
+  StreamOptions options;
+  options.executables = "";
+  options.objects = "store";
+  options.view = false;
+  EXPECT_EQ(plan_stream(options).size(), 2U);
+  options.track = true;
+  options.track_options = "--cameras c.yaml";
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 3U);
+  EXPECT_EQ(plans[2].name, "track");
+  EXPECT_EQ(plans[2].command, (std::vector<std::string>{"hs-track", "--channel", "OPENNI_FRAME", "--objects", "store",
+                                                        "--cameras", "c.yaml"}));
+}
+
 }  // namespace
 }  // namespace houghstream::stream
