@@ -136,7 +136,6 @@ final class Samples {
     return message;
   }
 
-  /** Six directions, the first seen, of an object that is not turned. */
   /** One mug on the table, in that state. */
   static objects_t world(byte state) {
     tracked_object_t mug = new tracked_object_t();
@@ -162,6 +161,7 @@ final class Samples {
     return message;
   }
 
+  /** Six directions, the first seen, of an object that is not turned. */
   static teaching_t teaching(byte state) {
     teaching_t message = new teaching_t();
     message.name = "mug";
