@@ -1,5 +1,6 @@
 #include "pose/pose_estimator.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pose/verification/judgement.hpp"
 
 namespace houghstream {
 namespace {
@@ -80,30 +82,8 @@ void find_candidates(std::int64_t utime, const ObjectPoses& earlier, const PoseS
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
   it.chosen = choose_pose(*it.seen, it.registered, it.rotations, settings);
-  it.pose.converged = it.chosen.converged;
-  it.pose.iterations = it.chosen.iterations;
-  it.pose.inliers = it.chosen.inliers;
-  it.pose.inlier_fraction = it.chosen.inlier_fraction;
-  it.pose.residual = it.chosen.residual;
+  tell_registration(it.chosen, it.pose);
   if (it.chosen.inliers == 0) it.pose.status = PoseStatus::kNotConverged;
-}
-
-/// Publishes the pose or says why not.
-void verify_one(const PoseSettings& settings, Estimation& it) {
-  const PoseEvidence evidence =
-      gather_evidence(*it.seen, it.chosen.T_camera_object, it.detection.score, settings.verification);
-  const auto learnt = settings.class_quality.find(it.pose.class_name);
-  const QualitySettings& quality = learnt != settings.class_quality.end() ? learnt->second : settings.quality;
-  const QualityTerms terms = quality_terms(evidence, quality);
-  it.pose.visible_fraction = evidence.depth.visible_fraction();
-  it.pose.free_space_violation = evidence.depth.free_space_violation();
-  it.pose.quality = pose_quality(terms, quality);
-  if (it.pose.quality < quality.least) {
-    it.pose.status = reason_against(terms, quality, evidence.colour.has_value());
-  } else {
-    it.pose.status = PoseStatus::kValid;
-    it.pose.T_camera_object = it.chosen.T_camera_object;
-  }
 }
 
 }  // namespace
@@ -154,11 +134,40 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   clock.mark("pose.registration");
   for_each_undecided([&](Estimation& it) { choose_one(settings, it); });
   clock.mark("pose.choice");
-  for_each_undecided([&](Estimation& it) { verify_one(settings, it); });
+  for_each_undecided([&](Estimation& it) { judge(*it.seen, it.chosen.T_camera_object, settings, it.pose); });
   clock.mark("pose.verification");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());
   return result;
+}
+
+std::vector<FollowedPose> PoseEstimator::follow(const RgbdFrame& frame,
+                                                const std::vector<ExpectedObject>& expected) const {
+  check_frame(frame, "pose estimation");
+  std::vector<FollowedPose> followed(expected.size());
+  parallel_for(state_->settings.threads, static_cast<int>(expected.size()), [&](int i) {
+    const ExpectedObject& object = expected[i];
+    const auto model = state_->models.find(object.class_name);
+    if (model != state_->models.end()) {
+      followed[i] = follow_object(frame, model->second, object, state_->settings);
+    } else {
+      followed[i].pose.class_id = object.class_id;
+      followed[i].pose.class_name = object.class_name;
+      followed[i].pose.detection_score = object.score;
+      followed[i].pose.status = PoseStatus::kNoModel;
+      followed[i].T_camera_object = object.starts.front();
+    }
+  });
+  return followed;
+}
+
+bool PoseEstimator::are_one(const PlacedObject& a, const PlacedObject& b, double apart) const {
+  const auto model_a = state_->models.find(a.class_name);
+  const auto model_b = state_->models.find(b.class_name);
+  if (model_a == state_->models.end() || model_b == state_->models.end()) return false;
+  const Eigen::Vector3d middle_a = a.T_camera_object * model_a->second.centre.cast<double>();
+  const Eigen::Vector3d middle_b = b.T_camera_object * model_b->second.centre.cast<double>();
+  return (middle_a - middle_b).norm() < apart * std::min(model_a->second.radius, model_b->second.radius);
 }
 
 }  // namespace houghstream

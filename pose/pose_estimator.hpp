@@ -3,14 +3,22 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
+#include "pose/following/follow.hpp"
 #include "pose/pose_settings.hpp"
 
 namespace houghstream {
+
+/// An object of a class at a place.
+struct PlacedObject {
+  const std::string& class_name;
+  const Eigen::Isometry3d& T_camera_object;
+};
 
 /// Refines detections to 6-DoF poses: candidates from the votes, registration to the measured depth, verification
 /// against the rendered model.
@@ -35,6 +43,14 @@ class PoseEstimator {
   /// The same with the poses of an earlier frame (warm start): they are candidates beside those of the votes, never the
   /// only ones, so that a wrong pose does not stick and what was lost comes back by itself.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) const;
+
+  /// The poses in this frame of objects that were posed in earlier ones, in their order, without detections
+  /// (follow_object). Of a class without a model: kNoModel. Throws InputError for a frame that is none.
+  std::vector<FollowedPose> follow(const RgbdFrame& frame, const std::vector<ExpectedObject>& expected) const;
+
+  /// Whether the middles of two objects are closer together than `apart` of the smaller one's radius: both cannot be
+  /// there. False where a class has no model.
+  bool are_one(const PlacedObject& a, const PlacedObject& b, double apart) const;
 
  private:
   struct State;

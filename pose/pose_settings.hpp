@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include "pose/following/follow_settings.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/region.hpp"
 #include "pose/registration/candidates.hpp"
@@ -25,6 +26,7 @@ struct PoseSettings {
   TurnSettings turn;
   VerificationSettings verification;
   QualitySettings quality;
+  FollowSettings follow;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
   float min_score = 0.1F;                                ///< of a detection whose pose is looked for
   int threads = 1;                                       ///< any number gives the same poses

@@ -36,6 +36,10 @@ std::string camera_name(const std::string& camera_channel) {
   return fmt::format("{}_{:04X}", name.substr(0, kLongest - 5), short_number(camera_channel));
 }
 
+std::string to_world(const std::string& camera_channel) {
+  return camera_name(camera_channel) + "_TO_WORLD";
+}
+
 std::string to_camera(const std::string& class_name, const std::string& camera_channel) {
   const std::string suffix = "_TO_" + (camera_channel.empty() ? "CAMERA" : camera_name(camera_channel));
   return upper_case(class_name.substr(0, kMaxChannelLength - suffix.size())) + suffix;

@@ -7,6 +7,7 @@ namespace houghstream::channel {
 inline const std::string kFrame = "OPENNI_FRAME";                      ///< images_t
 inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";       ///< detections_t
 inline const std::string kPoses = "HOUGHSTREAM_POSES";                 ///< object_poses_t
+inline const std::string kObjects = "HOUGHSTREAM_OBJECTS";             ///< objects_t
 inline const std::string kStatus = "HOUGHSTREAM_STATUS";               ///< status_t, 1 Hz, every process
 inline const std::string kKnownObjects = "HOUGHSTREAM_KNOWN_OBJECTS";  ///< known_objects_t, 1 Hz, who has a store
 inline const std::string kTeaching = "HOUGHSTREAM_TEACHING";           ///< teaching_t, while an object is shown
@@ -18,7 +19,10 @@ inline const std::string kPreview = "HOUGHSTREAM_PREVIEW";             ///< imag
 /// A camera's name that is cut ends with a number made of all of it, so that two cameras stay two.
 std::string to_camera(const std::string& class_name, const std::string& camera_channel = "");
 
-/// The camera's part of that.
+/// Where a camera is, rigid_transform_t T_world_camera: "left-cam" -> "LEFT_CAM_TO_WORLD".
+std::string to_world(const std::string& camera_channel);
+
+/// The camera's part of these.
 std::string camera_name(const std::string& camera_channel);
 
 }  // namespace houghstream::channel

@@ -4,6 +4,7 @@
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
+#include <houghstream/objects_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/teaching_t.hpp>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "pipeline/types/known_objects.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pipeline/types/teaching.hpp"
+#include "pipeline/types/tracked_object.hpp"
 
 // Plain structs to LCM messages and back. Everything that comes off the wire is checked here, once:
 // functions that read throw InputError and never return a made-up value.
@@ -65,6 +67,12 @@ houghstream::object_poses_t to_message(const ObjectPoses& poses);
 ObjectPoses poses_from_message(const houghstream::object_poses_t& message);
 
 houghstream::rigid_transform_t to_message(std::int64_t utime, const Eigen::Isometry3d& T_camera_object);
+
+/// Throws InputError where it is not rigid: a quaternion of another length than 1, a place that is not finite.
+Eigen::Isometry3d transform_from_message(const houghstream::rigid_transform_t& message);
+
+houghstream::objects_t to_message(const WorldObjects& objects);
+WorldObjects world_from_message(const houghstream::objects_t& message);
 
 /// Who sends it, and when, is left to the sender.
 houghstream::known_objects_t to_message(const KnownObjects& known);

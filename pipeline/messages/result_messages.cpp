@@ -127,9 +127,9 @@ Eigen::Isometry3d transform_from(const object_pose_t& message) {
 }
 
 ObjectPose pose_from_message(const object_pose_t& message) {
-  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::REJECTED_BY_COLOUR,
+  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::OCCLUDED,
           "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
-          object_pose_t::REJECTED_BY_COLOUR);
+          object_pose_t::OCCLUDED);
   const bool are_shares = is_share(message.inlier_fraction) && is_share(message.visible_fraction) &&
                           is_share(message.free_space_violation) && is_share(message.quality);
   require(are_shares, "{}: shares {}, {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,

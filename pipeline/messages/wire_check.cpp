@@ -5,6 +5,7 @@
 #include <houghstream/images_t.hpp>
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
+#include <houghstream/objects_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
 #include <houghstream/teaching_t.hpp>
@@ -24,6 +25,7 @@ constexpr std::size_t kLeastStage = 5 + 8;
 constexpr std::size_t kVote = 4 * 4 + 4;
 constexpr std::size_t kDetectionNumbers = 5 * 4 + 3 * 4 + 4 + 4;  // score to n_votes_total
 constexpr std::size_t kPoseNumbers = 4 + 4 + 1 + 3 * 8 + 4 * 8 + 1 + 4 + 4 + 5 * 4;
+constexpr std::size_t kTrackNumbers = 1 + 4 + 1 + (3 + 4 + 36 + 3 + 3) * 8 + 4 + 8 + 8;  // state to seen_utime
 constexpr std::size_t kStatusNumbers = 4 + 4 + 5 * 8 + 3 * 4;
 constexpr std::size_t kKnownObject = 5 + 8;
 constexpr std::size_t kTeachingNumbers = 4 + 4 + 4 + 4 * 4 + 3 * 8 + 4 * 8;  // progress to quat
@@ -74,6 +76,21 @@ void walk_poses(WireReader& reader) {
     reader.skip(4);
     reader.read_string();
     reader.skip(kPoseNumbers);
+  }
+  walk_stages(reader);
+}
+
+void walk_objects(WireReader& reader) {
+  reader.skip(8);
+  reader.read_string();
+  reader.read_string();
+  reader.skip(4 + 3 * 8 + 4 * 8);
+  for (std::size_t left = reader.read_count(8 + 4 + 5 + kTrackNumbers + 5 + 5); left > 0; --left) {
+    reader.skip(8 + 4);
+    reader.read_string();
+    reader.skip(kTrackNumbers);
+    reader.read_string();
+    reader.read_string();
   }
   walk_stages(reader);
 }
@@ -138,8 +155,9 @@ std::int64_t read_utime(ByteView bytes, const std::string& source) {
 FrameId read_result_frame(ByteView bytes, const std::string& source) {
   WireReader reader(bytes, source);
   const std::int64_t fingerprint = reader.read_int64();
-  require(fingerprint == detections_t::getHash() || fingerprint == object_poses_t::getHash(),
-          "{}: message of fingerprint {:016x}, expected detections_t or object_poses_t", source,
+  require(fingerprint == detections_t::getHash() || fingerprint == object_poses_t::getHash() ||
+              fingerprint == objects_t::getHash(),
+          "{}: message of fingerprint {:016x}, expected detections_t, object_poses_t or objects_t", source,
           static_cast<std::uint64_t>(fingerprint));
   FrameId frame;
   frame.utime = reader.read_int64();
@@ -169,6 +187,8 @@ void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& typ
     walk_detections(reader);
   } else if (fingerprint == object_poses_t::getHash()) {
     walk_poses(reader);
+  } else if (fingerprint == objects_t::getHash()) {
+    walk_objects(reader);
   } else if (fingerprint == status_t::getHash()) {
     walk_status(reader);
   } else if (fingerprint == known_objects_t::getHash()) {

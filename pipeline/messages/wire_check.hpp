@@ -25,8 +25,8 @@ FrameHeader read_frame_header(ByteView bytes);
 /// utime of any encoded message of this project that names a frame by it: it stands right after the fingerprint.
 std::int64_t read_utime(ByteView bytes, const std::string& source);
 
-/// The frame that an encoded detections_t or object_poses_t is about, without decoding or checking the rest. Throws
-/// InputError, naming `source`, where the message is of another type or cut.
+/// The frame that an encoded detections_t, object_poses_t or objects_t is about, without decoding or checking the rest.
+/// Throws InputError, naming `source`, where the message is of another type or cut.
 FrameId read_result_frame(ByteView bytes, const std::string& source);
 
 /// Whether the bytes begin with the fingerprint of images_t: all that is asked of what a pattern of channels brings.
@@ -36,7 +36,7 @@ bool is_frame_message(ByteView bytes);
 std::int64_t parse_sequence(ByteView text);
 
 /// Throws InputError unless the bytes are one whole message of the type with this fingerprint. Types known here:
-/// images_t, detections_t, object_poses_t, status_t, known_objects_t, teaching_t, rigid_transform_t.
+/// images_t, detections_t, object_poses_t, objects_t, status_t, known_objects_t, teaching_t, rigid_transform_t.
 void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type);
 
 /// Decodes one whole message. Throws InputError.

@@ -3,6 +3,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/process/look_budget.hpp"
 #include "pipeline/process/newest_of_each.hpp"
 #include "pipeline/process/process_loop.hpp"
 
@@ -15,19 +16,44 @@ struct EncodedFrame {
   std::chrono::steady_clock::time_point arrival;
 };
 
-void receive_frame(const Arrival& arrival, StatusReporter& status, NewestOfEach<EncodedFrame>& newest) {
-  status.count_received();
-  try {
-    status.note_sequence(read_frame_header(arrival.bytes).sequence, arrival.channel);
-  } catch (const InputError& error) {
-    status.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
-    return;
+/// What the receiving thread does.
+class Reception {
+ public:
+  Reception(StatusReporter& status, NewestOfEach<EncodedFrame>& newest, double looks_per_second)
+      : status_(status), newest_(newest), budget_(looks_per_second) {}
+
+  void receive_frame(const Arrival& arrival) {
+    status_.count_received();
+    try {
+      const FrameHeader header = read_frame_header(arrival.bytes);
+      status_.note_sequence(header.sequence, arrival.channel);
+      const bool passed_over = !budget_.is_due({arrival.channel, header.utime}) || put(arrival);
+      if (passed_over) status_.count_skipped(1);
+    } catch (const InputError& error) {
+      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
+    }
   }
-  const ByteView& bytes = arrival.bytes;
-  const bool replaced =
-      newest.put(arrival.channel, {arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time});
-  if (replaced) status.count_skipped(1);
-}
+
+  /// Of what is followed: where something is lost, the camera is looked at soon.
+  void receive_poses(const Arrival& arrival) {
+    const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(arrival.bytes));
+    for (const ObjectPose& pose : poses.poses) {
+      const bool is_lost = pose.status != PoseStatus::kValid && pose.status != PoseStatus::kOccluded;
+      if (pose.detection_index < 0 && is_lost) budget_.hurry(poses.frame.channel);
+    }
+  }
+
+ private:
+  /// Whether another frame is passed over for it.
+  bool put(const Arrival& arrival) {
+    const ByteView& bytes = arrival.bytes;
+    return newest_.put(arrival.channel, {arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time});
+  }
+
+  StatusReporter& status_;
+  NewestOfEach<EncodedFrame>& newest_;
+  LookBudget budget_;
+};
 
 RgbdFrame decode(const EncodedFrame& encoded, const std::optional<Camera>& camera) {
   StageClock clock;
@@ -47,11 +73,15 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   StatusReporter status(options.process);
   status.tell_objects(options.objects);
   NewestOfEach<EncodedFrame> newest;
+  Reception reception(status, newest, options.looks_per_second);
   bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
     if (options.keep_frames) bus.publish(arrival.channel, arrival.bytes, arrival.event_us);
-    receive_frame(arrival, status, newest);
+    reception.receive_frame(arrival);
   });
+  if (options.looks_per_second > 0.0 && !bus.is_log()) {
+    bus.subscribe(channel::kPoses, [&](const Arrival& arrival) { reception.receive_poses(arrival); });
+  }
   log_info("ready: frames from {} at {}", options.frame_channels, bus.url());
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
     const std::optional<EncodedFrame> encoded = newest.take(timeout);

@@ -13,7 +13,7 @@ void PairInbox::put_frame(const FrameId& id, std::vector<std::uint8_t> bytes) {
     camera.frames.push_back({id, std::move(bytes)});
     if (camera.frames.size() > kHistory) camera.frames.pop_front();
     ++camera.frames_seen;
-    camera.fresh = newest_first_;
+    camera.fresh = newest_first_ && ahead_;
     drop_hopeless(camera);
   }
   changed_.notify_one();

@@ -40,8 +40,9 @@ class PairInbox {
   static constexpr std::int64_t kWait = 30;
 
   /// `newest_first`: take() serves the cameras in turn, and passes over older detections of a camera: of each of its
-  /// detectors one result stays. Otherwise everything is worked on in the order of arrival.
-  explicit PairInbox(bool newest_first) : newest_first_(newest_first) {}
+  /// detectors one result stays. Otherwise everything is worked on in the order of arrival. `ahead`: take_fresh() is
+  /// used.
+  explicit PairInbox(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
 
   void put_frame(const FrameId& id, std::vector<std::uint8_t> bytes);
   /// `id` is the frame that they were found in.
@@ -90,6 +91,7 @@ class PairInbox {
   bool any_fresh() const;
 
   bool newest_first_;
+  bool ahead_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::string, Camera> cameras_;  // by channel

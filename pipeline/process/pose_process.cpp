@@ -12,6 +12,7 @@
 #include "pipeline/process/model_check.hpp"
 #include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/pose_memory.hpp"
+#include "pipeline/process/pose_output.hpp"
 #include "pipeline/process/process_loop.hpp"
 
 namespace houghstream {
@@ -25,20 +26,6 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
-/// A frame, and how long it took to decode.
-struct DecodedFrame {
-  RgbdFrame frame;
-  StageTime decoding;
-};
-
-DecodedFrame decode(const std::vector<std::uint8_t>& bytes, const std::string& channel,
-                    const std::optional<Camera>& camera) {
-  StageClock clock;
-  RgbdFrame frame = frame_from_message(decode_message<images_t>(view(bytes)), channel, camera);
-  clock.mark("pose.decode");
-  return {std::move(frame), clock.times().front()};
-}
-
 class PoseProcess {
  public:
   PoseProcess(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate)
@@ -49,7 +36,7 @@ class PoseProcess {
         status_(options.process),
         inbox_(!bus.is_log()),
         models_(options.models),
-        several_cameras_(!channels_.is_name()) {}
+        transforms_(bus, options.frame_channels) {}
 
   void run() {
     status_.tell_objects(options_.objects);
@@ -84,7 +71,8 @@ class PoseProcess {
       sources_.insert(frame.channel);
       ++detections_;
       if (!channels_.matches(frame.channel)) {
-        note_other_camera(frame.channel);
+        ++others_;
+        transforms_.note_other_camera(frame.channel);
         return;
       }
       status_.count_received();
@@ -93,13 +81,6 @@ class PoseProcess {
       status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
     }
-  }
-
-  void note_other_camera(const std::string& channel) {
-    ++others_;
-    if (several_cameras_.exchange(true)) return;
-    log_info("detections of frames on {} are heard too: transforms go to <OBJECT>_TO_{}", channel,
-             channel::camera_name(options_.frame_channels));
   }
 
   bool step(std::chrono::milliseconds timeout) {
@@ -124,7 +105,7 @@ class PoseProcess {
     const std::optional<ArrivedFrame> fresh = inbox_.take_fresh();
     if (!fresh) return;
     try {
-      ahead_[fresh->id.channel] = decode(fresh->bytes, fresh->id.channel, options_.camera);
+      ahead_[fresh->id.channel] = decode_for_poses(fresh->bytes, fresh->id.channel, options_.camera);
     } catch (const InputError&) {
     }
   }
@@ -134,7 +115,8 @@ class PoseProcess {
     if (detections.detections.empty()) return {detections.frame, {}, detections.stages};
     const auto ahead = ahead_.find(pair.id.channel);
     const bool is_ahead = ahead != ahead_.end() && ahead->second.frame.id == pair.id;
-    const DecodedFrame decoded = is_ahead ? ahead->second : decode(pair.frame, pair.id.channel, options_.camera);
+    const DecodedFrame decoded =
+        is_ahead ? ahead->second : decode_for_poses(pair.frame, pair.id.channel, options_.camera);
     detections.stages.push_back(decoded.decoding);
     note_models();
     warn(models_.note(detections));
@@ -152,11 +134,7 @@ class PoseProcess {
 
   void publish(const ObjectPoses& poses) {
     bus_.publish(channel::kPoses, to_message(poses));
-    const std::string camera = several_cameras_ ? poses.frame.channel : "";
-    for (const ObjectPose& pose : poses.poses) {
-      if (!pose.T_camera_object) continue;
-      bus_.publish(channel::to_camera(pose.class_name, camera), to_message(poses.frame.utime, *pose.T_camera_object));
-    }
+    transforms_.publish(poses);
   }
 
   static void warn(const std::optional<std::string>& words) {
@@ -194,9 +172,9 @@ class PoseProcess {
   std::map<std::string, DecodedFrame> ahead_;  // by channel
   PoseMemory memory_;
   ModelCheck models_;
+  TransformOutput transforms_;
   // What the receiving thread has seen.
   std::set<std::string> sources_;
-  std::atomic<bool> several_cameras_;
   std::atomic<std::int64_t> detections_{0};
   std::atomic<std::int64_t> others_{0};  // of them, of other cameras' frames
   std::int64_t without_frame_ = 0;       // of the rest

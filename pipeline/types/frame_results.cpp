@@ -70,6 +70,12 @@ bool answers(const ObjectPoses& poses, const Detections& detections) {
   });
 }
 
+bool are_followed(const ObjectPoses& poses) {
+  const auto is_following = [](const StageTime& stage) { return stage.stage == kFollowingStage; };
+  if (poses.poses.empty()) return std::any_of(poses.stages.begin(), poses.stages.end(), is_following);
+  return poses.poses.front().detection_index < 0;
+}
+
 void FrameResults::add(Detections detections) {
   const auto same = std::find_if(results_.begin(), results_.end(),
                                  [&](const FrameResult& known) { return same_find(known.detections, detections); });
@@ -84,6 +90,10 @@ void FrameResults::add(Detections detections) {
 }
 
 void FrameResults::add(ObjectPoses poses) {
+  if (are_followed(poses)) {
+    followed_ = std::move(poses);
+    return;
+  }
   if (!place(poses)) unmatched_.push_back(std::move(poses));
 }
 

@@ -8,6 +8,9 @@
 
 namespace houghstream {
 
+/// The stage of following objects from frame to frame: poses with its time answer no detections.
+inline constexpr const char* kFollowingStage = "pose.following";
+
 /// What one detector found in a frame, and the poses that were computed of it.
 struct FrameResult {
   Detections detections;
@@ -17,6 +20,9 @@ struct FrameResult {
 /// Whether the poses are those of these detections: of the same frame, of its classes at the places that they name, and
 /// some where there are detections. The messages do not say which detector they are of.
 bool answers(const ObjectPoses& poses, const Detections& detections);
+
+/// Whether these are poses of objects that hs-pose follows from frame to frame, which answer no detections.
+bool are_followed(const ObjectPoses& poses);
 
 /// All that was published of one frame. Several detectors may work on a camera's frames, each with a forest of its own
 /// objects: each result stands by itself, with its own poses. Results and poses may come in any order.
@@ -29,7 +35,9 @@ class FrameResults {
   const std::vector<FrameResult>& results() const { return results_; }
   /// Whether each result has its poses.
   bool all_posed() const;
-  /// Poses of no result that has come so far.
+  /// The poses of the objects that are followed, where hs-pose follows any.
+  const std::optional<ObjectPoses>& followed() const { return followed_; }
+  /// Other poses, of no result that has come so far.
   const std::vector<ObjectPoses>& unmatched() const { return unmatched_; }
 
   /// All results as one, strongest detections first, and the poses that have come with indices to match. What several
@@ -41,6 +49,7 @@ class FrameResults {
   bool place(ObjectPoses& poses);
 
   std::vector<FrameResult> results_;
+  std::optional<ObjectPoses> followed_;
   std::vector<ObjectPoses> unmatched_;
 };
 

@@ -14,6 +14,7 @@ const char* to_string(PoseStatus status) {
     case PoseStatus::kLowScore: return "low score";
     case PoseStatus::kRejectedByOutline: return "rejected by outline";
     case PoseStatus::kRejectedByColour: return "rejected by colour";
+    case PoseStatus::kOccluded: return "occluded";
   }
   return "unknown";
 }

@@ -23,6 +23,7 @@ enum class PoseStatus : std::int8_t {
   kLowScore = 7,           ///< hardly an object: its pose was not looked for, or is not believed
   kRejectedByOutline = 8,  ///< the measured surface goes on where the model ends
   kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
+  kOccluded = 10,          ///< followed, and mostly hidden by what was measured in front of it
 };
 
 /// One line per status for logs and reports.
@@ -33,7 +34,7 @@ struct ObjectPose {
   int class_id = 0;
   std::string class_name;
   float detection_score = 0.0F;
-  int detection_index = -1;  ///< in the Detections that the poses answer
+  int detection_index = -1;  ///< in the Detections that the poses answer; -1: followed without one
   PoseStatus status = PoseStatus::kInvalid;
   std::optional<Eigen::Isometry3d> T_camera_object;  ///< present exactly when status is kValid
   bool converged = false;

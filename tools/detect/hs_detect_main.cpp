@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
@@ -6,6 +8,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/process/detect_process.hpp"
+#include "pipeline/process/warm_up.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 
@@ -37,11 +40,19 @@ struct DetectOptions {
   DetectProcessOptions process;
 };
 
+/// Looks by a budget come at leisure: who follows objects from frame to frame goes first. Of all threads that are
+/// started from here on.
+void give_way() {
+  constexpr int kPolite = 5;
+  if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
+}
+
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options) {
   const Detector detector = make_detector(load_forest(options.forest_file), options.search);
-  LcmBus bus(options.url, options.output_log);
   DetectorWorkspace workspace;
+  detector.detect(frame_to_warm_up(), workspace);
+  LcmBus bus(options.url, options.output_log);
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) { return detector.detect(frame, workspace); });
 }
 
@@ -51,9 +62,10 @@ void run_with_store(DetectOptions options) {
   store::StoreWatch<Detector> watch(
       options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options.search); });
   options.process.objects = [&] { return watch.known(); };
+  DetectorWorkspace workspace;
+  if (const auto detector = watch.current()) detector->detect(frame_to_warm_up(), workspace);
   LcmBus bus(options.url, options.output_log);
   bus.is_log() ? watch.hold() : watch.follow();
-  DetectorWorkspace workspace;
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const Detector> detector = watch.current();
     return detector ? detector->detect(frame, workspace) : Detections{frame.id, {}, frame.stages};
@@ -73,6 +85,9 @@ int main(int argc, char** argv) {
   app.add_option("--forest", options.forest_file, "forest file of hs-train, instead of --objects");
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   add_search_options(app, options.search);
+  app.add_option("--looks-per-second", options.process.looks_per_second,
+                 "look at so many of each camera's frames a second, for hs-pose --follow; default: at each one")
+      .range(0.1, 1000.0);
   add_frame_channels_option(app, options.process.frame_channels);
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
   app.add_flag("--keep-frames", options.process.keep_frames,
@@ -82,6 +97,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);
+    if (options.process.looks_per_second > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
     options.objects.empty() ? run_with_forest(options) : run_with_store(options);
   });

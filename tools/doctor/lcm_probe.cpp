@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <houghstream/status_t.hpp>
 #include <vector>
 
+#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream::doctor {
 namespace {
@@ -33,6 +36,21 @@ std::size_t heard_bytes(const std::string& url, const std::string& channel) {
     return 0;  // the self test says what is wrong with the bus
   }
   return largest;
+}
+
+std::map<std::string, std::string> heard_errors(const std::string& url) {
+  std::map<std::string, std::string> errors;
+  try {
+    LcmBus bus(url);
+    bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
+      const auto status = decode_message<status_t>(arrival.bytes);
+      if (!status.last_error.empty()) errors[status.process] = status.last_error;
+    });
+    handle_until(bus, milliseconds(1500), [] { return false; });
+  } catch (const std::exception&) {
+    return {};  // the self test says what is wrong with the bus
+  }
+  return errors;
 }
 
 SelfTest self_test(const std::string& url, std::size_t bytes) {

@@ -9,6 +9,9 @@ namespace houghstream::doctor {
 /// Machine::heard_bytes of this machine.
 std::size_t heard_bytes(const std::string& url, const std::string& channel);
 
+/// Machine::heard_errors of this machine.
+std::map<std::string, std::string> heard_errors(const std::string& url);
+
 /// Machine::self_test of this machine: some messages one after another on a channel of their own.
 SelfTest self_test(const std::string& url, std::size_t bytes);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,9 @@ struct Machine {
   std::function<std::int64_t(std::int64_t asked)> granted_receive_buffer;
   /// Size of the largest message heard on the channel within a second; 0 = none.
   std::function<std::size_t(const std::string& url, const std::string& channel)> heard_bytes;
+  /// What processes on the bus say of their last error, by name, within a second and a half; those without one are left
+  /// out.
+  std::function<std::map<std::string, std::string>(const std::string& url)> heard_errors;
   /// Sends messages of so many bytes and waits for them.
   std::function<SelfTest(const std::string& url, std::size_t bytes)> self_test;
   /// Whether this user may read and write the file (a full path below root).

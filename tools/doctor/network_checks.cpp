@@ -101,6 +101,17 @@ Finding check_self_test(const Machine& machine, const std::string& url, std::siz
   return wrong(kSelfTest, what + "; the machine is overloaded or its buffers are too small", receive_buffer_remedy());
 }
 
+/// What runs on the bus and complains: two cameras whose places contradict each other make a world that is wrong.
+Findings check_processes(const Machine& machine, const std::string& url) {
+  Findings findings;
+  for (const auto& [process, error] : machine.heard_errors(url)) {
+    const bool contradiction = process == "hs-track" && error.find("one of their places is wrong") != std::string::npos;
+    findings.push_back(contradiction ? wrong(process, error, "hs-track --check -c CAMERAS, and correct --cameras")
+                                     : note(process, "says: " + error));
+  }
+  return findings;
+}
+
 }  // namespace
 
 Findings check_network(const Machine& machine, const BusSettings& settings) {
@@ -115,6 +126,8 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
   // Without a route LCM would wait for its own test for ten seconds, to say the same.
   findings.push_back(route ? check_self_test(machine, settings.url, frame_bytes)
                            : note(kSelfTest, "not tried: there is no route"));
+  if (!route) return findings;
+  for (const Finding& finding : check_processes(machine, settings.url)) findings.push_back(finding);
   return findings;
 }
 

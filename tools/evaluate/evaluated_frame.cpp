@@ -81,7 +81,7 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
     if (std::optional<FrameResult> all = results.joined()) {
       frame->second->detections = std::move(all->detections);
       frame->second->poses = std::move(all->poses);
-    } else {
+    } else if (!results.unmatched().empty()) {
       frame->second->poses = results.unmatched().front();
     }
   }

@@ -4,6 +4,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"
+#include "tools/log/export_objects.hpp"
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
 #include "tools/log/import_log.hpp"
@@ -88,7 +89,12 @@ int main(int argc, char** argv) {
   const CommandLine png = add_export(exporter, "png", "frames as NNNNNN_color.png, NNNNNN_depth.png", options);
   const CommandLine csv =
       add_export(exporter, "csv", "detections and poses of all cameras and detectors, one row each", options);
-  add_export(exporter, "json", "detections and poses of all cameras and detectors by frame, with stage times", options);
+  const CommandLine json = add_export(
+      exporter, "json", "detections and poses of all cameras and detectors by frame, with stage times", options);
+  const CommandLine objects_csv =
+      add_export(exporter, "objects-csv", "hs-track's objects, a row for each after each frame", options);
+  add_export(exporter, "objects-json", "hs-track's objects by frame, and when and why each one's state changed",
+             options);
 
   return run_tool(app, argc, argv, [&] {
     LossAccount losses;
@@ -102,7 +108,9 @@ int main(int argc, char** argv) {
                                  : bop.given()    ? export_bop(options.recording, options.out, losses)
                                  : png.given()    ? export_pngs(options.recording, options.out, losses)
                                  : csv.given()    ? export_results_csv(options.in, options.out, losses)
-                                                  : export_results_json(options.in, options.out, losses);
+                                 : json.given()   ? export_results_json(options.in, options.out, losses)
+                                 : objects_csv.given() ? export_objects_csv(options.in, options.out, losses)
+                                                       : export_objects_json(options.in, options.out, losses);
       fmt::print("{} {} in {}\n", count, filter.given() ? "events" : "frames", options.out);
     }
     if (!losses.line().empty()) log_warning("{}: {}", options.in, losses.line());

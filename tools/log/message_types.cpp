@@ -9,6 +9,7 @@
 #include <houghstream/kinect_frame_msg_t.hpp>
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
+#include <houghstream/objects_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
 #include <houghstream/teaching_t.hpp>
@@ -30,6 +31,7 @@ std::string type_name(std::int64_t fingerprint) {
       {drake_image_array_t::getHash(), "lcmt_image_array (drake)"},
       {detections_t::getHash(), "detections_t"},
       {object_poses_t::getHash(), "object_poses_t"},
+      {objects_t::getHash(), "objects_t"},
       {status_t::getHash(), "status_t"},
       {known_objects_t::getHash(), "known_objects_t"},
       {teaching_t::getHash(), "teaching_t"},

@@ -93,7 +93,9 @@ std::string FrameTimes::csv() const {
 std::vector<double> FrameTimes::latencies_ms(std::optional<Time> Row::*from, std::optional<Time> Row::*to) const {
   std::vector<double> latencies;
   for (const auto& [id, row] : rows_) {
-    if (row.*from && row.*to) latencies.push_back(seconds(*(row.*to) - *(row.*from)) * 1e3);
+    // Poses of what is followed come before the detections.
+    if (row.*from && row.*to && *(row.*from) <= *(row.*to))
+      latencies.push_back(seconds(*(row.*to) - *(row.*from)) * 1e3);
   }
   return latencies;
 }

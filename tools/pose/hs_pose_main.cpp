@@ -3,8 +3,9 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/process/pose_process.hpp"
-#include "pose/pose_estimator.hpp"
+#include "pipeline/process/follow_process.hpp"
+#include "pipeline/process/warm_up.hpp"
+#include "pose/following/object_follower.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 
@@ -21,6 +22,7 @@ struct PoseOptions {
   std::string output_log;
   PoseSettings settings;
   std::optional<float> min_quality;
+  bool follow = false;
   PoseProcessOptions process;
 };
 
@@ -31,13 +33,42 @@ std::map<std::string, Mesh> load_models(const PoseOptions& options) {
   return {};
 }
 
+/// Poses of one detection of each class in a made-up frame: the models are in memory, and threads run, before the first
+/// real one.
+std::shared_ptr<const PoseEstimator> warmed_up(std::map<std::string, Mesh> meshes, const PoseSettings& settings) {
+  Detections detections;
+  for (const auto& [name, mesh] : meshes) {
+    Detection detection;
+    detection.class_id = 1;
+    detection.class_name = name;
+    detection.score = 1.0F;
+    detection.box_px = {240.0F, 160.0F, 160.0F, 160.0F};
+    detection.centre_camera = {0.0F, 0.0F, 1.0F};
+    detection.rotations.push_back({Eigen::Quaternionf::Identity(), 1.0F});
+    detections.detections.push_back(std::move(detection));
+  }
+  auto estimator = std::make_shared<const PoseEstimator>(std::move(meshes), settings);
+  estimator->estimate(frame_to_warm_up(), detections);
+  return estimator;
+}
+
 /// The estimator may be another one for each frame.
 using CurrentEstimator = std::function<std::shared_ptr<const PoseEstimator>()>;
 
-void run(LcmBus& bus, const PoseProcessOptions& options, const CurrentEstimator& current) {
-  run_pose_process(bus, options, [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
-    return current()->estimate(frame, detections, earlier);
-  });
+void run(LcmBus& bus, const PoseOptions& options, const CurrentEstimator& current) {
+  if (!options.follow) {
+    run_pose_process(bus, options.process,
+                     [&](const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) {
+                       return current()->estimate(frame, detections, earlier);
+                     });
+    return;
+  }
+  ObjectFollower follower;
+  run_follow_process(bus, options.process,
+                     {[&](const RgbdFrame& frame) { return follower.follow(*current(), frame); },
+                      [&](const RgbdFrame& frame, const Detections& detections) {
+                        return follower.answer(*current(), frame, detections);
+                      }});
 }
 
 /// Models stay what they are.
@@ -45,9 +76,9 @@ void run_with_models(PoseOptions options) {
   std::map<std::string, Mesh> meshes = load_models(options);
   if (options.min_quality) options.settings.quality.least = *options.min_quality;
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
-  const auto estimator = std::make_shared<const PoseEstimator>(std::move(meshes), options.settings);
+  const auto estimator = warmed_up(std::move(meshes), options.settings);
   LcmBus bus(options.url, options.output_log);
-  run(bus, options.process, [&] { return estimator; });
+  run(bus, options, [&] { return estimator; });
 }
 
 /// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
@@ -56,14 +87,14 @@ void run_with_store(PoseOptions options) {
   const auto load = [&](const store::ObjectStore& store) {
     PoseSettings settings = options.settings;
     settings.class_quality = stored_quality(store, settings.quality);
-    return std::make_shared<const PoseEstimator>(store::load_store_meshes(store), settings);
+    return warmed_up(store::load_store_meshes(store), settings);
   };
   store::StoreWatch<PoseEstimator> watch(options.objects, load);
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);
   bus.is_log() ? watch.hold() : watch.follow();
-  run(bus, options.process, [&] {
+  run(bus, options, [&] {
     std::shared_ptr<const PoseEstimator> estimator = watch.current();
     return estimator ? estimator : without_models;
   });
@@ -88,6 +119,9 @@ int main(int argc, char** argv) {
                              "{}, of a store's objects {}",
                              options.settings.quality.least, kStoreQuality))
       .range(0.0, 1.0);
+  app.add_flag(
+      "--follow", options.follow,
+      "follow known objects from frame to frame: poses for each frame, at once, whether detections come or not");
   add_frame_channels_option(app, options.process.frame_channels);
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, options.url);

@@ -4,6 +4,7 @@
 
 #include "tools/common/tool_main.hpp"
 #include "tools/render/render_jobs.hpp"
+#include "tools/render/sequence_jobs.hpp"
 #include "tools/render/take_jobs.hpp"
 
 // hs-render: training views, backgrounds and test scenes made by code, in BOP format.
@@ -22,6 +23,7 @@ struct Arguments {
   SceneJob scene;
   std::string sensor = "structured_light";
   TakesJob takes;
+  SequencesJob sequences;
 };
 
 void add_common(CommandLine& command, Arguments& arguments) {
@@ -84,6 +86,21 @@ CommandLine add_takes(CommandLine& app, Arguments& arguments) {
   return takes;
 }
 
+CommandLine add_sequences(CommandLine& app, Arguments& arguments) {
+  CommandLine sequences = app.add_subcommand(
+      "sequences", "objects that are pushed, carried, taken away and hidden, with the truth of every frame");
+  add_common(sequences, arguments);
+  sequences
+      .add_option("--names", arguments.sequences.names,
+                  "walk, pushed, carried, removed, swapped, cans, arm, jerk, cameras, or all")
+      .delimiter(',')
+      .capture_default_str();
+  sequences.add_option("--fps", arguments.sequences.fps, "frames a second").capture_default_str();
+  sequences.add_flag("--development", arguments.sequences.development,
+                     "rooms to choose settings in, of training seeds");
+  return sequences;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -95,6 +112,7 @@ int main(int argc, char** argv) {
   const CommandLine training = add_training(app, arguments);
   const CommandLine background = add_background(app, arguments);
   const CommandLine takes = add_takes(app, arguments);
+  const CommandLine sequences = add_sequences(app, arguments);
   add_scene(app, arguments);
   return run_tool(app, argc, argv, [&] {
     if (training.given()) {
@@ -106,6 +124,8 @@ int main(int argc, char** argv) {
       render_background(arguments.common, arguments.background_count);
     } else if (takes.given()) {
       render_takes(arguments.common, arguments.takes);
+    } else if (sequences.given()) {
+      render_sequences(arguments.common, arguments.sequences);
     } else {
       arguments.scene.sensor = world::parse_sensor(arguments.sensor);
       render_scene(arguments.common, arguments.scene);

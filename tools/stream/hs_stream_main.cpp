@@ -30,10 +30,15 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
   app.add_clearing_flag("--no-view", options.view, "no window");
+  app.add_flag("--follow", options.follow,
+               "poses for each frame at once: hs-pose --follow, and hs-detect --looks-per-second 5 unless "
+               "--detect-options say how many");
+  app.add_flag("--track", options.track, "hs-track too: the objects of the world on HOUGHSTREAM_OBJECTS");
   app.add_option("--capture-options", options.capture_options,
                  "further options for hs-capture: --capture-options='--loop --rate 5'");
   app.add_option("--detect-options", options.detect_options, "further options for hs-detect");
   app.add_option("--pose-options", options.pose_options, "further options for hs-pose");
+  app.add_option("--track-options", options.track_options, "further options for hs-track");
   app.add_option("--view-options", options.view_options, "further options for hs-view");
   app.add_option("--every", pace.every, "seconds between two lines of state").range(0.1, 3600.0).capture_default_str();
   app.add_option("--patience", pace.patience, "seconds to end in, before a process is killed; a video may need more")

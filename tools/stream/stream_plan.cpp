@@ -38,10 +38,15 @@ std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
     words.insert(words.end(), camera.begin(), camera.end());
     return words;
   };
+  const bool own_looks = options.detect_options.find("--looks-per-second") != std::string::npos;
+  const std::string looks = options.follow && !own_looks ? "--looks-per-second 5 " : "";
+  const std::string follow = options.follow ? "--follow " : "";
   std::vector<ChildPlan> plans;
-  plans.push_back(plan(options, "detect", with_camera(has_store ? store : forest), options.detect_options));
+  plans.push_back(plan(options, "detect", with_camera(has_store ? store : forest), looks + options.detect_options));
   if (has_store || !models.empty())
-    plans.push_back(plan(options, "pose", with_camera(has_store ? store : models), options.pose_options));
+    plans.push_back(plan(options, "pose", with_camera(has_store ? store : models), follow + options.pose_options));
+  if (options.track)
+    plans.push_back(plan(options, "track", with_camera(has_store ? store : models), options.track_options));
   if (options.view) {
     plans.push_back(plan(options, "view", with_camera(has_store ? store : models), options.view_options));
     plans.back().ends_stream = true;

@@ -10,7 +10,7 @@ namespace houghstream::stream {
 
 /// What hs-stream starts.
 struct StreamOptions {
-  std::filesystem::path executables;  ///< folder of hs-capture, hs-detect, hs-pose, hs-view
+  std::filesystem::path executables;  ///< folder of hs-capture, hs-detect, hs-pose, hs-track, hs-view
   std::string source;                 ///< of hs-capture; "" = the frames come from somebody else's driver
   std::string objects;                ///< object store for all of them; "" = forest and models
   std::string forest;                 ///< of hs-detect
@@ -19,9 +19,12 @@ struct StreamOptions {
   std::string channel = "OPENNI_FRAME";
   std::string lcm_url;  ///< "" = LCM's default
   bool view = true;
+  bool track = false;           ///< hs-track too
+  bool follow = false;          ///< hs-pose follows known objects, hs-detect looks a few times a second
   std::string capture_options;  ///< further options, words between spaces
   std::string detect_options;
   std::string pose_options;
+  std::string track_options;
   std::string view_options;
 };
 

@@ -217,6 +217,7 @@ class Stream:
     pose: tuple = ()
     show: bool = False  # hs-view's pictures and video, and the results as an LCM log
     watch: bool = False  # what detector and poses cost: OUT/usage.json
+    detect_threads: int = 0  # 0: as many as this process may use
 
     @property
     def with_models(self):
@@ -239,7 +240,8 @@ class Stream:
 
     def _start(self, running):
         programs = pathlib.Path(self.programs)
-        running.start("detect", programs / "hs-detect", "--forest", self.forest, "--threads", threads(), *self.detect)
+        running.start("detect", programs / "hs-detect", "--forest", self.forest, "--threads",
+                      self.detect_threads or threads(), *self.detect)  # fmt: skip
         running.start("pose", programs / "hs-pose", *self.with_models, *self.pose)
         running.start("observe", programs / "hs-observe", "--expect", self.frames, "--out", self.out / "observe.json",
                       "--csv", self.out / "frame_times.csv")  # fmt: skip

@@ -29,6 +29,7 @@ BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channels, const Mat
   subscribe_to_results();
   subscribe_to_status();
   subscribe_to_teaching();
+  subscribe_to_world();
   const BlockStopSignals block;
   thread_ = std::thread([this] { listen(); });
 }
@@ -104,6 +105,13 @@ void BusWatcher::subscribe_to_teaching() {
   bus_.subscribe(channel::kTeaching, counting_bad([this](const Arrival& arrival) {
                    Teaching teaching = teaching_from_message(decode_message<houghstream::teaching_t>(arrival.bytes));
                    stream_.note_teaching(std::move(teaching), microseconds(arrival.time));
+                 }));
+}
+
+void BusWatcher::subscribe_to_world() {
+  bus_.subscribe(channel::kObjects, counting_bad([this](const Arrival& arrival) {
+                   stream_.note_world(world_from_message(decode_message<houghstream::objects_t>(arrival.bytes)),
+                                      microseconds(arrival.time));
                  }));
 }
 

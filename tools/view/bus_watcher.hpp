@@ -55,6 +55,7 @@ class BusWatcher {
   void subscribe_to_results();
   void subscribe_to_status();
   void subscribe_to_teaching();
+  void subscribe_to_world();
   LcmBus::Handler counting_bad(LcmBus::Handler handler);
   void take_frame(const Arrival& arrival);
   void listen();

@@ -44,6 +44,7 @@ void FrameMatcher::add_poses(ObjectPoses poses, std::int64_t now_us) {
 }
 
 bool FrameMatcher::ready(const MatchedFrame& frame, std::int64_t now_us) const {
+  if (frame.results.followed()) return true;
   const std::vector<FrameResult>& results = frame.results.results();
   const bool all_heard = frame.detections_heard >= detectors_.of(frame.id.channel);
   if (all_heard && frame.results.all_posed()) return true;

@@ -10,11 +10,18 @@
 namespace houghstream::view {
 namespace {
 
-ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& camera) {
+ViewedFrame decode(const MatchedFrame& matched, const std::optional<Camera>& camera, const ClassModels& models) {
   const ByteView bytes{matched.frame_bytes.data(), matched.frame_bytes.size()};
   ViewedFrame viewed;
   viewed.frame = frame_from_message(decode_message<houghstream::images_t>(bytes), matched.id.channel, camera);
   viewed.detections.frame = matched.id;
+  if (matched.results.followed()) {
+    BoxedPoses all = boxed(*matched.results.followed(), models, viewed.frame.camera);
+    viewed.detections = std::move(all.detections);
+    viewed.poses = std::move(all.poses);
+    viewed.pose_latency_ms = matched.pose_latency_ms;
+    return viewed;
+  }
   if (std::optional<FrameResult> all = matched.results.joined()) {
     viewed.detections = std::move(all->detections);
     viewed.detect_latency_ms = matched.detect_latency_ms;
@@ -94,7 +101,7 @@ void FrameShow::teach() {
 
 std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher& watcher) {
   try {
-    ViewedFrame viewed = decode(matched, camera_);
+    ViewedFrame viewed = decode(matched, camera_, *models());
     remember(viewed);
     stream_.state = watcher.stream_state();
     stream_.frames_lost = watcher.frames_lost();

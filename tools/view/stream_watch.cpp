@@ -27,6 +27,12 @@ void StreamWatch::note_teaching(Teaching teaching, std::int64_t now_us) {
   taught_us_ = now_us;
 }
 
+void StreamWatch::note_world(const WorldObjects& world, std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  world_.add(world);
+  world_us_ = now_us;
+}
+
 StreamState StreamWatch::state(std::int64_t now_us) {
   const std::lock_guard lock(mutex_);
   while (!arrivals_us_.empty() && now_us - arrivals_us_.front() > kWindowUs) arrivals_us_.pop_front();
@@ -39,6 +45,7 @@ StreamState StreamWatch::state(std::int64_t now_us) {
     if (now_us - process.heard_us <= kSilenceUs) state.processes.push_back(process);
   }
   if (now_us - taught_us_ <= kSilenceUs) state.teaching = teaching_;
+  if (now_us - world_us_ <= kSilenceUs) state.world = world_;
   return state;
 }
 

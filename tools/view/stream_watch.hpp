@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "pipeline/types/teaching.hpp"
+#include "tools/view/drawing/world_view.hpp"
 
 namespace houghstream::view {
 
@@ -30,6 +32,7 @@ struct StreamState {
   double frames_hz = 0.0;               ///< frames of the camera that arrive here per second
   std::vector<ProcessState> processes;  ///< those heard of late, by name
   std::optional<Teaching> teaching;     ///< of an object that is shown just now
+  std::optional<WorldState> world;      ///< where somebody tells of it just now
 };
 
 /// Keeps the rates of a stream. Every function may be called from any thread; times are microseconds of one clock.
@@ -38,8 +41,9 @@ class StreamWatch {
   void note_frame(std::int64_t now_us);
   void note_process(ProcessState process);
   void note_teaching(Teaching teaching, std::int64_t now_us);
+  void note_world(const WorldObjects& world, std::int64_t now_us);
 
-  /// A process that has been silent for five seconds is gone, and so is a teaching.
+  /// A process that has been silent for five seconds is gone, and so is a teaching, or a world.
   StreamState state(std::int64_t now_us);
 
  private:
@@ -48,6 +52,8 @@ class StreamWatch {
   std::map<std::pair<std::string, std::int64_t>, ProcessState> processes_;  // by name and process id
   std::optional<Teaching> teaching_;
   std::int64_t taught_us_ = 0;  // when it was heard
+  WorldState world_;
+  std::int64_t world_us_ = std::numeric_limits<std::int64_t>::min() / 2;  // when it was heard
 };
 
 /// Which camera's frames are shown, of those that are on the bus: the first that is heard until another one is asked

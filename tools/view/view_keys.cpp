@@ -14,6 +14,7 @@ KeyAction apply_key(int key, FrameViewSettings& settings) {
     case 'c': return KeyAction::kNextCamera;
     case 't': return KeyAction::kTeach;
     case 'd': settings.show_depth = !settings.show_depth; break;
+    case 'w': settings.show_world = !settings.show_world; break;
     case '3': settings.show_3d = !settings.show_3d; break;
     case '+':
     case '=':  // the same key without shift

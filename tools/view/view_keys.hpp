@@ -14,7 +14,8 @@ enum class KeyAction {
 };
 
 /// What a key, as cv::waitKey gives it, does to the settings: q or Esc ends, space pauses, d shows or hides depth, 3
-/// shows 3-D in its place, + and - move the smallest score that is drawn, c goes on to the next camera, t teaches.
+/// shows 3-D in its place, w the world from above, + and - move the smallest score that is drawn, c goes on to the next
+/// camera, t teaches.
 KeyAction apply_key(int key, FrameViewSettings& settings);
 
 }  // namespace houghstream::view

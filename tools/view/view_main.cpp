@@ -31,6 +31,8 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
       "of its own");
   app.add_clearing_flag("--no-depth", show.picture.show_depth, "show the colour image only");
   app.add_flag("--3d", show.picture.show_3d, "instead of the depth image: what was measured, seen from elsewhere");
+  app.add_flag("--world", show.picture.show_world,
+               "instead of the depth image: the world of hs-track from above, with all cameras");
   houghstream::add_lcm_url_option(app, settings.lcm_url);
 }
 

@@ -106,6 +106,43 @@ TEST(DetectProcess, FramesOfALogAreKeptWhereAskedEachBeforeItsResult) {
   std::filesystem::remove(output);
 }
 
+TEST(DetectProcess, ABudgetSkipsFramesUntilSomethingThatWasFollowedIsLost) {
+  ProcessOnMemq test({channel::kDetections, channel::kStatus});
+  DetectProcessOptions options;
+  options.looks_per_second = 1.0;
+  test.start([&](LcmBus& bus) { run_detect_process(bus, options, find_nothing); });
+  const auto send = [&](std::int64_t utime) {
+    test.bus.publish(channel::kFrame, frame_message(utime, utime));
+    std::this_thread::sleep_for(milliseconds(60));
+  };
+  ObjectPose pose;
+  pose.class_name = "bowl";
+  pose.status = PoseStatus::kOccluded;
+  ObjectPoses poses{{channel::kFrame, 0}, {pose}, {}};
+  send(1000000);
+  send(1400000);
+  test.bus.publish(channel::kPoses, to_message(poses));
+  send(1500000);
+  EXPECT_EQ(test.count(channel::kDetections), 1U) << "what is hidden is not looked for";
+  poses.poses[0].status = PoseStatus::kRejectedByDepth;
+  poses.poses[0].detection_index = 0;
+  test.bus.publish(channel::kPoses, to_message(poses));
+  send(1600000);
+  EXPECT_EQ(test.count(channel::kDetections), 1U) << "an answer to a detection is no loss";
+  poses.poses[0].detection_index = -1;
+  test.bus.publish(channel::kPoses, to_message(poses));
+  send(1700000);
+  send(1800000);
+  send(2700000);
+  test.stop();
+  ASSERT_EQ(test.count(channel::kDetections), 3U);
+  EXPECT_EQ(test.at<detections_t>(channel::kDetections, 1).utime, 1700000);
+  EXPECT_EQ(test.at<detections_t>(channel::kDetections, 2).utime, 2700000);
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_received, 7);
+  EXPECT_EQ(status.frames_skipped, 4);
+}
+
 TEST(DetectProcess, BadFramesAreCountedReportedAndDropped) {
   ProcessOnMemq test({channel::kDetections, channel::kStatus});
   test.start(process_with([](const RgbdFrame& frame) {

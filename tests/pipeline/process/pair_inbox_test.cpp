@@ -74,6 +74,15 @@ TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
   EXPECT_FALSE(inbox.take_fresh().has_value()) << "its pair has been taken";
 }
 
+TEST(PairInbox, WhoTakesNothingAheadWaitsForPairsOnly) {
+  PairInbox inbox(true, false);
+  inbox.put_frame(id(1), bytes(11));
+  EXPECT_FALSE(inbox.take_fresh().has_value());
+  EXPECT_FALSE(inbox.take(kNow).has_value());
+  inbox.put_detections(id(1), bytes(21));
+  EXPECT_EQ(inbox.take(kNow)->frame, bytes(11));
+}
+
 TEST(PairInbox, ALogIsWorkedOnInTurn) {
   PairInbox inbox(false);
   for (int i = 1; i <= 3; ++i) {

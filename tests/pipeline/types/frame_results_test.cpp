@@ -98,6 +98,25 @@ TEST(FrameResults, ALogThatIsPlayedAgainCountsOnce) {
   EXPECT_EQ(results.joined()->poses->poses.at(0).inliers, 30) << "the last counts";
 }
 
+TEST(FrameResults, FollowedPosesStandBesideTheAnswers) {
+  ObjectPoses followed = poses_of(kBowls, 7);
+  for (ObjectPose& pose : followed.poses) pose.detection_index = -1;
+  FrameResults results;
+  EXPECT_FALSE(results.followed().has_value());
+  results.add(followed);
+  results.add(kBowls);
+  results.add(poses_of(kBowls, 30));
+  EXPECT_EQ(results.joined()->poses->poses.at(0).inliers, 30);
+  EXPECT_EQ(results.followed()->poses.at(0).inliers, 7);
+  EXPECT_TRUE(results.unmatched().empty());
+
+  FrameResults nothing;
+  nothing.add(ObjectPoses{kBowls.frame, {}, {{kFollowingStage, 5}}});
+  nothing.add(kBowls);
+  EXPECT_TRUE(nothing.followed()->poses.empty());
+  EXPECT_TRUE(nothing.unmatched().empty()) << "nothing is followed, which is no answer to detections";
+}
+
 TEST(FrameResults, OtherPosesAnswerNothing) {
   ObjectPoses other_frame = poses_of(kBowls, 0);
   other_frame.frame.channel = "RIGHT";

@@ -76,5 +76,24 @@ TEST(NetworkChecks, BuffersThatAreJustLargeEnoughForTheFramesHeardAreFine) {
   EXPECT_EQ(tested, kHeard);
 }
 
+TEST(NetworkChecks, WhatProcessesComplainOfIsToldCamerasThatContradictAreWrong) {
+  HealthyMachine healthy("network_checks_processes");
+  healthy.machine.heard_errors = [](const std::string&) {
+    return std::map<std::string, std::string>{
+        {"hs-pose", "no frame"},
+        {"hs-track", "RIGHT sees objects 2.0 cm from where LEFT sees them: one of their places is wrong"}};
+  };
+  const Findings findings =
+      check_network(healthy.machine, {"udpm://239.255.76.67:7667?ttl=0", "OPENNI_FRAME", 1000000});
+  ASSERT_GE(findings.size(), 2U);
+  const Finding& pose = findings[findings.size() - 2];
+  const Finding& track = findings.back();
+  EXPECT_EQ(pose.level, Finding::Level::kNote);
+  EXPECT_EQ(pose.what, "says: no frame");
+  EXPECT_EQ(track.level, Finding::Level::kWrong);
+  EXPECT_EQ(track.name, "hs-track");
+  EXPECT_NE(track.remedy.find("hs-track --check"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace houghstream::doctor

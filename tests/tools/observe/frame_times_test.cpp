@@ -58,6 +58,16 @@ TEST(FrameTimes, LatencyIsFromMessageToMessage) {
   EXPECT_TRUE(summary["account"].is_null()) << "nobody has given an account";
 }
 
+TEST(FrameTimes, PosesThatComeBeforeDetectionsAnswerNone) {
+  FrameTimes times;
+  times.note_frame({"LEFT", 1}, at_ms(0));
+  times.note_poses({"LEFT", 1}, at_ms(5));
+  times.note_detections({"LEFT", 1}, at_ms(30));
+  const nlohmann::json summary = times.summary(std::nullopt);
+  EXPECT_NEAR(summary["latency_ms"]["total"]["p50"], 5.0, 1e-6);
+  EXPECT_TRUE(summary["latency_ms"]["pose"]["p50"].is_null());
+}
+
 TEST(FrameTimes, TheAccountAddsUpOrSaysThatItDoesNot) {
   FrameTimes times = ten_frames();
   times.note_status(detector_status(3, 1, 1));

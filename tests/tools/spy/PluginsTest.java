@@ -6,6 +6,7 @@ import houghstream.images_t;
 import houghstream.known_objects_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
+import houghstream.objects_t;
 import houghstream.rigid_transform_t;
 import houghstream.status_t;
 import houghstream.teaching_t;
@@ -29,7 +30,7 @@ final class PluginsTest {
   private static void plugins() {
     SpyPlugin plugin = new ViewerPlugin();
     long[] types = {images_t.LCM_FINGERPRINT, image_t.LCM_FINGERPRINT, detections_t.LCM_FINGERPRINT,
-        object_poses_t.LCM_FINGERPRINT, teaching_t.LCM_FINGERPRINT};
+        object_poses_t.LCM_FINGERPRINT, objects_t.LCM_FINGERPRINT, teaching_t.LCM_FINGERPRINT};
     for (long type : types) Check.that(plugin.canHandle(type), "a viewer of " + type);
     Check.that(!plugin.canHandle(status_t.LCM_FINGERPRINT), "spy itself shows numbers");
     Check.that(plugin.getAction(null, null).getValue("Name") instanceof String, "a name");

@@ -8,8 +8,10 @@ import houghstream.image_t;
 import houghstream.images_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
+import houghstream.objects_t;
 import houghstream.stage_time_t;
 import houghstream.teaching_t;
+import houghstream.tracked_object_t;
 import java.awt.image.BufferedImage;
 import java.io.ByteArrayOutputStream;
 import java.io.DataOutputStream;
@@ -130,6 +132,31 @@ final class Samples {
     message.source_channel = "OPENNI_FRAME";
     message.n_poses = 1;
     message.poses = new object_pose_t[] {pose};
+    message.stages = new stage_time_t[0];
+    return message;
+  }
+
+  /** One mug on the table, in that state. */
+  static objects_t world(byte state) {
+    tracked_object_t mug = new tracked_object_t();
+    mug.track_id = 3;
+    mug.class_id = 2;
+    mug.class_name = "mug";
+    mug.state = state;
+    mug.probability = 0.9f;
+    mug.trans = new double[] {0.1, 0.2, 0.05};
+    mug.quat = new double[] {1, 0, 0, 0};
+    mug.reason = "something stands before it";
+    mug.seen_channel = "LEFT";
+    objects_t message = new objects_t();
+    message.utime = 5;
+    message.source_channel = "LEFT";
+    message.world = "WORLD";
+    message.world_number = 1;
+    message.camera_trans = new double[] {0, -0.8, 0.6};
+    message.camera_quat = new double[] {1, 0, 0, 0};
+    message.objects = new tracked_object_t[] {mug};
+    message.n_objects = 1;
     message.stages = new stage_time_t[0];
     return message;
   }

@@ -5,6 +5,7 @@ import houghstream.images_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
 import houghstream.teaching_t;
+import houghstream.tracked_object_t;
 import houghstream.spy.Wire.BadMessage;
 import java.awt.Color;
 import java.awt.Component;
@@ -27,6 +28,7 @@ public final class ViewersTest {
     Check.test("pictures fit every size", ViewersTest::sizes);
     Check.test("the panel of detections survives every size", ViewersTest::panel);
     Check.test("the sphere fills from where the object was seen", ViewersTest::teaching);
+    Check.test("the world is drawn from above, with state and reason", ViewersTest::world);
     Check.test("damaged detections and poses do no harm", ViewersTest::damaged);
     Check.end();
   }
@@ -106,6 +108,20 @@ public final class ViewersTest {
     for (int[] size : SIZES) painted(panel.component(), size[0], size[1]);
     Dimension least = panel.component().getMinimumSize();
     Check.that(least.width > 0 && least.height > 0, "a smallest size");
+  }
+
+  private static void world() {
+    WorldViewer viewer = new WorldViewer();
+    for (int[] size : SIZES) painted(viewer.component(), size[0], size[1]); // before anything comes
+    viewer.show(Samples.world(tracked_object_t.VISIBLE));
+    Check.that(count(painted(viewer.component(), 640, 600), WorldViewer.Map.SEEN) > 50, "an object that is seen");
+    Check.equal(viewer.said(), "1 objects in WORLD after a frame of LEFT");
+    Check.equal(viewer.table().getValueAt(0, 2), "visible");
+    viewer.show(Samples.world(tracked_object_t.HIDDEN));
+    Check.equal(count(painted(viewer.component(), 640, 600), WorldViewer.Map.SEEN), 0);
+    Check.equal(viewer.table().getValueAt(0, 6), "something stands before it");
+    viewer.show(Samples.world((byte) 99));
+    viewer.close();
   }
 
   private static void teaching() {

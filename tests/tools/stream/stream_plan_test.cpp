@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace houghstream::stream {
 namespace {
 
@@ -38,6 +40,20 @@ TEST(StreamPlan, AnObjectStoreIsForAll) {
   EXPECT_EQ(plans[2].command, (Words{"/bin/hs-view", "--channel", "OPENNI_FRAME", "--objects", "store"}));
 }
 
+TEST(StreamPlan, WhoFollowsLooksSeldom) {
+  StreamOptions options;
+  options.objects = "store";
+  options.follow = true;
+  options.pose_options = "--threads 2";
+  EXPECT_EQ(plan_stream(options)[0].command.back(), "5");
+  EXPECT_EQ(plan_stream(options)[1].command,
+            (Words{"hs-pose", "--channel", "OPENNI_FRAME", "--objects", "store", "--follow", "--threads", "2"}));
+  options.detect_options = "--looks-per-second 3";
+  const Words own = plan_stream(options)[0].command;
+  EXPECT_EQ(own.back(), "3");
+  EXPECT_EQ(std::count(own.begin(), own.end(), "--looks-per-second"), 1);
+}
+
 TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
   StreamOptions options;
   options.executables = "/bin";
@@ -48,6 +64,21 @@ TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
   ASSERT_EQ(plans.size(), 1U) << "another driver sends the frames, there are no models and no window";
   EXPECT_EQ(plans[0].command, (Words{"/bin/hs-detect", "--channel", "OPENNI_FRAME", "--forest", "my.forest", "--camera",
                                      options.camera}));
+}
+
+TEST(StreamPlan, TrackingIsAskedForAndTakesTheModels) {
+  StreamOptions options;
+  options.executables = "";
+  options.objects = "store";
+  options.view = false;
+  EXPECT_EQ(plan_stream(options).size(), 2U);
+  options.track = true;
+  options.track_options = "--cameras c.yaml";
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 3U);
+  EXPECT_EQ(plans[2].name, "track");
+  EXPECT_EQ(plans[2].command, (std::vector<std::string>{"hs-track", "--channel", "OPENNI_FRAME", "--objects", "store",
+                                                        "--cameras", "c.yaml"}));
 }
 
 }  // namespace

@@ -34,6 +34,20 @@ TEST(FrameMatcher, FrameComesOutWithItsOwnResultsOnceBothAreThere) {
   EXPECT_FALSE(matcher.next(35 * kMs));
 }
 
+TEST(FrameMatcher, AFrameWithFollowedPosesWaitsForNoDetections) {
+  FrameMatcher matcher({});
+  matcher.add_detections(detections_of(50), 0);
+  matcher.add_frame({"TEST", 100}, {42}, 0);
+  EXPECT_FALSE(matcher.next(1 * kMs));
+  ObjectPoses followed = poses_of(100);
+  followed.stages = {{kFollowingStage, 2}};
+  matcher.add_poses(followed, 6 * kMs);
+  const auto matched = matcher.next(7 * kMs);
+  ASSERT_TRUE(matched);
+  EXPECT_TRUE(matched->results.followed().has_value());
+  EXPECT_DOUBLE_EQ(matched->pose_latency_ms, 6.0);
+}
+
 TEST(FrameMatcher, ResultsOfUnknownFramesAreIgnored) {
   FrameMatcher matcher({});
   matcher.add_detections(detections_of(1), 0);

@@ -55,6 +55,7 @@ final class ObjectsTable extends AbstractTableModel {
       case object_pose_t.LOW_SCORE -> "low score";
       case object_pose_t.REJECTED_BY_OUTLINE -> "rejected by outline";
       case object_pose_t.REJECTED_BY_COLOUR -> "rejected by colour";
+      case object_pose_t.OCCLUDED -> "occluded";
       default -> "status " + status;
     };
   }

@@ -4,6 +4,7 @@ import houghstream.detections_t;
 import houghstream.image_t;
 import houghstream.images_t;
 import houghstream.object_poses_t;
+import houghstream.objects_t;
 import houghstream.teaching_t;
 import java.awt.BorderLayout;
 import java.awt.Dimension;
@@ -31,6 +32,7 @@ public final class ViewerPlugin implements SpyPlugin {
   private static final Map<Long, Kind> KINDS = Map.of(
       images_t.LCM_FINGERPRINT, new Kind("RGB-D viewer", channel -> PictureViewer.ofFrames(channel.name)),
       image_t.LCM_FINGERPRINT, new Kind("Image viewer", channel -> PictureViewer.ofImages(channel.name)),
+      objects_t.LCM_FINGERPRINT, new Kind("World", channel -> new WorldViewer(channel.name)),
       teaching_t.LCM_FINGERPRINT, new Kind("Teaching", channel -> new TeachingViewer(channel.name)),
       detections_t.LCM_FINGERPRINT, DETECTIONS,
       object_poses_t.LCM_FINGERPRINT, DETECTIONS);

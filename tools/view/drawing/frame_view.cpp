@@ -7,6 +7,7 @@
 #include "tools/view/drawing/teaching_view.hpp"
 #include "tools/view/drawing/turned_view.hpp"
 #include "tools/view/drawing/view_panel.hpp"
+#include "tools/view/drawing/world_view.hpp"
 
 namespace houghstream::view {
 cv::Mat colour_depth(const cv::Mat& depth, float near, float far) {
@@ -48,7 +49,11 @@ cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const
   cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
   if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
   if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
-  if (settings.show_3d) {
+  if (stream.state.world) draw_tracks(picture, *stream.state.world, viewed.frame);
+  if (settings.show_world) {
+    const WorldState world = stream.state.world.value_or(WorldState{});
+    cv::hconcat(picture, draw_world_from_above(world, viewed.frame.colour.size()), picture);
+  } else if (settings.show_3d) {
     cv::hconcat(picture, draw_turned_view(viewed.frame, viewed.poses, models), picture);
   } else if (settings.show_depth) {
     cv::hconcat(picture, colour_depth(viewed.frame.depth, settings.depth_near, settings.depth_far), picture);

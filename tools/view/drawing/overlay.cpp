@@ -119,6 +119,26 @@ cv::Scalar class_colour(int class_id) {
   return kColours[((class_id - 1) % count + count) % count];
 }
 
+BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const Camera& camera) {
+  BoxedPoses all{{followed.frame, {}, followed.stages}, {followed.frame, {}, followed.stages}};
+  for (const ObjectPose& pose : followed.poses) {
+    const auto model = models.find(pose.class_name);
+    if (!pose.T_camera_object || model == models.end()) continue;
+    const cv::Rect region = projected_region(model->second, *pose.T_camera_object, camera);
+    if (region.empty()) continue;
+    Detection detection;
+    detection.class_id = pose.class_id;
+    detection.class_name = pose.class_name;
+    detection.score = pose.detection_score;
+    detection.box_px = region;
+    detection.centre_camera = pose.T_camera_object->translation().cast<float>();
+    all.poses.poses.push_back(pose);
+    all.poses.poses.back().detection_index = static_cast<int>(all.detections.detections.size());
+    all.detections.detections.push_back(std::move(detection));
+  }
+  return all;
+}
+
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
                      const ClassModels& models) {
   const std::string name = to_string(frame.id);

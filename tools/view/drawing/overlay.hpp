@@ -25,6 +25,14 @@ cv::Scalar class_colour(int class_id);
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
                      const ClassModels& models);
 
+/// Poses without detections, as hs-pose --follow sends them, with a detection for each: the box of its model. What has
+/// no model or no pose has no box, and is left out.
+struct BoxedPoses {
+  Detections detections;
+  ObjectPoses poses;
+};
+BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const Camera& camera);
+
 /// The outline of the pose's model, where there is one, and its axes; nothing where there is no pose.
 void draw_pose(cv::Mat& image, const ObjectPose& pose, const ClassModels& models, const Camera& camera);
 

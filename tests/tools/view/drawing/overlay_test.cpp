@@ -100,6 +100,25 @@ TEST(Overlay, ModelBehindOrBesideTheCameraIsNotDrawn) {
   }
 }
 
+TEST(Overlay, FollowedPosesHaveTheBoxesOfTheirModels) {
+  ObjectPoses followed = one_pose(one_metre_ahead());
+  followed.poses[0].detection_index = -1;
+  followed.poses[0].detection_score = 0.75F;
+  followed.poses.insert(followed.poses.begin(), 2, followed.poses[0]);
+  followed.poses[0].class_name = "unknown";
+  followed.poses[1].T_camera_object.reset();
+  followed.poses[1].status = PoseStatus::kOccluded;
+  const BoxedPoses all = boxed(followed, {{"box", plate()}}, kCamera);
+  ASSERT_EQ(all.poses.poses.size(), 1U);
+  ASSERT_EQ(all.detections.detections.size(), 1U);
+  EXPECT_EQ(all.poses.poses[0].detection_index, 0);
+  const Detection& detection = all.detections.detections[0];
+  EXPECT_EQ(detection.score, 0.75F);
+  EXPECT_NEAR(detection.box_px.width, 0.2 * kCamera.fx, 6.0);
+  EXPECT_NEAR(detection.box_px.x + 0.5 * detection.box_px.width, kCamera.cx, 3.0);
+  EXPECT_NO_THROW(draw_overlay(grey_frame(), all.detections, all.poses, {{"box", plate()}}));
+}
+
 TEST(Overlay, MissingPoseChangesTheLabel) {
   ObjectPoses poses = one_pose(one_metre_ahead());
   poses.poses[0].T_camera_object.reset();

@@ -1,0 +1,219 @@
+#include "pipeline/process/follow_process.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/channel_pattern.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/process/model_check.hpp"
+#include "pipeline/process/newest_of_each.hpp"
+#include "pipeline/process/pair_inbox.hpp"
+#include "pipeline/process/pose_output.hpp"
+#include "pipeline/process/process_loop.hpp"
+
+namespace houghstream {
+namespace {
+
+using std::chrono::milliseconds;
+using Decoded = std::shared_ptr<const DecodedFrame>;
+
+struct EncodedFrame {
+  FrameId id;
+  std::vector<std::uint8_t> bytes;
+  std::chrono::steady_clock::time_point arrival;
+};
+
+/// The last decoded frames of all cameras, for the detections that come a little later.
+class RecentFrames {
+ public:
+  void keep(Decoded frame) {
+    constexpr std::size_t kFrames = 12;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    frames_.push_back(std::move(frame));
+    if (frames_.size() > kFrames) frames_.pop_front();
+  }
+
+  /// Null where it is not there any more.
+  Decoded find(const FrameId& id) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const Decoded& decoded : frames_) {
+      if (decoded->frame.id == id) return decoded;
+    }
+    return nullptr;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::deque<Decoded> frames_;
+};
+
+class FollowProcess {
+ public:
+  FollowProcess(LcmBus& bus, const PoseProcessOptions& options, const FollowPoses& poses)
+      : bus_(bus),
+        options_(options),
+        poses_(poses),
+        channels_(options.frame_channels),
+        status_(options.process),
+        detections_(!bus.is_log(), false),
+        models_(options.models),
+        transforms_(bus, options.frame_channels) {}
+
+  void run() {
+    status_.tell_objects(options_.objects);
+    bus_.subscribe(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
+    bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
+    log_info("ready: follows in frames from {}, detections from {} at {}", options_.frame_channels,
+             channel::kDetections, bus_.url());
+    if (bus_.is_log()) {
+      run_process_loop(bus_, status_,
+                       [this](milliseconds) { return follow_newest(milliseconds(0)) || answer_next(milliseconds(0)); });
+    } else {
+      run_live();
+    }
+    status_.count_skipped(static_cast<std::int64_t>(frames_.waiting()));
+    warn(models_.at_end());
+    end_process(bus_, status_);
+  }
+
+ private:
+  /// Frames do not wait for answers, which take longer and come at leisure.
+  void run_live() {
+    std::atomic<bool> running{true};
+    std::thread answering;
+    {
+      const BlockStopSignals block;
+      answering = std::thread([&] {
+        constexpr int kPolite = 5;
+        if (nice(kPolite) == -1) log_debug("the priority of answers cannot be lowered");
+        while (running) answer_next(milliseconds(100));
+      });
+    }
+    const auto finish = [&] {
+      running = false;
+      answering.join();
+    };
+    try {
+      run_process_loop(bus_, status_, [this](milliseconds timeout) { return follow_newest(timeout); });
+    } catch (...) {
+      finish();
+      throw;
+    }
+    finish();
+  }
+
+  void receive_frame(const Arrival& arrival) {
+    if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
+    status_.count_received();
+    try {
+      const FrameHeader header = read_frame_header(arrival.bytes);
+      status_.note_sequence(header.sequence, arrival.channel);
+      const FrameId id{arrival.channel, header.utime};
+      const auto copy = [&] {
+        return std::vector<std::uint8_t>(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
+      };
+      if (frames_.put(arrival.channel, {id, copy(), arrival.time})) status_.count_skipped(1);
+      detections_.put_frame(id, copy());
+    } catch (const InputError& error) {
+      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
+    }
+  }
+
+  void receive_detections(const Arrival& arrival) {
+    try {
+      check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
+      const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
+      if (channels_.matches(frame.channel)) {
+        detections_.put_detections(frame, {arrival.bytes.data, arrival.bytes.data + arrival.bytes.size});
+      } else {
+        transforms_.note_other_camera(frame.channel);
+      }
+    } catch (const InputError& error) {
+      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
+    }
+  }
+
+  bool follow_newest(milliseconds timeout) {
+    const std::optional<EncodedFrame> encoded = frames_.take(timeout);
+    if (!encoded) return false;
+    try {
+      DecodedFrame decoded = decode_for_poses(encoded->bytes, encoded->id.channel, options_.camera);
+      decoded.frame.stages.push_back(decoded.decoding);
+      const Decoded frame = std::make_shared<const DecodedFrame>(std::move(decoded));
+      recent_.keep(frame);
+      ObjectPoses poses = poses_.follow(frame->frame);
+      poses.frame = encoded->id;
+      bus_.publish(channel::kPoses, to_message(poses));
+      transforms_.publish(poses);
+      status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
+    } catch (const std::exception& error) {
+      status_.count_refused(error.what(), encoded->id.channel + " work");
+    }
+    return true;
+  }
+
+  bool answer_next(milliseconds timeout) {
+    const std::optional<PairedMessages> pair = detections_.take(timeout);
+    for (const FrameId& frame : detections_.take_dropped().without_frame) {
+      status_.note_bad_message(fmt::format("detections of frame {}: the frame itself has not come", to_string(frame)));
+    }
+    if (!pair) return false;
+    try {
+      bus_.publish(channel::kPoses, to_message(answer(*pair)));
+    } catch (const std::exception& error) {
+      status_.note_bad_message(error.what());
+    }
+    return true;
+  }
+
+  ObjectPoses answer(const PairedMessages& pair) {
+    Detections detections =
+        detections_from_message(decode_message<detections_t>({pair.detections.data(), pair.detections.size()}));
+    Decoded decoded = recent_.find(pair.id);
+    if (!decoded) {
+      decoded = std::make_shared<const DecodedFrame>(decode_for_poses(pair.frame, pair.id.channel, options_.camera));
+    }
+    detections.stages.push_back(decoded->decoding);
+    note_models();
+    warn(models_.note(detections));
+    ObjectPoses poses = poses_.answer(decoded->frame, detections);
+    poses.frame = pair.id;
+    return poses;
+  }
+
+  // A store's objects may have become others meanwhile.
+  void note_models() {
+    if (!options_.objects || models_.settled()) return;
+    for (const KnownObject& object : options_.objects().objects) models_.add_model(object.name);
+  }
+
+  static void warn(const std::optional<std::string>& words) {
+    if (words) log_warning("{}", *words);
+  }
+
+  LcmBus& bus_;
+  const PoseProcessOptions& options_;
+  const FollowPoses& poses_;
+  ChannelPattern channels_;
+  StatusReporter status_;
+  NewestOfEach<EncodedFrame> frames_;
+  PairInbox detections_;
+  RecentFrames recent_;
+  ModelCheck models_;  // of who answers
+  TransformOutput transforms_;
+};
+
+}  // namespace
+
+void run_follow_process(LcmBus& bus, const PoseProcessOptions& options, const FollowPoses& poses) {
+  FollowProcess(bus, options, poses).run();
+}
+
+}  // namespace houghstream

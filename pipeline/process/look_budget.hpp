@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "pipeline/types/frame_id.hpp"
+
+namespace houghstream {
+
+/// Which frames of each camera a detector looks at that is to look so many times a second. Goes by the frames' own
+/// times. Not thread-safe.
+class LookBudget {
+ public:
+  /// 0: at every frame.
+  explicit LookBudget(double looks_per_second) : looks_per_second_(looks_per_second) {}
+
+  /// Whether this frame is looked at: where enough time has passed since the camera's last look. Times that go back
+  /// begin anew.
+  bool is_due(const FrameId& frame);
+
+  /// The camera's next look comes after a quarter of the time, once.
+  void hurry(const std::string& channel) { cameras_[channel].hurried = true; }
+
+ private:
+  struct Camera {
+    bool looked = false;
+    bool hurried = false;
+    std::int64_t last_utime = 0;  // of a look
+  };
+
+  double looks_per_second_;
+  std::map<std::string, Camera> cameras_;  // by channel
+};
+
+}  // namespace houghstream

@@ -1,0 +1,115 @@
+#include "pose/following/follow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pose/model/angles.hpp"
+#include "pose/registration/turn_search.hpp"
+#include "pose/verification/depth_score.hpp"
+#include "pose/verification/judgement.hpp"
+
+namespace houghstream {
+namespace {
+
+Eigen::Vector3d middle_of(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
+  return T_camera_object * model.centre.cast<double>();
+}
+
+/// The box about the points that should be seen; empty where none is.
+cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
+  constexpr int kPoints = 150;
+  const ViewLook look = look_at_view(frame, model, T_camera_object, kPoints);
+  cv::Rect2f box;
+  for (std::size_t i = 0; i < look.looks.size(); ++i) {
+    const Eigen::Vector3f point = look.T * look.view.points[i];
+    if (!(point.z() > 0.0F)) continue;
+    const Eigen::Vector2f pixel = frame.camera.project_single(point);
+    const cv::Rect2f spot(pixel.x(), pixel.y(), 1.0F, 1.0F);
+    box = box.area() > 0.0F ? box | spot : spot;
+  }
+  return box;
+}
+
+SeenObject see_expected(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                        const PoseSettings& settings) {
+  Detection expected;
+  expected.box_px = expected_box(frame, model, T_camera_object);
+  expected.centre_camera = T_camera_object.translation().cast<float>();
+  return see_object(frame, expected, model, settings.region, settings.noise);
+}
+
+RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
+                                 const PoseSettings& settings) {
+  const FollowSettings& follow = settings.follow;
+  const PairDistances distances = pair_distances(seen, settings.registration);
+  const double end_m = distances.end;
+  const double start_m = expected.is_lost ? distances.start : std::max(end_m, follow.start_distance_m);
+  const int iterations = expected.is_lost ? settings.registration.coarse_iterations : follow.coarse_iterations;
+  const RegistrationStage coarse{iterations, follow.coarse_points, start_m, end_m};
+  RegistrationResult result = settings.registration.engine(seen, start, coarse, settings.registration);
+  if (expected.settle && result.inliers > 0) {
+    const Climb climb{follow.settle_step_deg * kRadPerDeg, follow.settle_step_m, follow.settle_rounds,
+                      follow.settle_points};
+    const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
+    result.T_camera_object = climb_pose(seen, result.T_camera_object, climb, tolerance).T_camera_object;
+  }
+  const RegistrationStage fine{follow.fine_iterations, follow.fine_points, end_m, end_m, 1};
+  RegistrationResult last = settings.registration.engine(seen, result.T_camera_object, fine, settings.registration);
+  last.iterations += result.iterations;
+  return last;
+}
+
+FollowedPose follow_from(const RgbdFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+                         const Eigen::Isometry3d& start, const PoseSettings& settings) {
+  FollowedPose followed;
+  ObjectPose& pose = followed.pose;
+  pose.class_id = expected.class_id;
+  pose.class_name = expected.class_name;
+  pose.detection_score = expected.score;
+  pose.residual = std::numeric_limits<float>::quiet_NaN();
+  followed.T_camera_object = start;
+  const SeenObject seen = see_expected(frame, model, start, settings);
+  if (seen.region.points < settings.region.min_points) {
+    pose.status = PoseStatus::kTooFewPoints;
+    return followed;
+  }
+  const RegistrationResult result = register_near(seen, start, expected, settings);
+  tell_registration(result, pose);
+  const double jump_m = (middle_of(model, result.T_camera_object) - middle_of(model, start)).norm();
+  const double most_m = expected.is_lost ? settings.registration.max_shift_m : settings.follow.max_jump_m;
+  if (result.inliers == 0 || !(jump_m <= most_m)) {
+    pose.status = PoseStatus::kNotConverged;
+    return followed;
+  }
+  followed.T_camera_object = result.T_camera_object;
+  judge(seen, result.T_camera_object, settings, pose);
+  return followed;
+}
+
+/// Whether something stands before the object, and what can be seen of it is not seen through.
+bool is_hidden(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+               const PoseSettings& settings) {
+  const DepthTolerance tolerance{settings.verification.tolerance_m, settings.noise};
+  const Verification seen = verify_pose(frame, model.mesh, T_camera_object, tolerance);
+  const auto rendered = static_cast<float>(seen.rendered);
+  const auto hidden = static_cast<float>(seen.occluded);
+  return hidden > settings.follow.hidden_share * rendered &&
+         static_cast<float>(seen.violating) <= settings.follow.through_share * (rendered - hidden);
+}
+
+}  // namespace
+
+FollowedPose follow_object(const RgbdFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+                           const PoseSettings& settings) {
+  FollowedPose best;
+  for (std::size_t i = 0; i < expected.starts.size(); ++i) {
+    FollowedPose here = follow_from(frame, model, expected, expected.starts[i], settings);
+    if (i == 0 || here.pose.quality > best.pose.quality) best = std::move(here);
+    if (best.pose.status == PoseStatus::kValid) return best;
+  }
+  if (is_hidden(frame, model, expected.starts.front(), settings)) best.pose.status = PoseStatus::kOccluded;
+  return best;
+}
+
+}  // namespace houghstream

@@ -1,0 +1,180 @@
+#include "pose/tracks/camera_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <opencv2/core.hpp>
+#include <set>
+#include <sstream>
+
+#include "pipeline/base/checks.hpp"
+#include "pose/tracks/motion_filter.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+constexpr std::size_t kSamples = 2048;
+constexpr std::int64_t kSecond = 1000000;
+
+bool equal_places(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kSame = 1e-6;
+  return difference(a, b).cwiseAbs().maxCoeff() < kSame;
+}
+
+Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz, const std::string& of) {
+  constexpr double kUnitTolerance = 1e-2;  // written by people, with a few digits
+  require(translation.allFinite(), "{}: translation ({}, {}, {}), expected finite metres", of, translation.x(),
+          translation.y(), translation.z());
+  require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "{}: quaternion of length {:.3f}, expected 1", of, wxyz.norm());
+  return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+}
+
+/// A camera, or another frame, in its parent.
+struct Link {
+  std::string parent;
+  Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
+};
+using Links = std::map<std::string, Link>;
+
+template <int Count>
+Eigen::Matrix<double, Count, 1> numbers_of(const cv::FileNode& node, const std::string& of) {
+  Eigen::Matrix<double, Count, 1> out;
+  require(node.isSeq() && node.size() == Count, "{}: expected {} numbers", of, Count);
+  for (int i = 0; i < Count; ++i) out[i] = node[i].real();
+  return out;
+}
+
+double number_of(const cv::FileNode& node, const char* key, const std::string& of) {
+  require(node[key].isReal() || node[key].isInt(), "{}: no number {}", of, key);
+  return node[key].real();
+}
+
+Links links_of(const cv::FileStorage& yaml, const std::string& file) {
+  Links links;
+  for (const cv::FileNode& node : yaml["cameras"]) {
+    const std::string of = fmt::format("{}: camera {}", file, node.name());
+    const std::string parent = node["parent"].isString() ? std::string(node["parent"]) : "world";
+    links[node.name()] = {parent, rigid(numbers_of<3>(node["translation"], of + ": translation"),
+                                        numbers_of<4>(node["rotation"], of + ": rotation"), of)};
+  }
+  for (const cv::FileNode& node : yaml["transforms"]) {
+    require(node["child_frame_id"].isString() && node["header"]["frame_id"].isString(),
+            "{}: a transform without header.frame_id and child_frame_id", file);
+    const std::string child = node["child_frame_id"];
+    const std::string of = fmt::format("{}: frame {}", file, child);
+    const cv::FileNode t = node["transform"]["translation"];
+    const cv::FileNode q = node["transform"]["rotation"];
+    links[child] = {
+        std::string(node["header"]["frame_id"]),
+        rigid({number_of(t, "x", of), number_of(t, "y", of), number_of(t, "z", of)},
+              {number_of(q, "w", of), number_of(q, "x", of), number_of(q, "y", of), number_of(q, "z", of)}, of)};
+  }
+  return links;
+}
+
+Eigen::Isometry3d chained(const Links& links, const std::string& camera, const std::string& file) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  std::set<std::string> seen;
+  for (auto link = links.find(camera); link != links.end(); link = links.find(link->second.parent)) {
+    require(seen.insert(link->first).second, "{}: camera {}: its parents go round in a loop through {}", file, camera,
+            link->first);
+    T = link->second.T_parent_child * T;
+  }
+  return T;
+}
+
+// OpenCV reads YAML that starts with its own header, holds one document, and indents the entries of a list; ROS prints
+// none, ends with a line of ---, and does not.
+cv::FileStorage parse_yaml(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  require(in.good(), "{}: cannot be read, expected a YAML file of camera poses", file.string());
+  std::string text = "%YAML:1.0\n---\n";
+  bool in_list = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line.rfind("---", 0) == 0 || line.rfind("%YAML", 0) == 0) continue;
+    if (line[0] != ' ') in_list = line[0] == '-';
+    text += (in_list ? "  " : "") + line + "\n";
+  }
+  try {
+    return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
+  } catch (const cv::Exception&) {
+    fail("{}: no YAML, expected 'cameras:' or 'transforms:'", file.string());
+  }
+}
+
+}  // namespace
+
+void CameraPlaces::fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera) {
+  fixed_[camera] = T_world_camera;
+}
+
+void CameraPlaces::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
+  std::deque<Sample>& samples = moving_[camera];
+  if (!samples.empty() && utime + kSecond < samples.back().utime) samples.clear();
+  auto place = samples.end();
+  while (place != samples.begin() && (place - 1)->utime >= utime) --place;
+  if (place != samples.end() && place->utime == utime) {
+    place->T_world_camera = T_world_camera;
+  } else {
+    samples.insert(place, {utime, T_world_camera});
+  }
+  if (samples.size() > kSamples) samples.pop_front();
+}
+
+CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) const {
+  const auto seconds = [&](std::int64_t other) { return static_cast<double>(other - utime) * 1e-6; };
+  if (const auto fixed = fixed_.find(camera); fixed != fixed_.end()) return {fixed->second, false, ""};
+  const auto moving = moving_.find(camera);
+  if (moving == moving_.end()) return {std::nullopt, true, fmt::format("no transform of {} has come", camera)};
+  const std::deque<Sample>& samples = moving->second;
+  const auto after = std::lower_bound(samples.begin(), samples.end(), utime,
+                                      [](const Sample& sample, std::int64_t time) { return sample.utime < time; });
+  if (after == samples.end()) {
+    const std::size_t count = samples.size();
+    if (count >= 2 && equal_places(samples[count - 1].T_world_camera, samples[count - 2].T_world_camera))
+      return {samples.back().T_world_camera, false, ""};
+    return {std::nullopt, true,
+            fmt::format("the last transform of {} is {:.3f} s older", camera, -seconds(samples.back().utime))};
+  }
+  if (after->utime == utime) return {after->T_world_camera, false, ""};
+  if (after == samples.begin())
+    return {std::nullopt, false,
+            fmt::format("the first transform of {} is {:.3f} s later: do the clocks agree?", camera,
+                        seconds(after->utime))};
+  const Sample& before = *(after - 1);
+  const double gap = static_cast<double>(after->utime - before.utime) * 1e-6;
+  if (gap > kMostGapS && !equal_places(before.T_world_camera, after->T_world_camera))
+    return {
+        std::nullopt, false,
+        fmt::format("the transforms of {} about it are {:.3f} s apart, expected at most {} s", camera, gap, kMostGapS)};
+  return {interpolated(before.T_world_camera, after->T_world_camera, -seconds(before.utime) / gap), false, ""};
+}
+
+std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file) {
+  const cv::FileStorage yaml = parse_yaml(file);
+  const Links links = links_of(yaml, file.string());
+  require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
+  std::map<std::string, Eigen::Isometry3d> places;
+  for (const auto& [camera, link] : links) places[camera] = chained(links, camera, file.string());
+  return places;
+}
+
+std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text) {
+  const std::string expected = "CHANNEL=x,y,z,qw,qx,qy,qz";
+  const std::size_t equals = text.find('=');
+  require(equals != std::string::npos && equals > 0, "--camera-pose '{}', expected {}", text, expected);
+  std::vector<double> numbers;
+  std::istringstream rest(text.substr(equals + 1));
+  for (std::string word; std::getline(rest, word, ',');) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(word.c_str(), &end));
+    require(!word.empty() && end == word.c_str() + word.size(), "--camera-pose '{}': '{}' is no number, expected {}",
+            text, word, expected);
+  }
+  require(numbers.size() == 7, "--camera-pose '{}': {} numbers, expected {}", text, numbers.size(), expected);
+  return {text.substr(0, equals), rigid({numbers[0], numbers[1], numbers[2]},
+                                        {numbers[3], numbers[4], numbers[5], numbers[6]}, "--camera-pose " + text)};
+}
+
+}  // namespace houghstream::tracks

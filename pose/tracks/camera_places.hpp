@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace houghstream::tracks {
+
+/// Where a camera was at a time, or why that is not known.
+struct CameraPlace {
+  std::optional<Eigen::Isometry3d> T_world_camera;
+  bool may_come = false;  ///< not known yet: a later transform may tell
+  std::string reason;     ///< one line, where it is not known
+};
+
+/// Where the cameras are: fixed ones as they were set, moving ones between the transforms before and after a time.
+/// Names of cameras are the channels of their frames, or what stands before _TO_WORLD (channel::camera_name). Not
+/// thread-safe.
+class CameraPlaces {
+ public:
+  /// Transforms farther apart say nothing of the time between them, unless they are equal.
+  static constexpr double kMostGapS = 0.5;
+
+  void fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
+
+  /// A transform of a camera that moves. One that is older than the last one by more than a second begins anew.
+  void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
+
+  /// Whether anything is known of any camera.
+  bool any() const { return !fixed_.empty() || !moving_.empty(); }
+
+  /// Interpolated at the very time; a camera that stood still for its last two transforms still stands there.
+  CameraPlace at(const std::string& camera, std::int64_t utime) const;
+
+ private:
+  struct Sample {
+    std::int64_t utime = 0;
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  };
+  std::map<std::string, Eigen::Isometry3d> fixed_;
+  std::map<std::string, std::deque<Sample>> moving_;  // by time
+};
+
+/// Places of fixed cameras, T_world_camera by name, from a YAML file. Read are our own,
+///
+///     cameras:
+///       LEFT: {parent: world, translation: [x, y, z], rotation: [w, x, y, z]}
+///
+/// (parent may be another camera; without it the world), and static transforms of ROS as `ros2 topic echo /tf_static`
+/// prints them: entries of `transforms` with header.frame_id, child_frame_id and transform, chained to the root frame,
+/// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, or goes round
+/// in a loop.
+std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file);
+
+/// The value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
+std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text);
+
+}  // namespace houghstream::tracks

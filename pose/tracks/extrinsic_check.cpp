@@ -1,0 +1,73 @@
+#include "pose/tracks/extrinsic_check.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace houghstream::tracks {
+namespace {
+
+constexpr std::int64_t kTogetherUs = 40000;  // of frames that are compared
+constexpr double kReachM = 0.3;              // an object that is seen farther away is another one
+constexpr std::size_t kSamples = 300;
+constexpr std::size_t kEnough = 20;
+
+Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
+  Eigen::Vector3d out;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& offset : offsets) values.push_back(offset[axis]);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    out[axis] = *middle;
+  }
+  return out;
+}
+
+}  // namespace
+
+void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera) {
+  View view{poses.frame.utime, {}};
+  for (const ObjectPose& pose : poses.poses) {
+    if (pose.T_camera_object)
+      view.objects.push_back({pose.class_name, (T_world_camera * *pose.T_camera_object).translation()});
+  }
+  for (const auto& [channel, other] : last_) {
+    if (channel == poses.frame.channel || std::abs(other.utime - view.utime) > kTogetherUs) continue;
+    const bool first = poses.frame.channel < channel;
+    std::deque<Eigen::Vector3d>& offsets = offsets_[std::minmax(poses.frame.channel, channel)];
+    for (const Seen& here : view.objects) {
+      const Seen* nearest = nullptr;
+      for (const Seen& there : other.objects) {
+        if (there.class_name != here.class_name || (there.centre - here.centre).norm() > kReachM) continue;
+        if (nearest == nullptr || (there.centre - here.centre).norm() < (nearest->centre - here.centre).norm())
+          nearest = &there;
+      }
+      if (nearest == nullptr) continue;
+      offsets.push_back(first ? Eigen::Vector3d(nearest->centre - here.centre)
+                              : Eigen::Vector3d(here.centre - nearest->centre));
+      if (offsets.size() > kSamples) offsets.pop_front();
+    }
+  }
+  // Several detectors' results of one frame are one view.
+  View& last = last_[poses.frame.channel];
+  if (last.utime != view.utime) last = {view.utime, {}};
+  last.objects.insert(last.objects.end(), view.objects.begin(), view.objects.end());
+}
+
+std::vector<Contradiction> ExtrinsicCheck::pairs() const {
+  std::vector<Contradiction> out;
+  for (const auto& [cameras, offsets] : offsets_) {
+    if (offsets.size() < kEnough) continue;
+    out.push_back({cameras.first, cameras.second, median_of(offsets), static_cast<int>(offsets.size())});
+  }
+  return out;
+}
+
+std::vector<Contradiction> ExtrinsicCheck::contradictions() const {
+  std::vector<Contradiction> out = pairs();
+  out.erase(std::remove_if(out.begin(), out.end(), [](const Contradiction& c) { return c.offset_m.norm() < kToldM; }),
+            out.end());
+  return out;
+}
+
+}  // namespace houghstream::tracks

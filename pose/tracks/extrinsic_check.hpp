@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/object_pose.hpp"
+
+namespace houghstream::tracks {
+
+/// Two cameras that see the same objects in different places.
+struct Contradiction {
+  std::string first;                                   ///< channel of a camera
+  std::string second;                                  ///< of another one
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< from where the first sees objects to where the second does
+  int samples = 0;
+};
+
+/// Compares where cameras see the same objects at about the same time, to find cameras whose places (extrinsics)
+/// contradict each other. Knows nothing of tracks: one camera's poses are laid beside the other's. Not thread-safe.
+class ExtrinsicCheck {
+ public:
+  /// Offsets from here on are told: twice what good poses of a can or a mug from two sides differ by.
+  static constexpr double kToldM = 0.012;
+
+  /// The poses of a frame, in the world.
+  void add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera);
+
+  /// Pairs of cameras whose median offset over the last samples is too large, by their names.
+  std::vector<Contradiction> contradictions() const;
+
+  /// All pairs that have enough samples, for a report.
+  std::vector<Contradiction> pairs() const;
+
+ private:
+  struct Seen {
+    std::string class_name;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  };
+  struct View {
+    std::int64_t utime = 0;
+    std::vector<Seen> objects;
+  };
+  std::map<std::string, View> last_;  // by channel
+  std::map<std::pair<std::string, std::string>, std::deque<Eigen::Vector3d>> offsets_;
+};
+
+}  // namespace houghstream::tracks

@@ -1,0 +1,96 @@
+#include "pose/tracks/motion_filter.hpp"
+
+#include <algorithm>
+
+namespace houghstream::tracks {
+namespace {
+
+double seconds_between(std::int64_t from, std::int64_t to) {
+  return static_cast<double>(to - from) * 1e-6;
+}
+
+Vector6 both(double translation, double rotation) {
+  Vector6 out;
+  out << Eigen::Vector3d::Constant(translation), Eigen::Vector3d::Constant(rotation);
+  return out;
+}
+
+}  // namespace
+
+Vector6 difference(const Eigen::Isometry3d& T_to, const Eigen::Isometry3d& T_from) {
+  const Eigen::AngleAxisd turn(Eigen::Quaterniond(T_to.linear() * T_from.linear().transpose()).normalized());
+  Vector6 out;
+  out << T_to.translation() - T_from.translation(), turn.angle() * turn.axis();
+  return out;
+}
+
+Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& by) {
+  Eigen::Quaterniond q(T.linear());
+  const double angle = by.tail<3>().norm();
+  if (angle > 0.0) q = Eigen::AngleAxisd(angle, by.tail<3>() / angle) * q;
+  return Eigen::Translation3d(T.translation() + by.head<3>()) * q.normalized();
+}
+
+Eigen::Isometry3d interpolated(const Eigen::Isometry3d& T_first, const Eigen::Isometry3d& T_second, double share) {
+  return moved(T_first, share * difference(T_second, T_first));
+}
+
+MotionFilter::MotionFilter(const PoseMeasurement& first, const MotionSettings& settings)
+    : settings_(settings), utime_(first.utime), measured_utime_(first.utime), T_(first.T_world_object) {
+  P_.topLeftCorner<6, 6>() = first.covariance;
+}
+
+void MotionFilter::predict(std::int64_t utime) {
+  if (utime <= utime_) return;
+  const double dt = seconds_between(utime_, utime);
+  const double coasts = std::clamp(settings_.coast_s - seconds_between(measured_utime_, utime_), 0.0, dt);
+  utime_ = utime;
+  if (!moving_) {
+    const Vector6 drift = both(settings_.drift_m, settings_.drift_rad);
+    P_.diagonal().head<6>() += dt * drift.cwiseProduct(drift);
+    return;
+  }
+  T_ = moved(T_, coasts * velocity_);
+  Matrix12 F = Matrix12::Identity();
+  F.topRightCorner<6, 6>().diagonal().setConstant(dt);
+  P_ = F * P_ * F.transpose();
+  const Vector6 density = both(settings_.acceleration, settings_.angular_acceleration);
+  P_.diagonal().head<6>() += dt * dt * dt / 3.0 * density;
+  P_.topRightCorner<6, 6>().diagonal() += dt * dt / 2.0 * density;
+  P_.bottomLeftCorner<6, 6>().diagonal() += dt * dt / 2.0 * density;
+  P_.diagonal().tail<6>() += dt * density;
+}
+
+void MotionFilter::update(const PoseMeasurement& measured) {
+  measured_utime_ = std::max(measured_utime_, measured.utime);
+  const Covariance6 S = P_.topLeftCorner<6, 6>() + measured.covariance;
+  const Eigen::Matrix<double, 12, 6> gain = P_.leftCols<6>() * S.inverse();
+  const Eigen::Matrix<double, 12, 1> step = gain * difference(measured.T_world_object, T_);
+  T_ = moved(T_, step.head<6>());
+  P_ -= gain * P_.topRows<6>();
+  P_ = 0.5 * (P_ + P_.transpose()).eval();
+  if (moving_) velocity_ += step.tail<6>();
+}
+
+void MotionFilter::start_moving(const PoseMeasurement& measured, const Vector6& velocity) {
+  constexpr double kVelocity = 0.2;         // m/s: how well it is known
+  constexpr double kAngularVelocity = 1.0;  // rad/s
+  moving_ = true;
+  utime_ = std::max(utime_, measured.utime);
+  measured_utime_ = measured.utime;
+  T_ = measured.T_world_object;
+  velocity_ = velocity;
+  P_.setZero();
+  P_.topLeftCorner<6, 6>() = measured.covariance;
+  P_.diagonal().tail<6>() = both(kVelocity * kVelocity, kAngularVelocity * kAngularVelocity);
+}
+
+void MotionFilter::stop() {
+  moving_ = false;
+  velocity_.setZero();
+  const Covariance6 pose = P_.topLeftCorner<6, 6>();
+  P_.setZero();
+  P_.topLeftCorner<6, 6>() = pose;
+}
+
+}  // namespace houghstream::tracks

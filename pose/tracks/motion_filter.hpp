@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+#include "pipeline/types/tracked_object.hpp"
+
+namespace houghstream::tracks {
+
+// Differences of poses have six parts: translation along the world's axes, metres, and rotation about them, radians, of
+// the left perturbation: R_to = exp(rotation) R_from (Sola, Deray and Atchuthan 2018, "A micro Lie theory").
+
+/// What leads from one pose to another.
+Vector6 difference(const Eigen::Isometry3d& T_to, const Eigen::Isometry3d& T_from);
+
+/// The pose from which `by` leads away from T.
+Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& by);
+
+/// Between two poses: the first at share 0, the second at 1, at constant speed.
+Eigen::Isometry3d interpolated(const Eigen::Isometry3d& T_first, const Eigen::Isometry3d& T_second, double share);
+
+/// A measured pose of an object in the world.
+struct PoseMeasurement {
+  std::int64_t utime = 0;  ///< microseconds
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  Covariance6 covariance = Covariance6::Identity();
+};
+
+struct MotionSettings {
+  double drift_m = 0.0002;            ///< what stands may wander by within a second, metres
+  double drift_rad = 0.0024;          ///< and turn by: together some two seconds are averaged
+  double acceleration = 1.0;          ///< spectral density of what moves, m^2/s^3: a hand's
+  double angular_acceleration = 8.0;  ///< rad^2/s^3
+  double coast_s = 0.15;              ///< what moves goes on for so long without a measurement
+};
+
+/// The pose of one object over time: a Kalman filter on the group of motions (error state, as above). What stands is
+/// averaged: its pose wanders hardly at all, and it has no velocity. What moves goes on with constant velocity, under
+/// white acceleration (Bar-Shalom, Li and Kirubarajan 2001, section 6.2). Who holds it decides which.
+class MotionFilter {
+ public:
+  MotionFilter(const PoseMeasurement& first, const MotionSettings& settings);
+
+  /// Goes on to a time; one before the last does nothing.
+  void predict(std::int64_t utime);
+
+  /// Takes a measurement of the time that it was predicted to.
+  void update(const PoseMeasurement& measured);
+
+  /// From here on it moves, at the measured place and with this velocity, m/s and rad/s.
+  void start_moving(const PoseMeasurement& measured, const Vector6& velocity);
+
+  /// From here on it stands, where it is.
+  void stop();
+
+  bool moving() const { return moving_; }
+  std::int64_t utime() const { return utime_; }
+  const Eigen::Isometry3d& T_world_object() const { return T_; }
+  Vector6 velocity() const { return velocity_; }
+  Covariance6 covariance() const { return P_.topLeftCorner<6, 6>(); }
+
+ private:
+  using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
+  MotionSettings settings_;
+  bool moving_ = false;
+  std::int64_t utime_ = 0;
+  std::int64_t measured_utime_ = 0;
+  Eigen::Isometry3d T_;
+  Vector6 velocity_ = Vector6::Zero();
+  Matrix12 P_ = Matrix12::Zero();  // of pose, then velocity
+};
+
+}  // namespace houghstream::tracks

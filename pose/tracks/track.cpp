@@ -1,0 +1,250 @@
+#include "pose/tracks/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pipeline/base/checks.hpp"
+#include "pose/model/symmetry.hpp"
+#include "pose/verification/verification.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+constexpr std::size_t kHypotheses = 3;
+constexpr double kMostWeight = 6.0;
+constexpr double kForgetS = 3.0;
+
+double logit(double p) {
+  const double q = std::clamp(p, 0.02, 0.98);
+  return std::log(q / (1.0 - q));
+}
+
+/// The measured pose as the one of those that look the same that is nearest to the known one.
+PoseMeasurement aligned(const PoseMeasurement& measured, const Eigen::Isometry3d& T_known,
+                        const Symmetries& symmetries) {
+  PoseMeasurement out = measured;
+  out.T_world_object = nearest_equivalent(measured.T_world_object, T_known, symmetries);
+  return out;
+}
+
+double seconds_between(std::int64_t from, std::int64_t to) {
+  return static_cast<double>(to - from) * 1e-6;
+}
+
+Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera, double radius_m) {
+  constexpr double kAcross = 0.0015;  // metres a metre of distance, of an object of which all is seen
+  constexpr double kAlong = 0.002;
+  constexpr double kLeastTurn = 0.008;  // radians
+  const Eigen::Vector3d ray = pose.T_camera_object->translation();
+  const double distance = std::max(0.3, ray.norm());
+  const double unclear = 1.0 / std::sqrt(std::clamp(static_cast<double>(pose.visible_fraction), 0.1, 1.0));
+  const double across = kAcross * distance * unclear;
+  const double along = kAlong * distance * distance * unclear;
+  const double turn = kLeastTurn + across / std::max(0.02, radius_m);
+  const Eigen::Vector3d direction = T_world_camera.linear() * ray.normalized();
+  const Eigen::Matrix3d beam = direction * direction.transpose();
+  Covariance6 out = Covariance6::Zero();
+  out.topLeftCorner<3, 3>() = across * across * (Eigen::Matrix3d::Identity() - beam) + along * along * beam;
+  out.bottomRightCorner<3, 3>().diagonal().setConstant(turn * turn);
+  return out;
+}
+
+}  // namespace
+
+TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries) {
+  TrackModels models;
+  for (auto& [name, mesh] : meshes) {
+    require(!mesh.triangles.empty(), "model {}: no triangles, expected a mesh", name);
+    TrackModel model;
+    const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
+    model.centre = bounds.center().cast<double>();
+    model.radius_m = 0.5 * static_cast<double>(bounds.sizes().norm());
+    if (const auto known = symmetries.find(name); known != symmetries.end()) model.symmetries = known->second;
+    model.mesh = std::move(mesh);
+    models.emplace(name, std::move(model));
+  }
+  return models;
+}
+
+std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
+                                 const TrackModels& models) {
+  constexpr double kUsualRadius = 0.07;  // of what has no model
+  std::vector<SeenPose> out;
+  for (const ObjectPose& pose : poses.poses) {
+    if (!pose.T_camera_object) continue;
+    const auto model = models.find(pose.class_name);
+    const double radius_m = model == models.end() ? kUsualRadius : model->second.radius_m;
+    out.push_back(
+        {poses.frame,
+         pose.class_id,
+         pose.class_name,
+         static_cast<double>(pose.quality),
+         {poses.frame.utime, T_world_camera * *pose.T_camera_object, covariance_of(pose, T_world_camera, radius_m)}});
+  }
+  return out;
+}
+
+Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isometry3d& T_camera_object) {
+  constexpr double kToleranceM = 0.012;
+  constexpr double kNearestM = 0.05;
+  constexpr int kLeastPx = 30;
+  constexpr double kMeasured = 0.2;  // of the pixels, with depth
+  constexpr double kHidden = 0.6;
+  constexpr double kThrough = 0.35;
+  const Eigen::Vector3d centre = T_camera_object * model.centre;
+  if (centre.z() < kNearestM) return {};
+  const Eigen::Vector2d pixel = frame.camera.project(centre);
+  if (pixel.x() < 0.0 || pixel.y() < 0.0 || pixel.x() >= frame.camera.width || pixel.y() >= frame.camera.height)
+    return {};
+  const Verification seen = verify_pose(frame, model.mesh, T_camera_object, {kToleranceM, DepthNoise{}});
+  const int judged = seen.agreeing + seen.violating + seen.occluded;
+  if (seen.rendered < kLeastPx || judged < kMeasured * seen.rendered) return {};
+  Look look;
+  look.seen_through = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
+  look.goes_on = seen.outline_continues > seen.outline_ends;
+  look.state = TrackState::kUnrecognised;
+  if (look.seen_through > kThrough) look.state = TrackState::kGone;
+  if (seen.occluded > kHidden * judged) look.state = TrackState::kHidden;
+  return look;
+}
+
+PoseTrack::PoseTrack(const SeenPose& first, const PoseTrackSettings& settings)
+    : settings_(settings),
+      hypotheses_{{MotionFilter(first.measured, settings.motion), logit(first.quality)}},
+      weighed_utime_(first.frame.utime) {
+  witnesses_[first.frame.channel].agreed_utime = first.frame.utime;
+}
+
+void PoseTrack::predict(std::int64_t utime) {
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.filter.predict(utime);
+}
+
+double PoseTrack::distance(const PoseMeasurement& measured) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    const Eigen::Vector3d& place = hypothesis.filter.T_world_object().translation();
+    nearest = std::min(nearest, (measured.T_world_object.translation() - place).norm());
+  }
+  return nearest;
+}
+
+double PoseTrack::angle(const PoseMeasurement& measured, const Symmetries& symmetries) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
+    nearest = std::min(nearest, difference(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm());
+  }
+  return nearest;
+}
+
+// The hypothesis that the measured rotation belongs to: rather the best, else the nearest, else a new one, which takes
+// the place of the weakest.
+std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries) {
+  std::optional<std::size_t> found;
+  double nearest = settings_.same_rotation_rad;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    const Eigen::Isometry3d& T = hypotheses_[i].filter.T_world_object();
+    const double angle = difference(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm();
+    if (angle < settings_.same_rotation_rad && i == best_) return i;
+    if (angle >= nearest) continue;
+    nearest = angle;
+    found = i;
+  }
+  if (found) return *found;
+  if (hypotheses_.size() < kHypotheses) {
+    hypotheses_.push_back({MotionFilter(measured, settings_.motion), 0.0});
+    return hypotheses_.size() - 1;
+  }
+  std::size_t weakest = best_ == 0 ? 1 : 0;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    if (i != best_ && hypotheses_[i].weight < hypotheses_[weakest].weight) weakest = i;
+  }
+  hypotheses_[weakest] = {MotionFilter(measured, settings_.motion), 0.0};
+  return weakest;
+}
+
+void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries) {
+  constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
+  const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
+  weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
+  const std::size_t index = hypothesis_for(pose.measured, symmetries);
+  Hypothesis& hypothesis = hypotheses_[index];
+  hypothesis.weight = std::min(kMostWeight, hypothesis.weight + std::max(0.1, logit(pose.quality)));
+  SeenPose turned = pose;
+  turned.measured = aligned(pose.measured, hypothesis.filter.T_world_object(), symmetries);
+  hypothesis.filter.predict(pose.frame.utime);
+  if (hypothesis.filter.moving()) {
+    update_moving(turned.measured, hypothesis);
+  } else {
+    update_standing(turned, hypothesis);
+  }
+  if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
+  if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
+    hypotheses_ = {hypothesis};  // what was thought of where it stood is over
+    best_ = 0;
+  }
+}
+
+// A camera whose place is a little wrong sees the object beside where the others do, always. So only one that has seen
+// it where it is, or that is the only one to see it, can tell that it has moved.
+bool PoseTrack::may_tell_of_motion(const std::string& channel, std::int64_t utime) const {
+  constexpr double kOfLateS = 0.5;
+  if (witnesses_.at(channel).agreed_utime != 0) return true;
+  return std::none_of(witnesses_.begin(), witnesses_.end(), [&](const auto& entry) {
+    return entry.first != channel && seconds_between(entry.second.agreed_utime, utime) < kOfLateS;
+  });
+}
+
+void PoseTrack::update_standing(const SeenPose& pose, Hypothesis& hypothesis) {
+  constexpr double kWithinS = 0.4;
+  constexpr std::size_t kPlaces = 3;  // measured apart from where it stands
+  constexpr std::size_t kTurns = 8;   // measured turned only
+  const Vector6 apart = difference(pose.measured.T_world_object, hypothesis.filter.T_world_object());
+  const Covariance6& noise = pose.measured.covariance;
+  const double place_gate = std::max(settings_.stands_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
+  const double turn_gate = std::max(settings_.stands_rad, 4.0 * std::sqrt(noise(5, 5)));
+  const bool in_place = apart.head<3>().norm() < place_gate;
+  Witness& witness = witnesses_[pose.frame.channel];
+  if (in_place && apart.tail<3>().norm() < turn_gate) {
+    hypothesis.filter.update(pose.measured);
+    witness.apart.clear();
+    witness.agreed_utime = pose.frame.utime;
+    return;
+  }
+  witness.apart.push_back(pose.measured);
+  while (seconds_between(witness.apart.front().utime, pose.frame.utime) > kWithinS) witness.apart.pop_front();
+  if (witness.apart.size() < (in_place ? kTurns : kPlaces) || !may_tell_of_motion(pose.frame.channel, pose.frame.utime))
+    return;
+  const PoseMeasurement& first = witness.apart.front();
+  const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
+  hypothesis.filter.start_moving(pose.measured,
+                                 difference(pose.measured.T_world_object, first.T_world_object) / seconds);
+  recent_ = {pose.measured};
+  witnesses_.clear();
+  witnesses_[pose.frame.channel].agreed_utime = pose.frame.utime;
+}
+
+void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis) {
+  constexpr double kWithinS = 0.4;
+  constexpr double kLeastS = 0.28;
+  constexpr std::size_t kLeast = 6;
+  hypothesis.filter.update(measured);
+  recent_.push_back(measured);
+  while (seconds_between(recent_.front().utime, measured.utime) > kWithinS) recent_.pop_front();
+  if (recent_.size() < kLeast || seconds_between(recent_.front().utime, measured.utime) < kLeastS) return;
+  // The mean of the earlier half beside that of the later one, each about the pose in its middle.
+  const Eigen::Isometry3d& T_middle = recent_[recent_.size() / 2].T_world_object;
+  std::array<Vector6, 2> means = {Vector6::Zero(), Vector6::Zero()};
+  const std::size_t half = recent_.size() / 2;
+  for (std::size_t i = 0; i < 2 * half; ++i)
+    means[i / half] += difference(recent_[i].T_world_object, T_middle) / static_cast<double>(half);
+  const Vector6 between = means[1] - means[0];
+  if (between.head<3>().norm() < settings_.settles_m && between.tail<3>().norm() < settings_.settles_rad) {
+    hypothesis.filter.stop();
+    recent_.clear();
+  }
+}
+
+}  // namespace houghstream::tracks

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "pipeline/geometry/symmetry.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/object_pose.hpp"
+#include "pipeline/types/tracked_object.hpp"
+#include "pose/region.hpp"
+#include "pose/tracks/motion_filter.hpp"
+
+namespace houghstream::tracks {
+
+/// What is known of a class of objects.
+struct TrackModel {
+  Mesh mesh;
+  Symmetries symmetries;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the bounding box, object frame, metres
+  double radius_m = 0.0;                             ///< of the sphere about it that holds the mesh
+};
+using TrackModels = std::map<std::string, TrackModel>;
+
+/// Models by class name; those without known symmetries have none. Throws InputError naming a mesh without triangles.
+TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
+
+/// A pose that was measured in a frame, in the world.
+struct SeenPose {
+  FrameId frame;
+  int class_id = 0;
+  std::string class_name;
+  double quality = 0.0;  ///< probability that it is right
+  PoseMeasurement measured;
+};
+
+/// The valid poses of a frame in the world. Their covariance grows with the distance, more along the line of sight than
+/// across it, and where little of an object is seen.
+std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
+                                 const TrackModels& models);
+
+/// How the depth of a frame speaks for an object at a pose.
+struct Look {
+  TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: it agrees; kGone: it was seen through
+  double seen_through = 0.0;                  ///< share of what is not hidden, 0 to 1
+  bool goes_on = false;                       ///< the measured surface goes on where the object's outline is
+};
+Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isometry3d& T_camera_object);
+
+/// When a measured pose belongs to a pose that is known, and when that moves.
+struct PoseTrackSettings {
+  MotionSettings motion;
+  double same_rotation_rad = 0.44;  ///< poses turned farther apart are two hypotheses
+  double stands_m = 0.008;          ///< what stands is not measured farther away than this, nor than 4 sigma
+  double stands_rad = 0.21;
+  double settles_m = 0.004;  ///< what moved stands when two fifths of a second differ by less
+  double settles_rad = 0.09;
+};
+
+/// The pose of one object over time: one or a few hypotheses of it, each with a filter of its own, so that no average
+/// of two is ever published (a can's two turns), and what is needed to tell moving from standing.
+class PoseTrack {
+ public:
+  PoseTrack(const SeenPose& first, const PoseTrackSettings& settings);
+
+  void predict(std::int64_t utime);
+  void take(const SeenPose& pose, const Symmetries& symmetries);
+
+  const MotionFilter& filter() const { return hypotheses_[best_].filter; }
+  /// Metres from the nearest hypothesis, and radians to the nearest that looks the same.
+  double distance(const PoseMeasurement& measured) const;
+  double angle(const PoseMeasurement& measured, const Symmetries& symmetries) const;
+
+ private:
+  struct Hypothesis {
+    MotionFilter filter;
+    double weight = 0.0;  ///< log odds of what spoke for it of late
+  };
+  struct Witness {
+    std::deque<PoseMeasurement> apart;  ///< of late, where the object is not thought to be
+    std::int64_t agreed_utime = 0;      ///< when it last saw it where it is
+  };
+
+  std::size_t hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries);
+  void update_standing(const SeenPose& pose, Hypothesis& hypothesis);
+  void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
+  bool may_tell_of_motion(const std::string& channel, std::int64_t utime) const;
+
+  PoseTrackSettings settings_;
+  std::vector<Hypothesis> hypotheses_;
+  std::size_t best_ = 0;
+  std::int64_t weighed_utime_ = 0;
+  std::map<std::string, Witness> witnesses_;  // by camera
+  std::deque<PoseMeasurement> recent_;        // while it moves
+};
+
+}  // namespace houghstream::tracks

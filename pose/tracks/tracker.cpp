@@ -1,0 +1,398 @@
+#include "pose/tracks/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pose/tracks/assignment.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+constexpr std::int64_t kSecond = 1000000;
+
+double seconds_between(std::int64_t from, std::int64_t to) {
+  return static_cast<double>(to - from) * 1e-6;
+}
+
+double logit(double p) {
+  const double q = std::clamp(p, 0.02, 0.98);
+  return std::log(q / (1.0 - q));
+}
+
+/// An object, or what may become one.
+struct Track {
+  std::int64_t id = 0;  ///< 0: not confirmed
+  int class_id = 0;
+  std::string class_name;
+  PoseTrack pose;
+  double log_odds = 0.0;
+  int seen = 0;
+  std::int64_t first_utime = 0;
+  FrameId last_seen;
+  TrackState state = TrackState::kVisible;
+  std::string reason;
+  std::int64_t gone_utime = 0;  ///< 0: it is there
+  bool seen_now = false;
+  double seen_through_s = 0.0;  ///< for how long it was seen through, since it was seen last
+
+  bool there() const { return gone_utime == 0; }
+};
+
+/// When a camera looked last.
+struct CameraClock {
+  std::int64_t utime = 0;
+  std::set<std::string> classes;  ///< that the frame of this time was told of
+};
+
+}  // namespace
+
+struct Tracker::State {
+  TrackModels models;
+  TrackerSettings settings;
+  std::vector<Track> tracks;  // by when they were begun; numbers follow in the order of confirmation
+  std::map<std::string, CameraClock> cameras;
+  std::map<std::string, int> most_together;  // by class: instances that were seen in one frame
+  std::int64_t next_id = 1;
+  std::int64_t newest_utime = 0;
+  int world_number = 1;
+
+  const TrackModel* model_of(const std::string& name) const {
+    const auto found = models.find(name);
+    return found == models.end() ? nullptr : &found->second;
+  }
+  const Symmetries& symmetries_of(const std::string& name) const {
+    static const Symmetries none;
+    const TrackModel* model = model_of(name);
+    return model == nullptr ? none : model->symmetries;
+  }
+  double radius_of(const std::string& name) const {
+    constexpr double kUsual = 0.07;
+    const TrackModel* model = model_of(name);
+    return model == nullptr ? kUsual : model->radius_m;
+  }
+
+  void begin_world();
+  bool begin_frame(const FrameId& frame, double& seconds);
+  std::vector<SeenPose> new_poses(const FrameSeen& seen);
+  std::vector<SeenPose> associate(const std::vector<SeenPose>& poses, const std::string& class_name, double seconds);
+  void take(Track& track, const SeenPose& pose, double seconds);
+  void begin(const SeenPose& pose);
+  void judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses, double seconds);
+  void confirm(std::int64_t utime);
+  Track* earlier_self(const Track& candidate, std::int64_t utime);
+  void forget(std::int64_t utime);
+  WorldObjects report(const FrameSeen& seen) const;
+};
+
+Tracker::Tracker(TrackModels models, TrackerSettings settings) : state_(std::make_unique<State>()) {
+  state_->models = std::move(models);
+  state_->settings = settings;
+}
+Tracker::~Tracker() = default;
+Tracker::Tracker(Tracker&&) noexcept = default;
+
+void Tracker::set_models(TrackModels models) {
+  state_->models = std::move(models);
+}
+
+void Tracker::begin_world() {
+  state_->begin_world();
+}
+
+std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
+  State& state = *state_;
+  const FrameId& frame = seen.poses.frame;
+  double seconds = 0.0;  // since the camera's last frame
+  if (!state.begin_frame(frame, seconds)) return std::nullopt;
+  const std::vector<SeenPose> poses = state.new_poses(seen);
+  for (Track& track : state.tracks) {
+    track.pose.predict(frame.utime);
+    track.seen_now = false;
+  }
+  std::set<std::string> classes;
+  for (const SeenPose& pose : poses) classes.insert(pose.class_name);
+  std::vector<SeenPose> unknown;
+  for (const std::string& class_name : classes) {
+    const std::vector<SeenPose> left = state.associate(poses, class_name, seconds);
+    unknown.insert(unknown.end(), left.begin(), left.end());
+  }
+  for (Track& track : state.tracks) {
+    if (track.there() && !track.seen_now) state.judge_unseen(track, seen, poses, seconds);
+  }
+  for (const SeenPose& pose : unknown) state.begin(pose);
+  state.confirm(frame.utime);
+  state.forget(frame.utime);
+  return state.report(seen);
+}
+
+void Tracker::State::begin_world() {
+  tracks.clear();
+  cameras.clear();
+  most_together.clear();
+  next_id = 1;
+  newest_utime = 0;
+  ++world_number;
+}
+
+/// Whether the frame is worked on; `seconds` since the camera's last one, as far as it counts.
+bool Tracker::State::begin_frame(const FrameId& frame, double& seconds) {
+  constexpr double kUsualS = 1.0 / 30.0;
+  constexpr double kMostS = 0.1;
+  if (newest_utime != 0 && frame.utime + kSecond < newest_utime) {
+    log_warning("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
+                seconds_between(frame.utime, newest_utime));
+    begin_world();
+  }
+  newest_utime = std::max(newest_utime, frame.utime);
+  CameraClock& clock = cameras[frame.channel];
+  if (frame.utime < clock.utime) return false;
+  seconds = clock.utime == 0 ? kUsualS : std::min(kMostS, seconds_between(clock.utime, frame.utime));
+  if (frame.utime != clock.utime) clock = {frame.utime, {}};
+  return true;
+}
+
+/// The poses of classes that this frame was not told of yet: another detector's, or all.
+std::vector<SeenPose> Tracker::State::new_poses(const FrameSeen& seen) {
+  std::vector<SeenPose> poses = seen_poses(seen.poses, seen.T_world_camera, models);
+  std::set<std::string>& told = cameras[seen.poses.frame.channel].classes;
+  poses.erase(
+      std::remove_if(poses.begin(), poses.end(), [&](const SeenPose& pose) { return told.count(pose.class_name) > 0; }),
+      poses.end());
+  for (const SeenPose& pose : poses) told.insert(pose.class_name);
+  return poses;
+}
+
+/// Gives the poses of a class to its objects; those that no object is near are left.
+std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& poses, const std::string& class_name,
+                                                double seconds) {
+  const AssociationSettings& how = settings.association;
+  std::vector<Track*> objects;
+  std::vector<const SeenPose*> measured;
+  for (Track& track : tracks) {
+    if (track.there() && track.class_name == class_name) objects.push_back(&track);
+  }
+  for (const SeenPose& pose : poses) {
+    if (pose.class_name == class_name) measured.push_back(&pose);
+  }
+  constexpr double kUnconfirmed = 0.3;  // rather one that is known
+  Eigen::MatrixXd costs(objects.size(), measured.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Track& track = *objects[i];
+    const double reach = track.pose.filter().moving() ? how.moving_reach_m : how.reach_m;
+    for (std::size_t j = 0; j < measured.size(); ++j) {
+      const double distance = track.pose.distance(measured[j]->measured);
+      const double angle = track.pose.angle(measured[j]->measured, symmetries_of(class_name));
+      costs(i, j) = distance > reach
+                        ? 10.0
+                        : distance / reach + how.turn_cost * angle / M_PI + (track.id == 0 ? kUnconfirmed : 0.0);
+    }
+  }
+  constexpr double kLimit = 2.0;
+  const std::vector<int> given = assign(costs, kLimit);
+  std::vector<bool> taken(measured.size(), false);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (given[i] < 0) continue;
+    taken[given[i]] = true;
+    take(*objects[i], *measured[given[i]], seconds);
+  }
+  const int together = static_cast<int>(std::count_if(
+      objects.begin(), objects.end(), [](const Track* track) { return track->id != 0 && track->seen_now; }));
+  most_together[class_name] = std::max(most_together[class_name], together);
+  std::vector<SeenPose> left;
+  for (std::size_t j = 0; j < measured.size(); ++j) {
+    if (taken[j]) continue;
+    const bool crowded = std::any_of(objects.begin(), objects.end(), [&](const Track* track) {
+      return track->pose.distance(measured[j]->measured) < how.crowded * radius_of(class_name);
+    });
+    if (!crowded) left.push_back(*measured[j]);
+  }
+  return left;
+}
+
+void Tracker::State::take(Track& track, const SeenPose& pose, double seconds) {
+  constexpr double kRateHz = 30.0;
+  constexpr double kMost = 4.0;
+  const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
+  track.pose.take(pose, symmetries_of(track.class_name));
+  track.log_odds = std::min(settings.existence.most, track.log_odds + share * settings.existence.gain *
+                                                                          std::clamp(logit(pose.quality), 0.3, kMost));
+  ++track.seen;
+  track.seen_now = true;
+  track.seen_through_s = 0.0;
+  track.last_seen = pose.frame;
+  track.state = TrackState::kVisible;
+  track.reason = fmt::format("seen by {}", pose.frame.channel);
+}
+
+void Tracker::State::begin(const SeenPose& pose) {
+  require(tracks.size() < settings.most_objects, "frame {}: more than {} objects, expected at most that many",
+          to_string(pose.frame), settings.most_objects);
+  Track track{0,
+              pose.class_id,
+              pose.class_name,
+              PoseTrack(pose, settings.pose),
+              0.0,
+              1,
+              pose.frame.utime,
+              pose.frame,
+              TrackState::kVisible,
+              fmt::format("seen by {}", pose.frame.channel)};
+  track.log_odds = settings.existence.prior + settings.existence.gain * logit(pose.quality);
+  track.seen_now = true;
+  tracks.push_back(std::move(track));
+}
+
+/// What the frame says of an object of which it has no pose.
+void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses,
+                                  double seconds) {
+  const ExistenceSettings& how = settings.existence;
+  const TrackModel* model = model_of(track.class_name);
+  const RgbdFrame* image = model != nullptr && seen.image ? seen.image() : nullptr;
+  const Eigen::Isometry3d T_camera_object = seen.T_world_camera.inverse() * track.pose.filter().T_world_object();
+  const Look look = image != nullptr ? look_at(*image, *model, T_camera_object) : Look{};
+  const double unseen_s = seconds_between(track.last_seen.utime, seen.poses.frame.utime);
+  const auto& place = track.pose.filter().T_world_object().translation();
+  const bool crowded = std::any_of(poses.begin(), poses.end(), [&](const SeenPose& pose) {
+    return pose.class_name != track.class_name &&
+           (pose.measured.T_world_object.translation() - place).norm() <
+               0.5 * std::min(radius_of(pose.class_name), radius_of(track.class_name));
+  });
+  const bool detected =
+      seen.detections != nullptr &&
+      std::any_of(seen.detections->detections.begin(), seen.detections->detections.end(),
+                  [&](const Detection& detection) {
+                    return detection.class_name == track.class_name &&
+                           (detection.centre_camera.cast<double>() - T_camera_object.translation()).norm() <
+                               settings.association.reach_m;
+                  });
+  double rate = 0.0;
+  std::string why;
+  switch (look.state) {
+    case TrackState::kGone:
+      rate = how.seen_through * look.seen_through;
+      track.seen_through_s += seconds;
+      why =
+          fmt::format("{} sees through {:.0f} % of where it was", seen.poses.frame.channel, 100.0 * look.seen_through);
+      break;
+    case TrackState::kHidden: why = fmt::format("something stands before it in {}", seen.poses.frame.channel); break;
+    case TrackState::kOutOfView:
+      why = fmt::format("not in view of {}, or without depth", seen.poses.frame.channel);
+      break;
+    default:
+      rate = look.goes_on ? how.goes_on : detected ? 0.0 : how.unrecognised;
+      why = fmt::format("not recognised by {}, whose depth agrees", seen.poses.frame.channel);
+  }
+  if (crowded && look.state != TrackState::kOutOfView) {
+    rate += how.crowded_out;
+    why += ", where something else is";
+  }
+  if (track.pose.filter().moving() && unseen_s > settings.pose.motion.coast_s)
+    rate += look.state == TrackState::kHidden ? 0.25 * how.lost : how.lost;
+  if (track.id == 0) rate += how.unconfirmed;
+  track.log_odds -= seconds * rate;
+  // Of several cameras the one that saw it last has the word, as long as that is not long ago.
+  constexpr double kHasTheWordS = 0.1;
+  if (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kHasTheWordS) {
+    track.state = look.state == TrackState::kGone ? TrackState::kUnrecognised : look.state;
+    track.reason = why;
+  }
+  if (track.log_odds < how.gone) {
+    track.gone_utime = seen.poses.frame.utime;
+    track.state = TrackState::kGone;
+    track.reason = why;
+    if (track.id != 0)
+      log_info("{} #{} is gone: {} (last seen by {} {:.2f} s before)", track.class_name, track.id, why,
+               track.last_seen.channel, unseen_s);
+  }
+}
+
+/// The object that a candidate was before it was carried or taken away: one of its class that is gone, that is not
+/// where it was, or that a hand hides while no more of its class have ever been seen together.
+Track* Tracker::State::earlier_self(const Track& candidate, std::int64_t utime) {
+  int visible = 1;
+  for (const Track& track : tracks) {
+    if (track.id != 0 && track.class_name == candidate.class_name && track.seen_now) ++visible;
+  }
+  Track* best = nullptr;
+  double best_rank = 0.0;
+  for (Track& track : tracks) {
+    if (track.id == 0 || track.class_name != candidate.class_name || track.seen_now) continue;
+    const double unseen_s = seconds_between(track.last_seen.utime, utime);
+    const bool handled = track.state == TrackState::kHidden && unseen_s < settings.handled_s;
+    const bool lost = track.pose.filter().moving() || track.seen_through_s > 0.0;
+    const bool free = !track.there() || lost || (handled && visible <= most_together[candidate.class_name]);
+    if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
+    const double rank = unseen_s + (track.there() ? 0.0 : 5.0) +
+                        track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()});
+    if (best != nullptr && rank >= best_rank) continue;
+    best = &track;
+    best_rank = rank;
+  }
+  return best;
+}
+
+/// Candidates that have been seen enough become objects, or are the ones that were lost.
+void Tracker::State::confirm(std::int64_t utime) {
+  const ExistenceSettings& how = settings.existence;
+  for (Track& candidate : tracks) {
+    const double spread_s = seconds_between(candidate.first_utime, candidate.last_seen.utime);
+    if (candidate.id != 0 || !candidate.there() || candidate.log_odds < how.confirmed ||
+        candidate.seen < how.confirmed_frames || spread_s < how.confirmed_s)
+      continue;
+    if (Track* earlier = earlier_self(candidate, utime)) {
+      const std::int64_t id = earlier->id;
+      candidate.id = id;
+      candidate.first_utime = earlier->first_utime;
+      candidate.seen += earlier->seen;
+      earlier->id = -1;  // forgotten below
+      log_info("{} #{} is in another place", candidate.class_name, id);
+    } else {
+      candidate.id = next_id++;
+      log_info("{} #{} is there, seen by {}", candidate.class_name, candidate.id, candidate.last_seen.channel);
+    }
+  }
+}
+
+void Tracker::State::forget(std::int64_t utime) {
+  const auto over = [&](const Track& track) {
+    if (track.id < 0) return true;
+    if (track.there()) return false;
+    return track.id == 0 || seconds_between(track.gone_utime, utime) > settings.remembered_s;
+  };
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), over), tracks.end());
+}
+
+WorldObjects Tracker::State::report(const FrameSeen& seen) const {
+  WorldObjects out;
+  out.frame = seen.poses.frame;
+  out.world_number = world_number;
+  out.T_world_camera = seen.T_world_camera;
+  out.stages = seen.poses.stages;
+  for (const Track& track : tracks) {
+    if (track.id == 0) continue;
+    if (!track.there() && seconds_between(track.gone_utime, out.frame.utime) > settings.told_gone_s) continue;
+    const MotionFilter& filter = track.pose.filter();
+    TrackedObject object;
+    object.track_id = track.id;
+    object.class_id = track.class_id;
+    object.class_name = track.class_name;
+    object.state = track.state;
+    object.probability = static_cast<float>(1.0 / (1.0 + std::exp(-track.log_odds)));
+    object.moving = filter.moving();
+    object.T_world_object = filter.T_world_object();
+    object.covariance = filter.covariance();
+    object.velocity = filter.velocity();
+    object.seen = track.seen;
+    object.first_utime = track.first_utime;
+    object.last_seen = track.last_seen;
+    object.reason = track.reason;
+    out.objects.push_back(std::move(object));
+  }
+  std::sort(out.objects.begin(), out.objects.end(),
+            [](const TrackedObject& a, const TrackedObject& b) { return a.track_id < b.track_id; });
+  return out;
+}
+
+}  // namespace houghstream::tracks

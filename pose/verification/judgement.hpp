@@ -1,0 +1,16 @@
+#pragma once
+
+#include "pipeline/types/object_pose.hpp"
+#include "pose/pose_settings.hpp"
+
+namespace houghstream {
+
+/// Gathers the evidence for `T_camera_object` and fills in what it says of `pose`: its quality, and the pose itself or
+/// the reason why it is withheld. The class and the detection's score are read from `pose`.
+void judge(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings,
+           ObjectPose& pose);
+
+/// Copies what registration says of itself.
+void tell_registration(const RegistrationResult& result, ObjectPose& pose);
+
+}  // namespace houghstream

@@ -1,0 +1,50 @@
+#include "pipeline/process/look_budget.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+/// The frames of a 60 Hz camera, from 0 on, that are looked at.
+std::vector<int> looks(LookBudget& budget, int frames, const std::string& camera = "LEFT") {
+  std::vector<int> due;
+  for (int i = 0; i < frames; ++i) {
+    if (budget.is_due({camera, 5000000 + i * 16667})) due.push_back(i);
+  }
+  return due;
+}
+
+TEST(LookBudget, WithoutOneEveryFrameIsLookedAt) {
+  LookBudget budget(0.0);
+  EXPECT_EQ(looks(budget, 3), (std::vector<int>{0, 1, 2}));
+}
+
+TEST(LookBudget, LooksAreSpreadEvenlyWhateverTheTimesTremble) {
+  LookBudget budget(5.0);
+  EXPECT_EQ(looks(budget, 40), (std::vector<int>{0, 12, 24, 36}));
+  EXPECT_TRUE(budget.is_due({"RIGHT", 5000000})) << "each camera has its own";
+  LookBudget trembling(5.0);
+  EXPECT_TRUE(trembling.is_due({"LEFT", 1000}));
+  EXPECT_FALSE(trembling.is_due({"LEFT", 1000 + 190000}));
+  EXPECT_TRUE(trembling.is_due({"LEFT", 1000 + 199000}));
+}
+
+TEST(LookBudget, ALossBringsTheNextLookForwardOnce) {
+  LookBudget budget(5.0);
+  EXPECT_TRUE(budget.is_due({"LEFT", 0}));
+  budget.hurry("LEFT");
+  EXPECT_FALSE(budget.is_due({"LEFT", 40000}));
+  EXPECT_TRUE(budget.is_due({"LEFT", 50000}));
+  EXPECT_FALSE(budget.is_due({"LEFT", 100000}));
+  EXPECT_TRUE(budget.is_due({"LEFT", 250000}));
+}
+
+TEST(LookBudget, TimesThatGoBackBeginAnew) {
+  LookBudget budget(1.0);
+  EXPECT_TRUE(budget.is_due({"LEFT", 9000000}));
+  EXPECT_TRUE(budget.is_due({"LEFT", 0}));
+  EXPECT_FALSE(budget.is_due({"LEFT", 500000}));
+}
+
+}  // namespace
+}  // namespace houghstream

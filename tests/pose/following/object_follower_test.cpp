@@ -1,0 +1,309 @@
+#include "pose/following/object_follower.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/pose/test_scene.hpp"
+
+namespace houghstream {
+namespace {
+
+using namespace test_scene;
+
+constexpr std::int64_t kPeriod = 16667;  // microseconds: 60 Hz
+
+/// A table with things on it before a camera, frame by frame.
+class Film {
+ public:
+  struct Thing {
+    std::string name;
+    Mesh mesh;
+    Eigen::Isometry3d T_table_object;
+  };
+
+  std::vector<Thing> things;
+  Eigen::Isometry3d T_camera_table = standing(0.0, 30.0, 1.0);
+  std::vector<Mesh> screens;  // before the camera, in its frame
+  std::int64_t utime = 1000;
+
+  Film& with(const std::string& name, Mesh mesh, double x, double foot) {
+    things.push_back({name, std::move(mesh), Eigen::Isometry3d(Eigen::Translation3d(x, 0.0, foot))});
+    return *this;
+  }
+
+  Eigen::Isometry3d truth(std::size_t thing) const { return T_camera_table * things[thing].T_table_object; }
+
+  /// The camera walks sideways about the table at 0.3 m/s and 12 degrees a second.
+  void walk() {
+    T_camera_table = Eigen::Translation3d(-0.005, 0.0, 0.0) * T_camera_table;
+    T_camera_table.rotate(Eigen::AngleAxisd(0.0035, Eigen::Vector3d::UnitZ()));
+  }
+
+  RgbdFrame next(const std::string& camera = "") {
+    static const Mesh ground = table();
+    std::vector<RenderItem> items = {{&ground, T_camera_table, 1}};
+    for (std::size_t i = 0; i < things.size(); ++i) items.push_back({&things[i].mesh, truth(i), 2});
+    for (const Mesh& screen : screens) items.push_back({&screen, Eigen::Isometry3d::Identity(), 3});
+    utime += kPeriod;
+    RgbdFrame frame = noisy_frame(items, static_cast<std::uint64_t>(utime));
+    frame.id = {camera, utime};
+    return frame;
+  }
+
+  Detections detected(const FrameId& frame) const {
+    Detections detections{frame, {}, {}};
+    for (std::size_t i = 0; i < things.size(); ++i) {
+      detections.detections.push_back(detection_of(things[i].name, things[i].mesh, truth(i), 5 + i));
+    }
+    return detections;
+  }
+};
+
+Film box_and_mug() {
+  return Film().with("box", cereal_box(), -0.15, 0.13).with("mug", mug(), 0.1, 0.05);
+}
+
+const PoseEstimator& estimator() {
+  static const PoseEstimator estimator({{"box", cereal_box()}, {"mug", mug()}}, PoseSettings());
+  return estimator;
+}
+
+int valid_ones(const ObjectPoses& poses) {
+  return static_cast<int>(std::count_if(poses.poses.begin(), poses.poses.end(), [](const ObjectPose& pose) {
+    EXPECT_EQ(pose.T_camera_object.has_value(), pose.status == PoseStatus::kValid);
+    return pose.status == PoseStatus::kValid;
+  }));
+}
+
+/// A follower that has found what stands there.
+class Following {
+ public:
+  explicit Following(Film start, FollowerSettings settings = {}) : film(std::move(start)), follower(settings) {
+    const RgbdFrame frame = film.next();
+    EXPECT_TRUE(follower.follow(estimator(), frame).poses.empty());
+    const ObjectPoses found = follower.answer(estimator(), frame, film.detected(frame.id));
+    EXPECT_EQ(valid_ones(found), static_cast<int>(film.things.size()));
+  }
+
+  ObjectPoses next() { return follower.follow(estimator(), film.next()); }
+
+  Film film;
+  ObjectFollower follower;
+};
+
+TEST(ObjectFollower, AWalkingCamerasObjectsAreKeptWithoutDetections) {
+  Following it(box_and_mug());
+  const SurfaceError of_box(it.film.things[0].mesh);
+  const SurfaceError of_mug(it.film.things[1].mesh);
+  for (int i = 0; i < 30; ++i) {
+    it.film.walk();
+    const ObjectPoses poses = it.next();
+    ASSERT_EQ(valid_ones(poses), 2) << i;
+    EXPECT_EQ(poses.frame.utime, it.film.utime);
+    EXPECT_EQ(poses.poses[0].class_name, "box");
+    EXPECT_EQ(poses.poses[1].class_name, "mug");
+    EXPECT_EQ(poses.poses[0].detection_index, -1);
+    EXPECT_NEAR(poses.poses[0].detection_score, 0.9F, 1e-4F);
+    EXPECT_GT(poses.poses[0].inliers, 100);
+    EXPECT_LT(of_box(it.film.truth(0), *poses.poses[0].T_camera_object), 0.003) << i;
+    EXPECT_LT(of_mug(it.film.truth(1), *poses.poses[1].T_camera_object), 0.003) << i;
+    EXPECT_EQ(poses.stages.back().stage, "pose.following");
+  }
+}
+
+TEST(ObjectFollower, WhatIsTakenAwayIsNoticedAtOnceAndGoneSoon) {
+  Following it(box_and_mug());
+  it.next();
+  it.film.things.erase(it.film.things.begin());
+  int told = 0;
+  for (int i = 0; i < 5; ++i) {
+    const ObjectPoses poses = it.next();
+    EXPECT_EQ(valid_ones(poses), 1) << "the mug, in frame " << i;
+    EXPECT_EQ(poses.poses.back().class_name, "mug");
+    if (poses.poses.size() < 2) continue;
+    ++told;
+    EXPECT_NE(poses.poses[0].status, PoseStatus::kOccluded);
+  }
+  EXPECT_GE(told, 1) << "with a reason";
+  EXPECT_LE(told, 3);
+}
+
+TEST(ObjectFollower, WhatIsHiddenSaysSoAndComesBackByItself) {
+  Following it(box_and_mug());
+  it.next();
+  Mesh arm;  // half a metre before the camera, over the box
+  add_box(arm, {-0.3F, -0.3F, 0.5F}, {0.015F, 0.3F, 0.52F});
+  it.film.screens.push_back(arm);
+  for (int i = 0; i < 20; ++i) {
+    const ObjectPoses poses = it.next();
+    ASSERT_EQ(poses.poses.size(), 2U) << i;
+    EXPECT_EQ(poses.poses[0].status, PoseStatus::kOccluded) << i << " " << to_string(poses.poses[0].status);
+    EXPECT_EQ(poses.poses[1].status, PoseStatus::kValid) << i;
+  }
+  it.film.screens.clear();
+  const ObjectPoses poses = it.next();
+  ASSERT_EQ(valid_ones(poses), 2);
+  EXPECT_LT(SurfaceError(it.film.things[0].mesh)(it.film.truth(0), *poses.poses[0].T_camera_object), 0.003);
+}
+
+TEST(ObjectFollower, WhatIsHiddenForTooLongIsForgotten) {
+  Following it(box_and_mug());
+  it.next();
+  Mesh arm;
+  add_box(arm, {-0.3F, -0.3F, 0.5F}, {0.015F, 0.3F, 0.52F});
+  it.film.screens.push_back(arm);
+  EXPECT_EQ(it.next().poses.size(), 2U);
+  it.film.utime += 2000000;
+  EXPECT_EQ(it.next().poses.size(), 2U) << "told once more";
+  EXPECT_EQ(it.next().poses.size(), 1U);
+}
+
+TEST(ObjectFollower, NothingDriftsOntoItsEqualNeighbour) {
+  Following it(Film().with("mug", mug(), -0.05, 0.05).with("mug", mug(), 0.07, 0.05));
+  ASSERT_EQ(valid_ones(it.next()), 2);
+  it.film.things.erase(it.film.things.begin());
+  const Eigen::Isometry3d left = it.film.truth(0);
+  for (int i = 0; i < 8; ++i) {
+    const ObjectPoses poses = it.next();
+    ASSERT_EQ(valid_ones(poses), 1) << i;
+    for (const ObjectPose& pose : poses.poses) {
+      if (!pose.T_camera_object) continue;
+      EXPECT_LT((pose.T_camera_object->translation() - left.translation()).norm(), 0.005) << i;
+    }
+  }
+}
+
+TEST(ObjectFollower, AJerkOfTheCameraIsFollowed) {
+  Following it(box_and_mug());
+  for (int i = 0; i < 5; ++i) {
+    it.film.walk();
+    it.next();
+  }
+  it.film.T_camera_table = Eigen::Translation3d(0.03, -0.01, 0.01) * it.film.T_camera_table;
+  EXPECT_EQ(valid_ones(it.next()), 2);
+  EXPECT_EQ(valid_ones(it.next()), 2);
+}
+
+TEST(ObjectFollower, DetectionsOfAFollowedObjectHaveItsPoseOfThen) {
+  Following it(box_and_mug());
+  it.film.walk();
+  const RgbdFrame then = it.film.next();
+  const Detections detections = it.film.detected(then.id);
+  const ObjectPoses shown = it.follower.follow(estimator(), then);
+  it.film.walk();
+  it.next();
+  const ObjectPoses answer = it.follower.answer(estimator(), then, detections);
+  ASSERT_EQ(answer.poses.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(answer.poses[i].detection_index, static_cast<int>(i));
+    EXPECT_EQ(answer.poses[i].detection_score, detections.detections[i].score);
+    EXPECT_EQ(answer.poses[i].T_camera_object.value().matrix(), shown.poses[i].T_camera_object.value().matrix());
+  }
+  EXPECT_EQ(it.next().poses.size(), 2U) << "nothing is followed twice";
+}
+
+TEST(ObjectFollower, WhatIsFoundFramesLaterIsFollowedFromThere) {
+  Following it(box_and_mug());
+  it.film.with("mug", mug(), 0.25, 0.05);
+  it.film.walk();
+  const RgbdFrame then = it.film.next();
+  const Detections detections = it.film.detected(then.id);
+  it.follower.follow(estimator(), then);
+  for (int i = 0; i < 6; ++i) {
+    it.film.walk();
+    EXPECT_EQ(valid_ones(it.next()), 2);
+  }
+  EXPECT_EQ(valid_ones(it.follower.answer(estimator(), then, detections)), 3);
+  it.film.walk();
+  const ObjectPoses poses = it.next();
+  ASSERT_EQ(valid_ones(poses), 3);
+  EXPECT_LT((poses.poses[2].T_camera_object->translation() - it.film.truth(2).translation()).norm(), 0.004);
+}
+
+/// How far the mug's handle is from where it is, radians, after the mug was turned at one blow and looked at again.
+double handle_error_after_a_turn(FollowerSettings settings) {
+  Following it(Film().with("mug", mug(), 0.0, 0.05), settings);
+  it.next();
+  it.film.things[0].T_table_object.rotate(Eigen::AngleAxisd(1.6, Eigen::Vector3d::UnitZ()));
+  double error = 1e9;
+  for (int i = 0; i < 4; ++i) {
+    it.film.utime += 20 * kPeriod;
+    const RgbdFrame frame = it.film.next();
+    it.follower.follow(estimator(), frame);
+    it.follower.answer(estimator(), frame, it.film.detected(frame.id));
+    const ObjectPoses poses = it.next();
+    if (valid_ones(poses) == 0) continue;
+    const Eigen::Vector3d handle = poses.poses[0].T_camera_object->linear().col(0);
+    error = std::acos(std::min(1.0, handle.dot(it.film.truth(0).linear().col(0))));
+  }
+  return error;
+}
+
+TEST(ObjectFollower, AWrongTurnIsNoticedByLookingAsIfItWereNotFollowed) {
+  FollowerSettings trusting;
+  trusting.doubted_after_s = 1e9;
+  trusting.missed_after_s = 1e9;
+  EXPECT_GT(handle_error_after_a_turn(trusting), 1.0);
+  EXPECT_LT(handle_error_after_a_turn({}), 0.45) << "as good as a single look at it";
+}
+
+TEST(ObjectFollower, WhatTheDetectorMissesThoughItIsInFullViewBecomesLessSure) {
+  Following it(box_and_mug());
+  float score = 1.0F;
+  for (int i = 0; i < 15; ++i) {
+    it.film.utime += 10 * kPeriod;
+    const RgbdFrame frame = it.film.next();
+    const ObjectPoses poses = it.follower.follow(estimator(), frame);
+    ASSERT_GE(poses.poses.size(), 1U);
+    Detections only_mug = it.film.detected(frame.id);
+    only_mug.detections.erase(only_mug.detections.begin());
+    it.follower.answer(estimator(), frame, only_mug);
+    EXPECT_LE(poses.poses[0].detection_score, score);
+    score = poses.poses[0].detection_score;
+    if (i == 4) {
+      EXPECT_NEAR(score, 0.9F, 1e-4F) << "not in the first second";
+    }
+  }
+  EXPECT_LT(score, 0.5F);
+}
+
+TEST(ObjectFollower, CamerasAreApartAndTimesThatGoBackBeginAnew) {
+  Following it(box_and_mug());
+  EXPECT_TRUE(it.follower.follow(estimator(), it.film.next("LEFT")).poses.empty());
+  EXPECT_EQ(it.next().poses.size(), 2U);
+  it.film.utime = 0;
+  EXPECT_TRUE(it.next().poses.empty());
+}
+
+TEST(ObjectFollower, AClassWithoutAModelAnyMoreIsGivenUp) {
+  Following it(box_and_mug());
+  const PoseEstimator only_mug({{"mug", mug()}}, PoseSettings());
+  const ObjectPoses poses = it.follower.follow(only_mug, it.film.next());
+  ASSERT_EQ(poses.poses.size(), 2U);
+  EXPECT_EQ(poses.poses[0].status, PoseStatus::kNoModel);
+  EXPECT_EQ(poses.poses[0].class_name, "box");
+  EXPECT_EQ(it.follower.follow(only_mug, it.film.next()).poses.size(), 1U);
+}
+
+TEST(ObjectFollower, SamePosesForAnyNumberOfThreads) {
+  PoseSettings settings;
+  settings.threads = 3;
+  const PoseEstimator parallel({{"box", cereal_box()}, {"mug", mug()}}, settings);
+  Following one(box_and_mug());
+  Following other(box_and_mug());
+  for (int i = 0; i < 5; ++i) {
+    one.film.walk();
+    const RgbdFrame frame = one.film.next();
+    const ObjectPoses a = one.follower.follow(estimator(), frame);
+    const ObjectPoses b = other.follower.follow(parallel, frame);
+    ASSERT_EQ(valid_ones(a), 2);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(a.poses[k].T_camera_object->matrix(), b.poses[k].T_camera_object.value().matrix());
+      EXPECT_EQ(a.poses[k].quality, b.poses[k].quality);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,129 @@
+#include "pose/tracks/camera_places.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/drivers/test_files.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+Eigen::Isometry3d at(double x, double turn_rad = 0.0) {
+  return Eigen::Translation3d(x, 0, 0) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ());
+}
+
+std::filesystem::path written(const std::string& name, const std::string& text) {
+  const std::filesystem::path file = fresh_folder("camera_places") / name;
+  std::ofstream(file) << text;
+  return file;
+}
+
+TEST(CameraPlaces, AMovingCameraIsInterpolatedAtTheFramesOwnTime) {
+  CameraPlaces places;
+  places.add("LEFT", 1000000, at(0.0, 0.0));
+  places.add("LEFT", 1100000, at(1.0, 0.4));
+  const CameraPlace place = places.at("LEFT", 1025000);
+  ASSERT_TRUE(place.T_world_camera.has_value());
+  EXPECT_TRUE(place.T_world_camera->isApprox(at(0.25, 0.1), 1e-9));
+  EXPECT_TRUE(places.at("LEFT", 1100000).T_world_camera.has_value());
+}
+
+TEST(CameraPlaces, WhatIsMissingLateOrFarApartIsNoPlaceAndSaysWhy) {
+  CameraPlaces places;
+  EXPECT_TRUE(places.at("LEFT", 1000000).may_come);
+  places.add("LEFT", 1000000, at(0.0));
+  places.add("LEFT", 1200000, at(0.1));
+  const CameraPlace late = places.at("LEFT", 1300000);
+  EXPECT_FALSE(late.T_world_camera.has_value());
+  EXPECT_TRUE(late.may_come);
+  EXPECT_EQ(late.reason, "the last transform of LEFT is 0.100 s older");
+  const CameraPlace before = places.at("LEFT", 500000);
+  EXPECT_FALSE(before.T_world_camera.has_value() || before.may_come);
+  EXPECT_NE(before.reason.find("0.500 s later: do the clocks agree?"), std::string::npos) << before.reason;
+  places.add("LEFT", 2200000, at(0.3));
+  EXPECT_EQ(places.at("LEFT", 1700000).reason,
+            "the transforms of LEFT about it are 1.000 s apart, expected at most 0.5 s");
+}
+
+TEST(CameraPlaces, ACameraThatStandsNeedsFewTransformsAFixedOneNone) {
+  CameraPlaces places;
+  places.add("LEFT", 1000000, at(0.2));
+  places.add("LEFT", 9000000, at(0.2));
+  EXPECT_TRUE(places.at("LEFT", 5000000).T_world_camera.has_value());
+  EXPECT_TRUE(places.at("LEFT", 9900000).T_world_camera.has_value());
+  places.fix("RIGHT", at(0.7));
+  EXPECT_TRUE(places.at("RIGHT", 1).T_world_camera->isApprox(at(0.7)));
+}
+
+TEST(CameraPlaces, OursAreReadWithTheirParents) {
+  const auto places = read_camera_places(written("ours.yaml",
+                                                 "cameras:\n"
+                                                 "  LEFT: {translation: [1.0, 0, 0.5], rotation: [1, 0, 0, 0]}\n"
+                                                 "  RIGHT:\n"
+                                                 "    parent: LEFT\n"
+                                                 "    translation: [0.0, 2, 0]\n"
+                                                 "    rotation: [0.7071, 0, 0, 0.7071]\n"));
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_TRUE(places.at("RIGHT").translation().isApprox(Eigen::Vector3d(1.0, 2.0, 0.5)));
+  EXPECT_TRUE((places.at("RIGHT") * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(1.0, 3.0, 0.5), 1e-6));
+}
+
+TEST(CameraPlaces, StaticTransformsAreReadAsRosPrintsThem) {
+  const auto places = read_camera_places(written("ros.yaml",
+                                                 "transforms:\n"
+                                                 "- header:\n"
+                                                 "    stamp:\n"
+                                                 "      sec: 1700000000\n"
+                                                 "      nanosec: 5\n"
+                                                 "    frame_id: map\n"
+                                                 "  child_frame_id: stand\n"
+                                                 "  transform:\n"
+                                                 "    translation:\n"
+                                                 "      x: 1.0\n"
+                                                 "      y: 0.0\n"
+                                                 "      z: 0.0\n"
+                                                 "    rotation:\n"
+                                                 "      x: 0.0\n"
+                                                 "      y: 0.0\n"
+                                                 "      z: 0.0\n"
+                                                 "      w: 1.0\n"
+                                                 "- header:\n"
+                                                 "    frame_id: stand\n"
+                                                 "  child_frame_id: LEFT\n"
+                                                 "  transform:\n"
+                                                 "    translation: {x: 0.0, y: 0.5, z: 0.0}\n"
+                                                 "    rotation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\n"
+                                                 "---\n"));
+  EXPECT_TRUE(places.at("LEFT").translation().isApprox(Eigen::Vector3d(1.0, 0.5, 0.0)));
+}
+
+TEST(CameraPlaces, BadFilesAreOneLine) {
+  EXPECT_NE(error_of([] { read_camera_places("/nowhere.yaml"); }).find("/nowhere.yaml: cannot be read"),
+            std::string::npos);
+  const auto loop = written("loop.yaml",
+                            "cameras:\n"
+                            "  A: {parent: B, translation: [0, 0, 0], rotation: [1, 0, 0, 0]}\n"
+                            "  B: {parent: A, translation: [0, 0, 0], rotation: [1, 0, 0, 0]}\n");
+  EXPECT_NE(error_of([&] { read_camera_places(loop); }).find("camera A: its parents go round in a loop"),
+            std::string::npos);
+  const auto bent = written("bent.yaml", "cameras:\n  A: {translation: [0, 0, 0], rotation: [1, 1, 0, 0]}\n");
+  EXPECT_NE(error_of([&] { read_camera_places(bent); }).find("camera A: quaternion of length 1.414, expected 1"),
+            std::string::npos);
+  const auto empty = written("empty.yaml", "other: 1\n");
+  EXPECT_NE(error_of([&] { read_camera_places(empty); }).find("neither 'cameras:' nor 'transforms:'"),
+            std::string::npos);
+}
+
+TEST(CameraPlaces, TheOptionIsParsed) {
+  const auto [name, T] = parse_camera_place("LEFT=1,2,3,1,0,0,0");
+  EXPECT_EQ(name, "LEFT");
+  EXPECT_TRUE(T.translation().isApprox(Eigen::Vector3d(1, 2, 3)));
+  EXPECT_NE(error_of([] { parse_camera_place("LEFT=1,2,3"); }).find("3 numbers, expected CHANNEL=x,y,z,qw,qx,qy,qz"),
+            std::string::npos);
+  EXPECT_NE(error_of([] { parse_camera_place("LEFT=1,2,3,a,0,0,0"); }).find("'a' is no number"), std::string::npos);
+  EXPECT_NE(error_of([] { parse_camera_place("1,2,3"); }).find("expected CHANNEL="), std::string::npos);
+}
+
+}  // namespace
+}  // namespace houghstream::tracks

@@ -1,0 +1,46 @@
+#include "pose/tracks/extrinsic_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/pose/tracks/tracked_scene.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+using test::on_table;
+using test::TrackedScene;
+
+ExtrinsicCheck after_frames(const Eigen::Vector3d& wrong_m) {
+  TrackedScene scene;
+  scene.noise_m = 0.003;
+  scene.show({{"can", on_table(-0.1, 0)}, {"can", on_table(0.05, 0.1)}, {"mug", on_table(0.2, 0)}});
+  ExtrinsicCheck check;
+  for (int i = 0; i < 30; ++i) {
+    scene.utime += test::kFrameUs;
+    scene.channel = "LEFT";
+    check.add(scene.poses(), scene.T_world_camera);
+    scene.channel = "RIGHT";
+    const ObjectPoses poses = scene.poses();
+    check.add(poses, Eigen::Translation3d(wrong_m) * scene.T_world_camera);
+  }
+  return check;
+}
+
+TEST(ExtrinsicCheck, CamerasThatAgreeAreNotReported) {
+  const ExtrinsicCheck check = after_frames(Eigen::Vector3d::Zero());
+  ASSERT_EQ(check.pairs().size(), 1U);
+  EXPECT_LT(check.pairs()[0].offset_m.norm(), 0.003);
+  EXPECT_TRUE(check.contradictions().empty());
+}
+
+TEST(ExtrinsicCheck, TwoCentimetresAreReportedWithTheirDirection) {
+  const ExtrinsicCheck check = after_frames({0.0, 0.02, 0.0});
+  ASSERT_EQ(check.contradictions().size(), 1U);
+  const Contradiction found = check.contradictions()[0];
+  EXPECT_EQ(found.first, "LEFT");
+  EXPECT_EQ(found.second, "RIGHT");
+  EXPECT_NEAR(found.offset_m.y(), 0.02, 0.003);
+}
+
+}  // namespace
+}  // namespace houghstream::tracks

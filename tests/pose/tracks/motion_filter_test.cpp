@@ -1,0 +1,64 @@
+#include "pose/tracks/motion_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/base/random.hpp"
+#include "pose/tracks/assignment.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+Eigen::Isometry3d pose(double x, double turn_rad) {
+  return Eigen::Translation3d(x, 0.2, 0.3) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d(1, 2, 3).normalized());
+}
+
+PoseMeasurement measured(std::int64_t utime, const Eigen::Isometry3d& T) {
+  return {utime, T, 1e-6 * Covariance6::Identity()};
+}
+
+TEST(MotionFilter, DifferenceAndMovedAreEachOthersInverse) {
+  const Eigen::Isometry3d from = pose(0.1, 0.5);
+  const Eigen::Isometry3d to = pose(-0.4, 2.9);
+  EXPECT_TRUE(moved(from, difference(to, from)).isApprox(to, 1e-12));
+  EXPECT_TRUE(interpolated(from, to, 0.0).isApprox(from, 1e-12));
+  EXPECT_TRUE(interpolated(from, to, 1.0).isApprox(to, 1e-12));
+  EXPECT_NEAR(difference(interpolated(from, to, 0.25), from).tail<3>().norm(), 0.25 * 2.4, 1e-9);
+}
+
+TEST(MotionFilter, WhatStandsComesToTheMeanAndKnowsItBetterAndBetter) {
+  Random random(3);
+  MotionFilter filter(measured(0, pose(0.003, 0.02)), {});
+  const double first = filter.covariance()(0, 0);
+  for (int i = 1; i <= 60; ++i) {
+    filter.predict(i * 33333);
+    filter.update(measured(i * 33333, pose(random.uniform(-0.003, 0.003), random.uniform(-0.02, 0.02))));
+  }
+  EXPECT_LT(difference(filter.T_world_object(), pose(0, 0)).head<3>().norm(), 0.001);
+  EXPECT_LT(filter.covariance()(0, 0), 0.1 * first);
+  EXPECT_EQ(filter.velocity().norm(), 0.0);
+}
+
+TEST(MotionFilter, WhatMovesGoesOnForAWhileAndThenStays) {
+  MotionFilter filter(measured(0, pose(0, 0)), {});
+  Vector6 velocity = Vector6::Zero();
+  velocity.x() = 0.6;
+  filter.start_moving(measured(0, pose(0, 0)), velocity);
+  filter.predict(100000);
+  EXPECT_NEAR(filter.T_world_object().translation().x(), 0.06, 1e-9);
+  filter.predict(2000000);
+  EXPECT_NEAR(filter.T_world_object().translation().x(), 0.6 * MotionSettings().coast_s, 1e-9);
+  EXPECT_GT(filter.covariance()(0, 0), 0.01);
+}
+
+TEST(Assignment, TheSumIsLeastAndWhatCostsTooMuchIsNotGiven) {
+  Eigen::MatrixXd costs(2, 3);
+  costs << 1.0, 0.9, 9.0,  //
+      5.0, 1.0, 9.0;
+  EXPECT_EQ(assign(costs, 4.0), (std::vector<int>{0, 1}));  // one by one, the first would take column 1
+  EXPECT_EQ(assign(costs, 0.95), (std::vector<int>{1, -1}));
+  EXPECT_EQ(assign(Eigen::MatrixXd(2, 0), 1.0), (std::vector<int>{-1, -1}));
+  EXPECT_TRUE(assign(Eigen::MatrixXd(0, 2), 1.0).empty());
+}
+
+}  // namespace
+}  // namespace houghstream::tracks

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pose/tracks/tracker.hpp"
+#include "tests/pose/test_scene.hpp"
+
+// A camera over a table on which cans stand, for the tests of tracks: depth is rendered, poses are the truth with
+// noise.
+
+namespace houghstream::tracks::test {
+
+inline const Camera kSmall{320, 240, 262.5, 262.5, 159.5, 119.5};
+constexpr std::int64_t kFrameUs = 33333;
+
+/// A block of 7 x 7 x 12 cm.
+inline Mesh block() {
+  Mesh mesh;
+  test_scene::add_box(mesh, {-0.035F, -0.035F, -0.06F}, {0.035F, 0.035F, 0.06F});
+  return mesh;
+}
+
+/// From above and in front; the table is z = 0.
+inline Eigen::Isometry3d camera_in_front(double x = 0.0) {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.translate(Eigen::Vector3d(x, -0.8, 0.6));
+  T_world_camera.rotate(Eigen::AngleAxisd(-M_PI / 2 - 0.6, Eigen::Vector3d::UnitX()));
+  return T_world_camera;
+}
+
+inline Eigen::Isometry3d on_table(double x, double y, double turn_rad = 0.0) {
+  return Eigen::Translation3d(x, y, 0.06) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ());
+}
+
+/// A world that is told to a tracker frame by frame.
+class TrackedScene {
+ public:
+  explicit TrackedScene(TrackerSettings settings = {})
+      : table_([] {
+          Mesh mesh;
+          test_scene::add_box(mesh, {-0.7F, -0.5F, -0.02F}, {0.7F, 0.7F, 0.0F});
+          return mesh;
+        }()),
+        block_(block()),
+        tracker(make_track_models({{"can", block()}, {"mug", block()}}, {}), settings) {}
+
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> standing;  ///< what depth shows
+  std::vector<std::pair<std::string, Eigen::Isometry3d>> posed;     ///< what poses tell
+  std::optional<Eigen::Isometry3d> obstacle;                        ///< a block between
+  Eigen::Isometry3d T_world_camera = camera_in_front();
+  std::string channel = "CAMERA";
+  double noise_m = 0.0;
+  double quality = 0.9;
+  std::int64_t utime = 1000000000;
+
+  /// What is there is also posed.
+  void show(const std::vector<std::pair<std::string, Eigen::Isometry3d>>& objects) { standing = posed = objects; }
+
+  WorldObjects frame() {
+    utime += kFrameUs;
+    return look();
+  }
+
+  WorldObjects frames(int count) {
+    WorldObjects last;
+    for (int i = 0; i < count; ++i) last = frame();
+    return last;
+  }
+
+  /// Without time passing: another camera.
+  WorldObjects look() {
+    std::optional<RgbdFrame> image;
+    const auto render = [&]() -> const RgbdFrame* {
+      image = depth();
+      return &*image;
+    };
+    return tracker.update({poses(), nullptr, T_world_camera, render}).value();
+  }
+
+  ObjectPoses poses() {
+    poses_ = {};
+    poses_.frame = {channel, utime};
+    for (const auto& [name, T_world_object] : posed) {
+      ObjectPose pose;
+      pose.class_id = name == "can" ? 1 : 2;
+      pose.class_name = name;
+      pose.status = PoseStatus::kValid;
+      pose.quality = static_cast<float>(quality);
+      pose.visible_fraction = 0.9F;
+      pose.T_camera_object = T_world_camera.inverse() * T_world_object;
+      pose.T_camera_object->pretranslate(
+          noise_m * Eigen::Vector3d(random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1)));
+      poses_.poses.push_back(pose);
+    }
+    return poses_;
+  }
+
+ private:
+  RgbdFrame depth() const {
+    std::vector<RenderItem> items = {{&table_, T_world_camera.inverse(), 1}};
+    for (const auto& [name, T_world_object] : standing)
+      items.push_back({&block_, T_world_camera.inverse() * T_world_object, 2});
+    if (obstacle) items.push_back({&block_, T_world_camera.inverse() * *obstacle, 3});
+    RgbdFrame frame;
+    frame.id = {channel, utime};
+    frame.camera = kSmall;
+    frame.depth = render_geometry(items, kSmall).depth;
+    frame.colour = cv::Mat(kSmall.height, kSmall.width, CV_8UC3, cv::Scalar::all(128));
+    return frame;
+  }
+
+  Mesh table_;
+  Mesh block_;
+  Random random_{7};
+  ObjectPoses poses_;
+
+ public:
+  Tracker tracker;
+};
+
+}  // namespace houghstream::tracks::test

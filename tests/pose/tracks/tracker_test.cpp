@@ -1,0 +1,228 @@
+#include "pose/tracks/tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/pose/tracks/tracked_scene.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+using test::camera_in_front;
+using test::on_table;
+using test::TrackedScene;
+
+/// Between the camera and the middle of the table.
+Eigen::Isometry3d before_the_middle() {
+  return Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.22, 0.22));
+}
+
+double distance(const TrackedObject& object, const Eigen::Isometry3d& T) {
+  return (object.T_world_object.translation() - T.translation()).norm();
+}
+
+TEST(Tracker, AnObjectIsPublishedAfterAFewFramesAFalseOneOfOneFrameNever) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  EXPECT_TRUE(scene.frame().objects.empty());
+  const WorldObjects world = scene.frames(9);
+  ASSERT_EQ(world.objects.size(), 1U);
+  EXPECT_EQ(world.objects[0].track_id, 1);
+  EXPECT_EQ(world.objects[0].class_name, "can");
+  EXPECT_EQ(world.objects[0].state, TrackState::kVisible);
+  EXPECT_GT(world.objects[0].probability, 0.9F);
+  EXPECT_EQ(world.objects[0].seen, 10);
+
+  TrackedScene other;
+  other.posed = {{"can", on_table(0.1, 0)}};
+  other.frame();
+  other.posed.clear();
+  EXPECT_TRUE(other.frames(60).objects.empty());
+}
+
+TEST(Tracker, WhatStandsIsAveraged) {
+  TrackedScene scene;
+  scene.noise_m = 0.004;
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(30);
+  double square_sum = 0.0;
+  for (int i = 0; i < 150; ++i) {
+    const WorldObjects world = scene.frame();
+    ASSERT_EQ(world.objects.size(), 1U);
+    EXPECT_FALSE(world.objects[0].moving);
+    square_sum += std::pow(distance(world.objects[0], on_table(0, 0)), 2);
+  }
+  EXPECT_LT(std::sqrt(square_sum / 150), 0.0008);  // each measurement: 0.004
+}
+
+TEST(Tracker, WhatIsSeenThroughIsGoneWithinASecondAndSaysWhy) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}, {"mug", on_table(0.2, 0)}});
+  ASSERT_EQ(scene.frames(60).objects.size(), 2U);
+  scene.show({{"mug", on_table(0.2, 0)}});
+  const WorldObjects world = scene.frames(29);
+  ASSERT_EQ(world.objects.size(), 2U);
+  EXPECT_EQ(world.objects[0].state, TrackState::kGone);
+  EXPECT_NE(world.objects[0].reason.find("sees through"), std::string::npos) << world.objects[0].reason;
+  EXPECT_EQ(world.objects[1].state, TrackState::kVisible);
+  EXPECT_EQ(scene.frames(90).objects.size(), 1U);  // gone is told for a while
+}
+
+TEST(Tracker, WhatIsHiddenIsKeptForAsLongAsItIsHidden) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(60);
+  scene.posed.clear();
+  scene.obstacle = before_the_middle();
+  const WorldObjects world = scene.frames(300);
+  ASSERT_EQ(world.objects.size(), 1U);
+  EXPECT_EQ(world.objects[0].state, TrackState::kHidden);
+  EXPECT_LT(distance(world.objects[0], on_table(0, 0)), 0.001);
+  scene.obstacle.reset();
+  scene.posed = scene.standing;
+  EXPECT_EQ(scene.frames(1).objects.at(0).track_id, 1);
+}
+
+TEST(Tracker, WhatIsOutOfViewIsKept) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(60);
+  scene.posed.clear();
+  scene.T_world_camera = camera_in_front(3.0);
+  const WorldObjects world = scene.frames(300);
+  ASSERT_EQ(world.objects.size(), 1U);
+  EXPECT_EQ(world.objects[0].state, TrackState::kOutOfView);
+  EXPECT_GT(world.objects[0].probability, 0.9F);
+}
+
+TEST(Tracker, WhatIsCarriedToAnotherPlaceKeepsItsNumber) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(-0.2, 0)}, {"mug", on_table(0.25, 0.1)}});
+  scene.frames(60);
+  scene.show({{"mug", on_table(0.25, 0.1)}});
+  scene.frames(60);
+  scene.show({{"can", on_table(0.1, -0.1)}, {"mug", on_table(0.25, 0.1)}});
+  const WorldObjects world = scene.frames(15);
+  ASSERT_EQ(world.objects.size(), 2U);
+  EXPECT_EQ(world.objects[0].class_name, "can");
+  EXPECT_EQ(world.objects[0].track_id, 1);
+  EXPECT_LT(distance(world.objects[0], on_table(0.1, -0.1)), 0.001);
+}
+
+TEST(Tracker, TwoEqualOnesSideBySideKeepTheirNumbersWhileOneIsPushedPastTheOther) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(-0.1, 0)}, {"can", on_table(0, 0)}});
+  const WorldObjects before = scene.frames(60);
+  ASSERT_EQ(before.objects.size(), 2U);
+  const std::int64_t left = distance(before.objects[0], on_table(-0.1, 0)) < 0.01 ? 1 : 2;
+  WorldObjects world;
+  for (int i = 0; i <= 60; ++i) {
+    const double along = -0.1 + 0.3 * i / 60.0;
+    scene.show({{"can", on_table(along, -0.09)}, {"can", on_table(0, 0)}});
+    world = scene.frame();
+  }
+  world = scene.frames(20);
+  ASSERT_EQ(world.objects.size(), 2U);
+  EXPECT_LT(distance(world.objects[static_cast<std::size_t>(left - 1)], on_table(0.2, -0.09)), 0.003);
+  EXPECT_LT(distance(world.objects[static_cast<std::size_t>(2 - left)], on_table(0, 0)), 0.003);
+}
+
+TEST(Tracker, WhatMovesIsFollowedWithItsVelocityAndStandsAgain) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(-0.3, 0)}});
+  scene.frames(60);
+  WorldObjects world;
+  for (int i = 1; i <= 45; ++i) {
+    scene.show({{"can", on_table(-0.3 + 0.01 * i, 0)}});
+    world = scene.frame();
+    if (i > 10) {
+      EXPECT_LT(distance(world.objects.at(0), on_table(-0.3 + 0.01 * i, 0)), 0.004) << i;
+    }
+  }
+  EXPECT_TRUE(world.objects.at(0).moving);
+  EXPECT_NEAR(world.objects.at(0).velocity.x(), 0.3, 0.03);
+  world = scene.frames(30);
+  EXPECT_FALSE(world.objects.at(0).moving);
+  EXPECT_EQ(world.objects.at(0).velocity.norm(), 0.0);
+  EXPECT_EQ(world.objects.at(0).track_id, 1);
+}
+
+TEST(Tracker, TwoTurnsOfAnObjectAreNeverAveraged) {
+  TrackedScene scene;
+  for (int i = 0; i < 120; ++i) {
+    scene.show({{"can", on_table(0, 0, i % 3 == 0 ? 2.0 : 0.0)}});
+    const WorldObjects world = scene.frame();
+    if (world.objects.empty()) continue;
+    const Eigen::AngleAxisd turn(world.objects[0].T_world_object.linear());
+    EXPECT_TRUE(turn.angle() < 0.01 || std::abs(turn.angle() - 2.0) < 0.01) << i << ": " << turn.angle();
+    if (i > 30) {
+      EXPECT_LT(turn.angle(), 0.01) << i;
+    }
+  }
+}
+
+TEST(Tracker, CamerasThatDisagreeByTwoCentimetresSeeOneObjectThatStands) {
+  TrackedScene scene;
+  WorldObjects world;
+  for (int i = 0; i < 90; ++i) {
+    scene.utime += test::kFrameUs;
+    scene.channel = "LEFT";
+    scene.show({{"can", on_table(0, 0)}});
+    scene.look();
+    scene.channel = "RIGHT";
+    scene.posed = {{"can", on_table(0.02, 0)}};
+    world = scene.look();
+    ASSERT_LE(world.objects.size(), 1U);
+    for (const TrackedObject& object : world.objects) EXPECT_FALSE(object.moving) << i;
+  }
+  ASSERT_EQ(world.objects.size(), 1U);
+}
+
+TEST(Tracker, ATimeThatGoesBackBeginsANewWorldALateFrameIsPassedOver) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  EXPECT_EQ(scene.frames(30).world_number, 1);
+  scene.utime -= 2 * test::kFrameUs;
+  EXPECT_FALSE(scene.tracker.update({scene.poses(), nullptr, scene.T_world_camera, nullptr}).has_value());
+  scene.utime -= 100000000;
+  const WorldObjects world = scene.frame();
+  EXPECT_EQ(world.world_number, 2);
+  EXPECT_TRUE(world.objects.empty());
+}
+
+TEST(Tracker, AClassThatAFrameWasToldOfIsNotToldAgain) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  for (int i = 0; i < 30; ++i) {
+    scene.frame();
+    scene.posed = {{"can", on_table(0.3, 0)}};  // the same frame once more, by somebody else
+    EXPECT_LE(scene.look().objects.size(), 1U);
+    scene.posed = scene.standing;
+  }
+}
+
+TEST(Tracker, MoreObjectsThanAllowedAreRefused) {
+  TrackerSettings settings;
+  settings.most_objects = 2;
+  TrackedScene scene(settings);
+  scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}, {"can", on_table(0.3, 0)}});
+  EXPECT_THROW(scene.frame(), std::runtime_error);
+}
+
+TEST(Tracker, TheSameFramesGiveTheSameObjectsBitForBit) {
+  std::vector<WorldObjects> runs;
+  for (int run = 0; run < 2; ++run) {
+    TrackedScene scene;
+    scene.noise_m = 0.004;
+    scene.show({{"can", on_table(0, 0)}, {"can", on_table(0.1, 0)}, {"mug", on_table(-0.2, 0.1)}});
+    runs.push_back(scene.frames(50));
+  }
+  ASSERT_EQ(runs[0].objects.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(runs[0].objects[i].track_id, runs[1].objects[i].track_id);
+    EXPECT_EQ(runs[0].objects[i].T_world_object.matrix(), runs[1].objects[i].T_world_object.matrix());
+    EXPECT_EQ(runs[0].objects[i].covariance, runs[1].objects[i].covariance);
+  }
+}
+
+}  // namespace
+}  // namespace houghstream::tracks

@@ -1,0 +1,48 @@
+"""Tests of what is measured of hs-pose --follow. Usage: PYTHONPATH=tools following_test.py"""
+
+import json
+import pathlib
+import tempfile
+import unittest
+
+from studies import following
+
+
+def observed(p50, p99, received, skipped):
+    return {
+        "latency_ms": {"total": {"p50": p50, "p95": p50, "p99": p99}, "detect": {}, "pose": {}},
+        "processes": {"hs-pose": {"received": received, "skipped": skipped, "lost": 0},
+                      "hs-detect": {"received": 600, "skipped": 550, "lost": 0}},
+    }  # fmt: skip
+
+
+class Figures(unittest.TestCase):
+    def folder(self, observe):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        folder = pathlib.Path(place.name)
+        usage = {"cpu_cores": 0.7, "cores": {"detect": 0.2, "pose": 0.5}, "rss_mb": {}}
+        (folder / "observe.json").write_text(json.dumps(observe))
+        (folder / "usage.json").write_text(json.dumps(usage))
+        return folder
+
+    def test_frames_are_those_of_hs_pose_not_those_that_the_detector_skips_by_its_budget(self):
+        found = following.figures(self.folder(observed(5.0, 9.0, 598, 3)), 600)
+        expected = {"p50_ms": 5.0, "p99_ms": 9.0, "lost": 2, "skipped": 0.005, "cores": 0.7, "cores_detect": 0.2, "cores_pose": 0.5}
+        self.assertEqual(found, expected)
+
+    def test_of_several_rounds_the_median_of_each_figure_counts(self):
+        rounds = [following.figures(self.folder(observed(p50, p99, 600, 0)), 600) for p50, p99 in ((5, 30), (4, 9), (6, 8))]
+        self.assertEqual(following.medians(rounds)["p50_ms"], 5)
+        self.assertEqual(following.medians(rounds)["p99_ms"], 9)
+
+    def test_a_log_is_made_once(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        log = pathlib.Path(place.name) / "following_30.lcmlog"
+        log.write_text("frames")
+        self.assertEqual(following.make_log(pathlib.Path("/nowhere"), "scene", 30, 60, log), log)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,72 @@
+#include "tools/view/drawing/world_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tools/view/drawing/overlay.hpp"
+
+namespace houghstream::view {
+namespace {
+
+WorldObjects one_can(double x, std::int64_t utime = 1000000) {
+  TrackedObject can;
+  can.track_id = 4;
+  can.class_id = 2;
+  can.class_name = "can";
+  can.state = TrackState::kVisible;
+  can.probability = 0.9F;
+  can.T_world_object = Eigen::Isometry3d(Eigen::Translation3d(x, 0, 1));
+  can.covariance = 1e-6 * Covariance6::Identity();
+  WorldObjects world;
+  world.frame = {"CAMERA", utime};
+  world.world = "WORLD";
+  world.objects = {can};
+  return world;
+}
+
+RgbdFrame black_frame(std::int64_t utime) {
+  RgbdFrame frame;
+  frame.id = {"CAMERA", utime};
+  frame.camera = {320, 240, 250, 250, 159.5, 119.5};
+  frame.colour = cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(0));
+  return frame;
+}
+
+int pixels_of(const cv::Mat& picture, const cv::Scalar& colour) {
+  cv::Mat found;
+  cv::inRange(picture, colour, colour, found);
+  return cv::countNonZero(found);
+}
+
+TEST(WorldView, AnObjectIsDrawnWhereItIsWithItsWayAndNotIntoAFrameOfAnotherTime) {
+  WorldState state;
+  for (int i = 0; i < 20; ++i) state.add(one_can(0.01 * i));
+  EXPECT_EQ(state.trails.at(4).size(), 20U);
+  cv::Mat picture = black_frame(1000000).colour;
+  draw_tracks(picture, state, black_frame(1000000));
+  EXPECT_GT(pixels_of(picture, class_colour(2)), 20);
+  EXPECT_GT(cv::norm(picture.at<cv::Vec3b>(119, 180)), 0.0);  // on the way
+  cv::Mat later = black_frame(9000000).colour;
+  draw_tracks(later, state, black_frame(9000000));
+  EXPECT_EQ(cv::norm(later), 0.0);
+}
+
+TEST(WorldView, AnotherWorldHasNoPast) {
+  WorldState state;
+  state.add(one_can(0.0));
+  WorldObjects next = one_can(0.5);
+  next.world_number = 2;
+  state.add(next);
+  EXPECT_EQ(state.trails.at(4).size(), 1U);
+}
+
+TEST(WorldView, FromAboveObjectsAndCamerasAreDrawn) {
+  WorldState state;
+  state.add(one_can(0.2));
+  const cv::Mat with = draw_world_from_above(state, {320, 240});
+  EXPECT_EQ(with.size(), cv::Size(320, 240));
+  EXPECT_GT(pixels_of(with, class_colour(2)), 50);
+  EXPECT_EQ(pixels_of(draw_world_from_above({}, {320, 240}), class_colour(2)), 0);
+}
+
+}  // namespace
+}  // namespace houghstream::view

@@ -1,0 +1,89 @@
+"""How fast hs-pose --follow is: frame to pose at several rates, what is lost, and what it costs. tools/bench tracks asks
+measure(); by itself:
+
+    cd tools && python3 -m studies.following --scene SCENE --forest FOREST --models MODELS --out OUT
+
+SCENE is a folder in BOP format whose frames follow one another closely (hs-render scene NAME --frames 300)."""
+
+import argparse
+import json
+import pathlib
+import statistics
+
+from studies.command import call, step
+from studies.measured import about, read_json, write_json
+from studies.stream import Stream, enter_private_network
+
+RATES = (30, 60, 90)  # Hz
+LOOKS = 5  # of the detector, a second
+SECONDS, ROUNDS = 60, 3
+
+
+def figures(folder, frames):
+    """Of one replay: milliseconds from a frame's publication to its first poses, frames that never reached hs-pose, those that
+    it passed over, and processor cores that detector and poses took together."""
+    observed, usage = read_json(folder / "observe.json"), read_json(folder / "usage.json")
+    pose = observed["processes"]["hs-pose"]
+    return {
+        "p50_ms": observed["latency_ms"]["total"]["p50"],
+        "p99_ms": observed["latency_ms"]["total"]["p99"],
+        "lost": frames - pose["received"],
+        "skipped": round(pose["skipped"] / frames, 5),
+        "cores": usage["cpu_cores"],
+        "cores_detect": usage["cores"]["detect"],
+        "cores_pose": usage["cores"]["pose"],
+    }
+
+
+def medians(runs):
+    return {key: statistics.median(run[key] for run in runs) for key in runs[0]}
+
+
+def make_log(programs, scene, rate, seconds, log):
+    """The scene's frames over and over, with the times of a camera of that rate; made once."""
+    if not log.exists():
+        part = log.with_suffix(".part")
+        call(programs / "hs-capture", "--source", f"bop:{scene}", "--rate", rate, "--loop", "--frames", rate * seconds, "--log",
+             part, into=log.with_suffix(".txt"))  # fmt: skip
+        part.rename(log)
+    return log
+
+
+def measure(programs, data, out, rates=RATES, seconds=SECONDS, rounds=ROUNDS):
+    """`data`: {"scene", "forest", "models"}. Interleaved: each round plays each rate once, so that what else the machine does
+    falls on all. Returns {"hz30": medians over the rounds, ...}, each with "looks_per_second" and "runs"."""
+    programs, out = pathlib.Path(programs), pathlib.Path(out)
+    out.mkdir(parents=True, exist_ok=True)
+    logs = {rate: make_log(programs, data["scene"], rate, seconds, out / f"following_{rate}.lcmlog") for rate in rates}
+    runs = {rate: [] for rate in rates}
+    for number in range(rounds):
+        for rate in rates:
+            step(f"following: {seconds} s at {rate} Hz, round {number + 1} of {rounds}")
+            folder = out / f"following_{rate}_{number}"
+            stream = Stream(programs, data["forest"], data["models"], rate * seconds, folder, watch=True, detect_threads=1,
+                            detect=("--looks-per-second", LOOKS), pose=("--follow",))  # fmt: skip
+            stream.play("lcm-logplayer", logs[rate])
+            runs[rate].append(figures(folder, rate * seconds))
+    return {f"hz{rate}": {**medians(runs[rate]), "looks_per_second": LOOKS, "runs": runs[rate]} for rate in rates}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
+    for name in ("scene", "forest", "models", "out"):
+        parser.add_argument(f"--{name}", required=True, type=lambda text: pathlib.Path(text).resolve())
+    parser.add_argument("--programs", default="../build/bin", type=lambda text: pathlib.Path(text).resolve())
+    parser.add_argument("--rates", default=",".join(map(str, RATES)), help="Hz, between commas")
+    parser.add_argument("--seconds", type=int, default=SECONDS)
+    parser.add_argument("--rounds", type=int, default=ROUNDS)
+    options = parser.parse_args()
+    enter_private_network()
+    data = {name: getattr(options, name) for name in ("scene", "forest", "models")}
+    rates = [int(rate) for rate in options.rates.split(",")]
+    measured = measure(options.programs, data, options.out, rates, options.seconds, options.rounds)
+    write_json(options.out / "following.json", {**measured, **about("studies.following")})
+    print(json.dumps({name: {key: value for key, value in rate.items() if key != "runs"} for name, rate in measured.items()},
+                     indent=2))  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

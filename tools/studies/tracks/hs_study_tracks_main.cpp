@@ -1,0 +1,118 @@
+#include "drivers/datasets/bop_dataset.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
+#include "pose/tracks/camera_places.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/studies/tracks/sequence_log.hpp"
+#include "tools/studies/tracks/track_metrics.hpp"
+#include "tools/track/track_models.hpp"
+
+// hs-study-tracks: what tools/bench tracks does with rendered sequences.
+
+using namespace houghstream;
+using namespace houghstream::studies;
+
+namespace {
+
+struct Arguments {
+  std::string sequence;
+  std::string out;
+  std::vector<std::string> wrong;  ///< CHANNEL=x,y,z
+  std::string frames;
+  std::vector<std::string> results;
+  std::string log;
+  std::string models;
+  bool single_frames = false;
+};
+
+std::map<std::string, Eigen::Vector3d> wrong_places(const std::vector<std::string>& texts) {
+  std::map<std::string, Eigen::Vector3d> out;
+  for (const std::string& text : texts) {
+    const auto [channel, T] = tracks::parse_camera_place(text + ",1,0,0,0");
+    out[channel] = T.translation();
+  }
+  return out;
+}
+
+/// The objects that are said to be there: not those that are gone.
+std::vector<PublishedObject> objects_of(const LogEvent& event) {
+  std::vector<PublishedObject> out;
+  const WorldObjects world = world_from_message(decode_message<objects_t>({event.data.data(), event.data.size()}));
+  for (const TrackedObject& object : world.objects) {
+    if (object.state != TrackState::kGone) out.push_back({object.track_id, object.class_name, object.T_world_object});
+  }
+  return out;
+}
+
+std::vector<PublishedObject> poses_of(const LogEvent& event, const SequenceFile& sequence, std::size_t index) {
+  std::vector<PublishedObject> out;
+  const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>({event.data.data(), event.data.size()}));
+  for (const SequenceCamera& camera : sequence.cameras) {
+    if (camera.channel != poses.frame.channel) continue;
+    for (const ObjectPose& pose : poses.poses) {
+      if (pose.T_camera_object)
+        out.push_back({0, pose.class_name, camera.T_world_camera[index] * *pose.T_camera_object});
+    }
+  }
+  return out;
+}
+
+std::vector<PublishedFrame> published_in(const Arguments& arguments, const SequenceFile& sequence) {
+  std::vector<PublishedFrame> out;
+  LogReader reader(arguments.log);
+  const std::string wanted = arguments.single_frames ? channel::kPoses : channel::kObjects;
+  while (const std::optional<LogEvent> event = reader.next()) {
+    if (event->channel != wanted) continue;
+    const FrameId frame = read_result_frame({event->data.data(), event->data.size()}, event->channel);
+    const std::optional<std::size_t> index = sequence.index_of(frame.utime);
+    require(index.has_value(), "{}: a result of frame {}, which is none of sequence {}", arguments.log,
+            to_string(frame), sequence.name);
+    out.push_back({*index, arguments.single_frames ? poses_of(*event, sequence, *index) : objects_of(*event)});
+  }
+  require(!out.empty(), "{}: nothing on {}, expected results", arguments.log, wanted);
+  return out;
+}
+
+void compare(const Arguments& arguments) {
+  const SequenceFile sequence = read_sequence(arguments.sequence);
+  std::map<std::string, Symmetries> symmetries;
+  for (const auto& [name, model] : track::load_track_models(arguments.models, 1e-3))
+    symmetries[name] = model.symmetries;
+  OrderedJson json = track_metrics(sequence, published_in(arguments, sequence), symmetries, {});
+  json["name"] = sequence.name;
+  write_json(json, arguments.out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CommandLine app("Logs of rendered sequences, and objects over time beside their truth", "hs-study-tracks");
+  app.require_subcommand();
+  CommandLine log = app.add_subcommand("log", "a sequence as a log of frames and places of cameras");
+  log.add_option("sequence", arguments.sequence, "folder of hs-render sequences").required();
+  log.add_option("out", arguments.out, "log to write").required();
+  log.add_option("--wrong", arguments.wrong, "CHANNEL=x,y,z: metres by which a camera is said to be elsewhere");
+  CommandLine join = app.add_subcommand("join", "results of logs behind the frames of another");
+  join.add_option("frames", arguments.frames, "log of frames").required();
+  join.add_option("results", arguments.results, "logs of detections and poses").required();
+  join.add_option("--out", arguments.out, "log to write").required();
+  CommandLine comparison = app.add_subcommand("compare", "what a log holds of a sequence, beside the truth, as JSON");
+  comparison.add_option("sequence", arguments.sequence, "folder of hs-render sequences").required();
+  comparison.add_option("log", arguments.log, "with objects_t").required();
+  comparison.add_option("--models", arguments.models, "folder of the objects' models").required();
+  comparison.add_option("--out", arguments.out, "JSON file to write").required();
+  comparison.add_flag("--single-frames", arguments.single_frames, "judge the poses of each frame by itself");
+  return run_tool(app, argc, argv, [&] {
+    if (log.given()) {
+      write_sequence_log(read_sequence(arguments.sequence), arguments.out, wrong_places(arguments.wrong));
+    } else if (join.given()) {
+      join_logs(arguments.frames, {arguments.results.begin(), arguments.results.end()}, arguments.out);
+    } else {
+      compare(arguments);
+    }
+  });
+}

@@ -1,0 +1,132 @@
+"""What tools/bench tracks writes: OUT/tracks.json and OUT/tracks.html."""
+
+import pathlib
+import subprocess
+
+from studies.command import step
+from studies.following import RATES, measure
+from studies.measured import about, read_json, write_json
+from studies.report.page import render, show
+from studies.tracks.plan import CAMERAS, WRONG, Plan
+
+# Stoiber, Sundermeyer and Triebel 2022, "Iterative Corresponding Geometry: Fusing Region and Depth for Highly Efficient 3D
+# Tracking of Textureless Objects": as its readme states it, without naming the machine.
+ICG = {"ms_per_object": 1.3, "machine": "one CPU core", "source": "readme of ICG, Stoiber et al. 2022"}
+MOVED = ("pushed", "carried", "removed", "swapped", "cans")
+
+
+def pooled(figures):
+    """Of several sequences: counts are added up, shares follow the counts."""
+    required = sum(one["required"] for one in figures)
+    found = sum(one["recall"] * one["required"] for one in figures)
+    wrong = sum(sum(one["wrong"].values()) for one in figures)
+    return {
+        "sequences": [one["name"] for one in figures],
+        "recall": found / required,
+        "precision": found / (found + wrong),
+        "id_switches": sum(one["id_switches"] for one in figures),
+        "hota": sum(one["hota"] * one["required"] for one in figures) / required,
+        "moving_mm_p95": max((one["error"]["moving"]["mm_p95"] or 0.0 for one in figures), default=None),
+    }
+
+
+def longest(lists):
+    """None where something was never found, or never gone."""
+    values = [value for one in lists for value in one]
+    return None if not values or None in values else max(values)
+
+
+def check_extrinsics(options, plan, store):
+    """What hs-track --check says of right places, and of one that is wrong."""
+    out = {}
+    for name, log in (("right", "found/cameras.lcmlog"), ("wrong", "wrong_found.lcmlog")):
+        words = [options.programs / "hs-track", "--check", "-l", f"file://{store.path(log)}", "-c", "|".join(CAMERAS), "--models",
+                 plan.path(store, plan.models)]  # fmt: skip
+        done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+        out[name] = {"status": done.returncode, "said": (done.stdout + done.stderr.splitlines()[-1]).splitlines()}
+    out["wrong"]["metres"] = float(WRONG)
+    out["reported"] = out["wrong"]["status"] != 0 and out["right"]["status"] == 0
+    return out
+
+
+def cameras(options, plan, store, tracked):
+    alone = {camera: read_json(store.path(f"tracked/{camera}.json")) for camera in CAMERAS}
+    errors = {camera: one["error"]["standing"]["mm_median"] for camera, one in alone.items()}
+    together = tracked["cameras"]
+    return {
+        "recall": together["recall"],
+        "precision": together["precision"],
+        "id_switches": together["id_switches"],
+        "hota": together["hota"],
+        "mm_median": together["error"]["standing"]["mm_median"],
+        "mm_median_alone": errors,
+        "no_worse_than_best": together["error"]["standing"]["mm_median"] <= min(errors.values()),
+        "extrinsics": check_extrinsics(options, plan, store),
+    }
+
+
+def tracks_are_equal(store, names):
+    """Replayed twice, the same tracks, but for the times of stages: compared by all their figures."""
+    return all(read_json(store.path(f"tracked/{name}.json")) == read_json(store.path(f"again/{name}.json")) for name in names)
+
+
+def summarise(options, plan, store):
+    names = options.sequences
+    tracked = {name: read_json(store.path(f"tracked/{name}.json")) for name in names}
+    single = {name: read_json(store.path(f"single/{name}.json")) for name in names}
+    summary = {"sequences": tracked, "single_frames": {name: pooled([one]) for name, one in single.items()}}
+    if "walk" in names:
+        walk = tracked["walk"]
+        summary["walk"] = {key: walk[key] for key in ("recall", "precision", "id_switches", "hota", "frames")}
+        summary["walk"]["single_frames"] = {key: single["walk"][key] for key in ("recall", "precision")}
+    moved = [tracked[name] for name in MOVED if name in names]
+    if moved:
+        summary["moved"] = pooled(moved)
+    still = [tracked[name]["jitter"] for name in names if name not in ("walk", "jerk")] or [one["jitter"] for one in tracked.values()]
+    known = [one for one in still if one["mm"] is not None]
+    if known:
+        summary["jitter"] = {"mm": max(one["mm"] for one in known), "deg": max(one["deg"] for one in known),
+                             "mm_worst": max(one["mm_worst"] for one in known),
+                             "deg_worst": max(one["deg_worst"] for one in known)}  # fmt: skip
+    summary["seconds_to_find"] = longest(one["seconds_to_find"] for one in tracked.values())
+    summary["seconds_to_gone"] = longest(one["seconds_to_gone"] for one in tracked.values())
+    summary["hidden_kept"] = {name: one["hidden_kept"] for name, one in tracked.items() if one["hidden_frames"]}
+    summary["replayed_equal"] = tracks_are_equal(store, names)
+    if "cameras" in names:
+        summary["cameras"] = cameras(options, plan, store, tracked)
+    return summary
+
+
+def rates(options, plan, store):
+    scene = store.path("rendered/walk") / "walk" / "000001"
+    data = {"scene": scene, "forest": plan.path(store, plan.forest), "models": plan.path(store, plan.models)}
+    return measure(options.programs, data, options.out / "tracks_rates", RATES, options.seconds, 1)
+
+
+def write_page(options, summary):
+    header = ("sequence", "recall", "precision", "switches", "HOTA", "single frames: recall", "precision", "error, mm",
+              "moving, mm (95 %)", "jitter, mm", "deg", "found after, s", "gone after, s", "hidden, kept")  # fmt: skip
+    rows = []
+    for name, one in summary["sequences"].items():
+        alone = summary["single_frames"][name]
+        rows.append((name, show(one["recall"]), show(one["precision"]), one["id_switches"], show(one["hota"]),
+                     show(alone["recall"]), show(alone["precision"]), show(one["error"]["standing"]["mm_median"], "{:.2f}"),
+                     show(one["error"]["moving"]["mm_p95"], "{:.1f}"), show(one["jitter"]["mm"], "{:.2f}"),
+                     show(one["jitter"]["deg"], "{:.2f}"), show(longest([one["seconds_to_find"]]), "{:.2f}"),
+                     show(longest([one["seconds_to_gone"]]), "{:.2f}"), show(one["hidden_kept"], "{:.2f}")))  # fmt: skip
+    speeds = [(f"{rate} Hz", *(show(summary[f"hz{rate}"][key], "{:.2f}") for key in ("p50_ms", "p99_ms", "lost", "skipped", "cores")))
+              for rate in RATES if f"hz{rate}" in summary]  # fmt: skip
+    template = pathlib.Path(__file__).parent.name + "/page.html"
+    (options.out / "tracks.html").write_text(render(template, summary=summary, header=header, rows=rows, speeds=speeds, icg=ICG))
+
+
+def run(options):
+    plan = Plan(options)
+    store = plan.make()
+    step("comparing")
+    summary = {**about("tools/bench tracks"), **summarise(options, plan, store), "icg": ICG}
+    if options.stream and "walk" in options.sequences:
+        summary.update(rates(options, plan, store))
+    write_json(options.out / "tracks.json", summary)
+    write_page(options, summary)
+    step(f"{options.out / 'tracks.json'}, {options.out / 'tracks.html'}")

@@ -1,0 +1,278 @@
+#include "tools/studies/tracks/track_metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "pose/model/symmetry.hpp"
+#include "pose/tracks/assignment.hpp"
+#include "pose/tracks/motion_filter.hpp"
+
+namespace houghstream::studies {
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+
+using Numbers = std::vector<double>;
+
+double at_share(Numbers values, double share) {
+  if (values.empty()) return std::nan("");
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+}
+
+/// For each true object the published one that it is given, or -1.
+std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects,
+                         double reach_m) {
+  constexpr double kFar = 1e3;
+  Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(truth.size(), objects.size(), kFar);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    for (std::size_t j = 0; j < objects.size(); ++j) {
+      if (!truth[i].T_world_object || truth[i].class_name != objects[j].class_name) continue;
+      costs(i, j) = (truth[i].T_world_object->translation() - objects[j].T_world_object.translation()).norm();
+    }
+  }
+  return tracks::assign(costs, reach_m);
+}
+
+/// Counts of one threshold of HOTA.
+class HotaCount {
+ public:
+  explicit HotaCount(double alpha) : alpha_(alpha) {}
+
+  void add(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects, double least_visible) {
+    constexpr double kZeroAt = 0.1;  // metres at which two places are not alike at all
+    const std::vector<int> given = matches(truth, objects, kZeroAt * (1.0 - alpha_) + 1e-12);
+    std::vector<bool> used(objects.size(), false);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const bool required = truth[i].T_world_object && truth[i].visible >= least_visible;
+      if (given[i] >= 0) used[given[i]] = true;
+      if (!required) continue;
+      ++of_truth_[truth[i].instance];
+      if (given[i] < 0) continue;
+      const std::int64_t id = objects[given[i]].track_id;
+      ++of_both_[{truth[i].instance, id}];
+      ++of_track_[id];
+      ++true_positives_;
+    }
+    for (std::size_t j = 0; j < objects.size(); ++j) {
+      // What is where an object is that need not be seen is not counted at all.
+      if (used[j]) continue;
+      ++of_track_[objects[j].track_id];
+      ++false_positives_;
+    }
+  }
+
+  double value() const {
+    double required = 0.0;
+    for (const auto& [instance, count] : of_truth_) required += count;
+    if (true_positives_ == 0) return 0.0;
+    double association = 0.0;
+    for (const auto& [pair, count] : of_both_)
+      association += count * count / (of_truth_.at(pair.first) + of_track_.at(pair.second) - count);
+    association /= true_positives_;
+    const double detection = true_positives_ / (required + false_positives_);
+    return std::sqrt(detection * association);
+  }
+
+ private:
+  double alpha_;
+  std::map<int, double> of_truth_;
+  std::map<std::int64_t, double> of_track_;
+  std::map<std::pair<int, std::int64_t>, double> of_both_;
+  double true_positives_ = 0.0;
+  double false_positives_ = 0.0;
+};
+
+double hota(const SequenceFile& sequence, const std::vector<PublishedFrame>& published, double least_visible) {
+  constexpr int kThresholds = 19;
+  double sum = 0.0;
+  for (int i = 1; i <= kThresholds; ++i) {
+    HotaCount count(0.05 * i);
+    for (const PublishedFrame& frame : published) count.add(sequence.frames[frame.index], frame.objects, least_visible);
+    sum += count.value();
+  }
+  return sum / kThresholds;
+}
+
+/// Errors of poses in millimetres and degrees.
+struct Errors {
+  Numbers mm;
+  Numbers deg;
+
+  OrderedJson json() const {
+    return {{"frames", mm.size()},
+            {"mm_median", finite_or_null(at_share(mm, 0.5))},
+            {"mm_p95", finite_or_null(at_share(mm, 0.95))},
+            {"deg_median", finite_or_null(at_share(deg, 0.5))},
+            {"deg_p95", finite_or_null(at_share(deg, 0.95))}};
+  }
+};
+
+/// What became of one true object.
+struct Life {
+  std::int64_t last_id = 0;          // that it was given last; 0: none yet
+  std::optional<std::size_t> since;  // frame in which it was seen first, or anew, and not yet found
+  bool there = false;
+  std::optional<std::size_t> taken;  // frame from which on it is away, and its number still published
+  std::vector<Vector6> window;       // differences from the true pose while it stands
+  std::optional<Eigen::Isometry3d> T_before;
+};
+
+class Comparison {
+ public:
+  Comparison(const SequenceFile& sequence, const std::map<std::string, Symmetries>& symmetries,
+             const TrackMetricsSettings& settings)
+      : sequence_(sequence), symmetries_(symmetries), settings_(settings) {}
+
+  void add(const PublishedFrame& frame) {
+    const std::vector<TrueInstance>& truth = sequence_.frames[frame.index];
+    const std::vector<int> given = matches(truth, frame.objects, settings_.reach_m);
+    std::vector<bool> used(frame.objects.size(), false);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      if (given[i] >= 0) used[given[i]] = true;
+      add_instance(truth[i], given[i] >= 0 ? &frame.objects[given[i]] : nullptr, frame);
+    }
+    for (std::size_t j = 0; j < used.size(); ++j) {
+      if (!used[j]) {
+        ++false_;
+        ++wrong_[frame.objects[j].class_name];
+      }
+    }
+    ++frames_;
+  }
+
+  OrderedJson json(double hota_value) {
+    for (auto& [instance, life] : lives_) {
+      if (life.since) to_find_.push_back(nullptr);
+      if (life.taken) to_gone_.push_back(nullptr);
+    }
+    return {{"frames", frames_},
+            {"required", required_},
+            {"recall", finite_or_null(static_cast<double>(found_) / required_)},
+            {"precision", finite_or_null(static_cast<double>(found_ + kept_) / (found_ + kept_ + false_))},
+            {"id_switches", switches_},
+            {"hota", hota_value},
+            {"error", {{"standing", standing_.json()}, {"moving", moving_.json()}}},
+            {"jitter",
+             {{"windows", jitter_.mm.size()},
+              {"mm", finite_or_null(at_share(jitter_.mm, 0.5))},
+              {"deg", finite_or_null(at_share(jitter_.deg, 0.5))},
+              {"mm_worst", finite_or_null(at_share(jitter_.mm, 1.0))},
+              {"deg_worst", finite_or_null(at_share(jitter_.deg, 1.0))}}},
+            {"seconds_to_find", to_find_},
+            {"seconds_to_gone", to_gone_},
+            {"hidden_kept", hidden_ == 0 ? OrderedJson() : OrderedJson(static_cast<double>(kept_hidden_) / hidden_)},
+            {"hidden_frames", hidden_},
+            {"wrong", wrong_}};
+  }
+
+ private:
+  double seconds(std::size_t from, std::size_t to) const {
+    return static_cast<double>(sequence_.utimes[to] - sequence_.utimes[from]) * 1e-6;
+  }
+
+  void add_instance(const TrueInstance& truth, const PublishedObject* object, const PublishedFrame& frame) {
+    constexpr double kSeen = 0.5;
+    Life& life = lives_[truth.instance];
+    const bool required = truth.T_world_object && truth.visible >= settings_.least_visible;
+    required_ += required ? 1 : 0;
+    found_ += required && object != nullptr ? 1 : 0;
+    kept_ += !required && object != nullptr ? 1 : 0;
+    follow_presence(truth, frame, life);
+    if (!life.there && truth.T_world_object && truth.visible >= kSeen) {
+      life.there = true;
+      life.since = frame.index;
+    }
+    if (object != nullptr && life.since) {
+      to_find_.push_back(seconds(*life.since, frame.index));
+      life.since.reset();
+    }
+    const bool stands = truth.T_world_object && life.T_before &&
+                        tracks::difference(*truth.T_world_object, *life.T_before).norm() < 1e-9;
+    if (stands && !required && life.last_id != 0) {
+      ++hidden_;
+      kept_hidden_ += object != nullptr ? 1 : 0;
+    }
+    if (object != nullptr) {
+      if (life.last_id != 0 && object->track_id != life.last_id) ++switches_;
+      life.last_id = object->track_id;
+      if (required) add_error(truth, *object, stands, life);
+    }
+    if (!stands || object == nullptr) close_window(life);
+    life.T_before = truth.T_world_object;
+  }
+
+  void follow_presence(const TrueInstance& truth, const PublishedFrame& frame, Life& life) {
+    if (life.there && !truth.T_world_object) {
+      life.there = false;
+      if (life.last_id != 0) life.taken = frame.index;
+    }
+    if (!life.taken) return;
+    const bool told = std::any_of(frame.objects.begin(), frame.objects.end(),
+                                  [&](const PublishedObject& object) { return object.track_id == life.last_id; });
+    if (told && !truth.T_world_object) return;
+    to_gone_.push_back(seconds(*life.taken, frame.index));
+    life.taken.reset();
+  }
+
+  void add_error(const TrueInstance& truth, const PublishedObject& object, bool stands, Life& life) {
+    const auto known = symmetries_.find(truth.class_name);
+    const Symmetries none;
+    const Eigen::Isometry3d T = nearest_equivalent(object.T_world_object, *truth.T_world_object,
+                                                   known == symmetries_.end() ? none : known->second);
+    const Vector6 error = tracks::difference(T, *truth.T_world_object);
+    Errors& errors = stands ? standing_ : moving_;
+    errors.mm.push_back(1e3 * error.head<3>().norm());
+    errors.deg.push_back(kDegrees * error.tail<3>().norm());
+    if (!stands) return;
+    life.window.push_back(error);
+    if (static_cast<double>(life.window.size()) >= 5.0 * sequence_.fps * static_cast<double>(sequence_.cameras.size()))
+      close_window(life);
+  }
+
+  void close_window(Life& life) {
+    const double full = 5.0 * sequence_.fps * static_cast<double>(sequence_.cameras.size());
+    if (static_cast<double>(life.window.size()) >= full) {
+      Vector6 mean = Vector6::Zero();
+      for (const Vector6& error : life.window) mean += error / static_cast<double>(life.window.size());
+      double mm = 0.0;
+      double deg = 0.0;
+      for (const Vector6& error : life.window) {
+        mm += (error - mean).head<3>().squaredNorm() / static_cast<double>(life.window.size());
+        deg += (error - mean).tail<3>().squaredNorm() / static_cast<double>(life.window.size());
+      }
+      jitter_.mm.push_back(1e3 * std::sqrt(mm));
+      jitter_.deg.push_back(kDegrees * std::sqrt(deg));
+    }
+    life.window.clear();
+  }
+
+  const SequenceFile& sequence_;
+  const std::map<std::string, Symmetries>& symmetries_;
+  const TrackMetricsSettings& settings_;
+  std::map<int, Life> lives_;
+  int frames_ = 0;
+  int required_ = 0;
+  int found_ = 0;
+  int kept_ = 0;
+  int false_ = 0;
+  int switches_ = 0;
+  int hidden_ = 0;
+  int kept_hidden_ = 0;
+  Errors standing_, moving_, jitter_;
+  OrderedJson to_find_ = OrderedJson::array();
+  OrderedJson to_gone_ = OrderedJson::array();
+  std::map<std::string, int> wrong_;
+};
+
+}  // namespace
+
+OrderedJson track_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
+                          const std::map<std::string, Symmetries>& symmetries, const TrackMetricsSettings& settings) {
+  Comparison comparison(sequence, symmetries, settings);
+  for (const PublishedFrame& frame : published) comparison.add(frame);
+  return comparison.json(hota(sequence, published, settings.least_visible));
+}
+
+}  // namespace houghstream::studies

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/files/json_file.hpp"
+#include "pipeline/geometry/symmetry.hpp"
+#include "tools/studies/tracks/sequence_file.hpp"
+
+namespace houghstream::studies {
+
+/// An object as it was published: in a frame, or after it.
+struct PublishedObject {
+  std::int64_t track_id = 0;  ///< 0 where objects have none: poses of single frames
+  std::string class_name;
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+};
+
+/// What was published of a frame of the sequence.
+struct PublishedFrame {
+  std::size_t index = 0;  ///< in the sequence
+  std::vector<PublishedObject> objects;
+};
+
+struct TrackMetricsSettings {
+  double reach_m = 0.05;       ///< a published object is a true one of its class that is nearer
+  double least_visible = 0.1;  ///< true objects of which less is seen are neither required nor wrong
+};
+
+/// Publications beside the truth, frame by frame; each true object is given at most one published one of its class, so
+/// that the sum of distances is least:
+///
+///   "frames", "required", "recall", "precision"
+///   "id_switches"      how often a true object's number changed (CLEAR MOT, Bernardin and Stiefelhagen 2008)
+///   "hota"             with similarity 1 - distance / 0.1 m, mean over thresholds 0.05 to 0.95 (Luiten et al. 2021)
+///   "error"            of matched objects that stand, and that move: medians and 95 % points, mm and degrees
+///   "jitter"           of those that stand: RMS from the mean over each 5 s, median and worst of these; mm and degrees
+///   "seconds_to_find"  from when half of an object was seen first, or came back, to when it is published; each
+///   "seconds_to_gone"  from when one has been taken away to when its number is not published any more; each
+///   "hidden_kept"      share of the frames in which a true object that was found stands where no camera sees it, and
+///                      in which it is published
+///   "wrong"            classes of what was published and is not so, with how often
+///
+/// Rotations are compared but for the symmetries of the class.
+OrderedJson track_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
+                          const std::map<std::string, Symmetries>& symmetries, const TrackMetricsSettings& settings);
+
+}  // namespace houghstream::studies

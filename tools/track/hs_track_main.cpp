@@ -1,0 +1,111 @@
+#include "drivers/store/store_watch.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "pose/tracks/camera_places.hpp"
+#include "tools/common/tool_main.hpp"
+#include "tools/track/track_models.hpp"
+#include "tools/track/track_process.hpp"
+
+namespace {
+
+using namespace houghstream;
+
+/// What a command line asks for.
+struct TrackOptions {
+  std::string objects;
+  std::string models;
+  double model_unit_m = 1e-3;
+  std::string url;
+  std::string output_log;
+  std::string cameras_file;
+  std::vector<std::string> camera_poses;
+  track::TrackProcessOptions process;
+};
+
+/// Says what the cameras say of one another. Throws InputError where they contradict each other.
+void report(const tracks::ExtrinsicCheck& check) {
+  const std::vector<tracks::Contradiction> pairs = check.pairs();
+  require(!pairs.empty(), "no two cameras have seen the same objects at the same time often enough to compare them");
+  for (const tracks::Contradiction& pair : pairs) {
+    const Eigen::Vector3d mm = 1000.0 * pair.offset_m;
+    fmt::print("{} and {}: objects {:.1f} mm apart ({:+.1f}, {:+.1f}, {:+.1f} along the world's axes), {} compared\n",
+               pair.first, pair.second, mm.norm(), mm.x(), mm.y(), mm.z(), pair.samples);
+  }
+  const std::vector<tracks::Contradiction> wrong = check.contradictions();
+  if (wrong.empty()) return;
+  fail("{} and {} see the same objects {:.1f} cm apart, expected at most {:.1f} cm: one of their places is wrong",
+       wrong.front().first, wrong.front().second, 100.0 * wrong.front().offset_m.norm(),
+       100.0 * tracks::ExtrinsicCheck::kToldM);
+}
+
+void run(LcmBus& bus, const TrackOptions& options, const track::CurrentModels& models) {
+  const tracks::ExtrinsicCheck check = track::run_track_process(bus, options.process, models);
+  if (options.process.check) report(check);
+}
+
+void run_with_models(const TrackOptions& options) {
+  const auto models = std::make_shared<const tracks::TrackModels>(
+      options.models.empty() ? tracks::TrackModels() : track::load_track_models(options.models, options.model_unit_m));
+  if (models->empty()) log_warning("neither --objects nor --models: what is hidden or gone cannot be told");
+  LcmBus bus(options.url, options.output_log);
+  run(bus, options, [&] { return models; });
+}
+
+/// A store may change while frames go by.
+void run_with_store(TrackOptions options) {
+  store::StoreWatch<tracks::TrackModels> watch(options.objects, [](const store::ObjectStore& store) {
+    return std::make_shared<const tracks::TrackModels>(track::stored_track_models(store));
+  });
+  const auto none = std::make_shared<const tracks::TrackModels>();
+  options.process.objects = [&] { return watch.known(); };
+  LcmBus bus(options.url, options.output_log);
+  bus.is_log() ? watch.hold() : watch.follow();
+  run(bus, options, [&] {
+    std::shared_ptr<const tracks::TrackModels> models = watch.current();
+    return models ? models : none;
+  });
+}
+
+void add_options(CommandLine& app, TrackOptions& options, std::string& camera) {
+  app.add_option("--objects", options.objects,
+                 "object store of hs-teach, instead of --models; it may be made, and changed, while this runs");
+  add_model_options(app, options.models, options.model_unit_m);
+  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--cameras", options.cameras_file,
+                 "YAML file of where cameras stand: cameras: {CHANNEL: {translation: [x, y, z], rotation: [w, x, y, "
+                 "z]}}, or static transforms as ROS prints them");
+  app.add_option("--camera-pose", options.camera_poses,
+                 "CHANNEL=x,y,z,qw,qx,qy,qz: where one camera stands, T_world_camera, metres; may be given several "
+                 "times");
+  app.add_option("--wait", options.process.wait_s,
+                 "seconds that a frame waits for the transforms of its camera (<CAMERA>_TO_WORLD) about its time")
+      .range(0.0, 10.0)
+      .capture_default_str();
+  app.add_flag("--check", options.process.check,
+               "publish nothing; compare where the cameras see the same objects, and fail where they contradict each "
+               "other");
+  add_frame_channels_option(app, options.process.frame_channels);
+  app.add_option("--output-log", options.output_log, "with -l file://LOG: write the objects to this log");
+  add_lcm_url_option(app, options.url);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine app("Follows objects over frames and cameras, in one world, and publishes objects_t", "hs-track");
+  TrackOptions options;
+  std::string camera;
+  add_options(app, options, camera);
+  return run_tool(app, argc, argv, [&] {
+    catch_stop_signals();
+    if (!camera.empty()) options.process.camera = parse_camera(camera);
+    require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_places(options.cameras_file);
+    for (const std::string& text : options.camera_poses) {
+      const auto [name, T_world_camera] = tracks::parse_camera_place(text);
+      options.process.places[name] = T_world_camera;
+    }
+    options.objects.empty() ? run_with_models(options) : run_with_store(options);
+  });
+}

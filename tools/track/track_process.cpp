@@ -1,0 +1,333 @@
+#include "tools/track/track_process.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <set>
+
+#include "pipeline/base/host_clock.hpp"
+#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/bus/channel_pattern.hpp"
+#include "pipeline/bus/status_reporter.hpp"
+#include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
+#include "pipeline/process/pair_inbox.hpp"
+#include "pipeline/process/process_loop.hpp"
+#include "pose/tracks/camera_places.hpp"
+
+namespace houghstream::track {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::vector<std::uint8_t> copy(ByteView bytes) {
+  return {bytes.data, bytes.data + bytes.size};
+}
+
+ByteView view(const std::vector<std::uint8_t>& bytes) {
+  return {bytes.data(), bytes.size()};
+}
+
+/// Poses with their frame, which wait until it is known where the camera was.
+struct Waiting {
+  PairedMessages messages;
+  std::int64_t since_us = 0;  ///< on the bus' clock
+};
+
+/// Processes that send a status, and those that have fallen silent. May be used from any thread.
+class Silence {
+ public:
+  /// What is no status is somebody else's.
+  void hear(const Arrival& arrival) {
+    try {
+      const auto status = decode_message<status_t>(arrival.bytes);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      last_[fmt::format("{} (process {})", status.process, status.pid)] = arrival.event_us;
+    } catch (const InputError&) {
+    }
+  }
+
+  /// Names of those that have been silent for too long since they were asked for last; each is told once.
+  std::vector<std::string> fallen_silent(std::int64_t now_us) {
+    constexpr std::int64_t kSilentUs = 3000000;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<std::string> out;
+    for (auto it = last_.begin(); it != last_.end();) {
+      const bool silent = now_us - it->second > kSilentUs;
+      if (silent) out.push_back(it->first);
+      it = silent ? last_.erase(it) : std::next(it);
+    }
+    return out;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::int64_t> last_;
+};
+
+class TrackProcess {
+ public:
+  TrackProcess(LcmBus& bus, const TrackProcessOptions& options, const CurrentModels& models)
+      : bus_(bus),
+        options_(options),
+        models_(models),
+        channels_(options.frame_channels),
+        status_(options.process),
+        inbox_(false),
+        used_models_(models()),
+        tracker_(*used_models_, {}) {
+    for (const auto& [camera, T_world_camera] : options.places)
+      places_.fix(channel::camera_name(camera), T_world_camera);
+  }
+
+  tracks::ExtrinsicCheck run() {
+    status_.tell_objects(options_.objects);
+    bus_.subscribe(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
+    bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
+    bus_.subscribe(channel::kPoses, [this](const Arrival& arrival) { receive_poses(arrival); });
+    bus_.subscribe(".*_TO_WORLD", [this](const Arrival& arrival) { receive_transform(arrival); });
+    // Its own last status may come when it has ended itself.
+    bus_.subscribe(channel::kStatus, [silence = silence_](const Arrival& arrival) { silence->hear(arrival); });
+    log_info("ready: frames from {}, poses from {} at {}", options_.frame_channels, channel::kPoses, bus_.url());
+    run_process_loop(bus_, status_, [this](milliseconds timeout) { return step(timeout); });
+    inbox_.give_up_waiting();
+    count_dropped();
+    for (const Waiting& waiting : waiting_) refuse(waiting.messages.id, "the stream has ended");
+    end_process(bus_, status_);
+    require(!bus_.is_log() || poses_ > 0,
+            "{}: no poses of frames on {}, expected a log with frames, detections and poses", bus_.url(),
+            options_.frame_channels);
+    return check_;
+  }
+
+ private:
+  std::int64_t now_us() const { return bus_.is_log() ? event_us_ : utime_now(); }
+
+  void note_event(const Arrival& arrival) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    event_us_ = std::max(event_us_, arrival.event_us);
+  }
+
+  void receive_frame(const Arrival& arrival) {
+    if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
+    note_event(arrival);
+    try {
+      const FrameHeader header = read_frame_header(arrival.bytes);
+      status_.note_sequence(header.sequence, arrival.channel);
+      inbox_.put_frame({arrival.channel, header.utime}, copy(arrival.bytes));
+    } catch (const InputError& error) {
+      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
+    }
+  }
+
+  void receive_detections(const Arrival& arrival) {
+    constexpr std::size_t kKept = 64;
+    note_event(arrival);
+    try {
+      Detections detections = detections_from_message(decode_message<detections_t>(arrival.bytes));
+      if (!channels_.matches(detections.frame.channel)) return;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      detections_.push_back(std::move(detections));
+      if (detections_.size() > kKept) detections_.pop_front();
+    } catch (const InputError& error) {
+      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
+    }
+  }
+
+  void receive_poses(const Arrival& arrival) {
+    note_event(arrival);
+    try {
+      check_wire(arrival.bytes, object_poses_t::getHash(), object_poses_t::getTypeName());
+      const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
+      if (!channels_.matches(frame.channel)) return;
+      status_.count_received();
+      ++poses_;
+      inbox_.put_detections(frame, copy(arrival.bytes));
+    } catch (const InputError& error) {
+      status_.count_received();
+      status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
+    }
+  }
+
+  void receive_transform(const Arrival& arrival) {
+    constexpr std::size_t kSuffix = 9;  // of "_TO_WORLD"
+    note_event(arrival);
+    try {
+      const auto message = decode_message<rigid_transform_t>(arrival.bytes);
+      const Eigen::Isometry3d T_world_camera = transform_from_message(message);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      places_.add(arrival.channel.substr(0, arrival.channel.size() - kSuffix), message.utime, T_world_camera);
+    } catch (const InputError& error) {
+      status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
+    }
+  }
+
+  bool step(milliseconds timeout) {
+    constexpr milliseconds kTransformsMayCome(3);
+    std::optional<PairedMessages> pair =
+        inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kTransformsMayCome));
+    if (pair) waiting_.push_back({std::move(*pair), now_us()});
+    count_dropped();
+    tell_silence();
+    bool worked = false;
+    for (auto it = waiting_.begin(); it != waiting_.end();) {
+      const tracks::CameraPlace place = place_of(*it);
+      if (!place.T_world_camera && place.may_come) {
+        ++it;
+        continue;
+      }
+      const Waiting now = std::move(*it);
+      it = waiting_.erase(it);
+      worked = true;
+      if (!place.T_world_camera) {
+        refuse(now.messages.id, place.reason);
+      } else {
+        work_on(now, *place.T_world_camera);
+      }
+    }
+    return worked;
+  }
+
+  /// Where the camera was; `may_come` only while it is worth waiting.
+  tracks::CameraPlace place_of(const Waiting& waiting) {
+    const FrameId& frame = waiting.messages.id;
+    const bool patient = static_cast<double>(now_us() - waiting.since_us) * 1e-6 < options_.wait_s;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    tracks::CameraPlace place = places_.at(channel::camera_name(frame.channel), frame.utime);
+    place.may_come = place.may_come && patient && !(alone_ && !places_.any());
+    if (place.T_world_camera || place.may_come) return begin_world("WORLD", place);
+    if (places_.any()) return place;
+    cameras_.insert(frame.channel);
+    if (cameras_.size() > 1)
+      return {
+          std::nullopt, false,
+          "where its camera is is not known, expected --cameras, --camera-pose or " + channel::to_world(frame.channel)};
+    if (!alone_)
+      log_info("where {} is is not known: the world is its own frame, and objects move when it does", frame.channel);
+    alone_ = true;
+    return begin_world(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
+  }
+
+  tracks::CameraPlace begin_world(const std::string& name, const tracks::CameraPlace& place) {
+    if (!place.T_world_camera || world_ == name) return place;
+    if (!world_.empty()) {
+      log_warning("the world is {} from here on, no longer {}: a new one begins", name, world_);
+      tracker_.begin_world();
+    }
+    world_ = name;
+    return place;
+  }
+
+  void work_on(const Waiting& waiting, const Eigen::Isometry3d& T_world_camera) {
+    try {
+      StageClock clock;
+      const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(view(waiting.messages.detections)));
+      check_.add(poses, T_world_camera);
+      if (options_.check || publish_objects(waiting, poses, T_world_camera, clock))
+        status_.count_processed(std::chrono::steady_clock::now() - waiting.messages.arrival);
+      tell_contradictions();
+    } catch (const std::exception& error) {
+      status_.count_refused(error.what(), "work");
+    }
+  }
+
+  /// False for a frame that is too late.
+  bool publish_objects(const Waiting& waiting, const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
+                       StageClock& clock) {
+    if (const auto models = models_(); models != used_models_) {
+      used_models_ = models;
+      tracker_.set_models(*models);
+    }
+    const Detections detections = detections_of(poses.frame);
+    std::optional<RgbdFrame> image;
+    const auto decode = [&]() -> const RgbdFrame* {
+      if (!image) {
+        image = frame_from_message(decode_message<images_t>(view(waiting.messages.frame)), poses.frame.channel,
+                                   options_.camera);
+        clock.mark("track.decode");
+      }
+      return &*image;
+    };
+    std::optional<WorldObjects> objects = tracker_.update({poses, &detections, T_world_camera, decode});
+    if (!objects) {
+      status_.count_skipped(1);  // what a detector said late of a frame whose successors are known
+      return false;
+    }
+    clock.mark("track.update");
+    objects->world = world_;
+    objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
+    bus_.publish(channel::kObjects, to_message(*objects));
+    return true;
+  }
+
+  /// All that any detector found in the frame.
+  Detections detections_of(const FrameId& frame) {
+    Detections all;
+    all.frame = frame;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const Detections& some : detections_) {
+      if (some.frame == frame)
+        all.detections.insert(all.detections.end(), some.detections.begin(), some.detections.end());
+    }
+    return all;
+  }
+
+  void refuse(const FrameId& frame, const std::string& reason) {
+    status_.count_refused(fmt::format("poses of frame {}: {}", to_string(frame), reason), "place");
+  }
+
+  void count_dropped() {
+    const PairInbox::Dropped dropped = inbox_.take_dropped();
+    status_.count_skipped(dropped.skipped);
+    for (const FrameId& frame : dropped.without_frame) refuse(frame, "the frame itself has not come");
+  }
+
+  void tell_silence() {
+    if (bus_.is_log()) return;
+    for (const std::string& name : silence_->fallen_silent(now_us()))
+      log_warning("{} has fallen silent: its objects are not seen any more", name);
+  }
+
+  void tell_contradictions() {
+    for (const tracks::Contradiction& pair : check_.contradictions()) {
+      const std::string line =
+          fmt::format("{} sees objects {:.1f} cm from where {} sees them: one of their places is wrong", pair.second,
+                      100.0 * pair.offset_m.norm(), pair.first);
+      const auto admitted = lines_.admit(pair.first + pair.second, line, std::chrono::steady_clock::now());
+      if (!admitted || bus_.is_log()) continue;
+      log_warning("{}", *admitted);
+      status_.remember_error(line);
+    }
+  }
+
+  LcmBus& bus_;
+  const TrackProcessOptions& options_;
+  const CurrentModels& models_;
+  ChannelPattern channels_;
+  StatusReporter status_;
+  PairInbox inbox_;  // of poses and their frames
+  std::shared_ptr<const tracks::TrackModels> used_models_;
+  tracks::Tracker tracker_;
+  tracks::ExtrinsicCheck check_;
+  LimitedLines lines_;
+  std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
+  std::deque<Waiting> waiting_;
+  std::string world_;
+  std::set<std::string> cameras_;  // whose place is not known
+  bool alone_ = false;             // the world is the frame of the only camera
+  // What the receiving thread writes.
+  mutable std::mutex mutex_;
+  std::int64_t event_us_ = 0;
+  std::deque<Detections> detections_;
+  tracks::CameraPlaces places_;
+  std::atomic<std::int64_t> poses_{0};
+};
+
+}  // namespace
+
+tracks::ExtrinsicCheck run_track_process(LcmBus& bus, const TrackProcessOptions& options, const CurrentModels& models) {
+  return TrackProcess(bus, options, models).run();
+}
+
+}  // namespace houghstream::track

@@ -1,0 +1,163 @@
+#include "tools/view/drawing/world_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+
+#include "tools/view/drawing/overlay.hpp"
+
+namespace houghstream::view {
+namespace {
+
+constexpr std::size_t kTrail = 150;  // places
+constexpr double kNearM = 0.05;
+constexpr std::int64_t kOfThisTimeUs = 300000;
+
+double deviation_of(const TrackedObject& object) {
+  return std::sqrt(std::max(0.0, object.covariance.topLeftCorner<3, 3>().trace() / 3.0));
+}
+
+bool is_seen(const TrackedObject& object) {
+  return object.state == TrackState::kVisible;
+}
+
+std::string label_of(const TrackedObject& object) {
+  std::string text = fmt::format("#{} {} {:.2f}", object.track_id, object.class_name, object.probability);
+  if (!is_seen(object)) text += fmt::format(" ({})", to_string(object.state));
+  if (object.moving) text += fmt::format(" {:.2f} m/s", object.velocity.head<3>().norm());
+  return text;
+}
+
+/// From metres of the world to pixels of the picture from above.
+struct MapScale {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  double px_per_m = 300.0;
+  cv::Size size;
+
+  cv::Point at(const Eigen::Vector3d& place) const {
+    const Eigen::Vector2d away = px_per_m * (place.head<2>() - middle);
+    return {static_cast<int>(std::lround(0.5 * size.width + away.x())),
+            static_cast<int>(std::lround(0.5 * size.height - away.y()))};
+  }
+};
+
+MapScale scale_of(const WorldState& world, const cv::Size& size) {
+  constexpr double kLeastM = 0.4;  // half of what is shown, at least
+  Eigen::AlignedBox2d extent;
+  for (const TrackedObject& object : world.last.objects) extent.extend(object.T_world_object.translation().head<2>());
+  for (const auto& [channel, T] : world.T_world_camera) extent.extend(T.translation().head<2>());
+  if (extent.isEmpty()) extent.extend(Eigen::Vector2d::Zero());
+  const Eigen::Vector2d half = (0.6 * extent.sizes()).cwiseMax(kLeastM);
+  return {extent.center(), std::min(0.5 * size.width / half.x(), 0.5 * size.height / half.y()), size};
+}
+
+void draw_grid(cv::Mat& picture, const MapScale& scale) {
+  constexpr double kStepM = 0.1;
+  const Eigen::Vector2d half(0.5 * scale.size.width / scale.px_per_m, 0.5 * scale.size.height / scale.px_per_m);
+  const cv::Scalar grey(52, 52, 52);
+  for (int axis = 0; axis < 2; ++axis) {
+    const int first = static_cast<int>(std::floor((scale.middle[axis] - half[axis]) / kStepM));
+    const int last = static_cast<int>(std::ceil((scale.middle[axis] + half[axis]) / kStepM));
+    for (int i = first; i <= last && last - first < 200; ++i) {
+      Eigen::Vector3d place = Eigen::Vector3d::Zero();
+      place[axis] = kStepM * i;
+      const cv::Point p = scale.at(place);
+      const cv::Scalar colour = i == 0 ? cv::Scalar(90, 90, 90) : grey;
+      if (axis == 0)
+        cv::line(picture, {p.x, 0}, {p.x, picture.rows}, colour);
+      else
+        cv::line(picture, {0, p.y}, {picture.cols, p.y}, colour);
+    }
+  }
+}
+
+void draw_camera(cv::Mat& picture, const MapScale& scale, const std::string& channel, const Eigen::Isometry3d& T) {
+  const double reach_m = 24.0 / scale.px_per_m;
+  const cv::Point eye = scale.at(T.translation());
+  const auto corner = [&](double side) {
+    Eigen::Vector3d ray = T.linear() * Eigen::Vector3d(side, 0.0, 1.0);
+    ray.z() = 0.0;
+    return scale.at(T.translation() + reach_m * ray.normalized());
+  };
+  const std::vector<cv::Point> wedge = {eye, corner(-0.5), corner(0.5)};
+  cv::polylines(picture, wedge, true, {200, 200, 200}, 1, cv::LINE_AA);
+  draw_text(picture, channel, eye + cv::Point(6, 14), 0.38, {190, 190, 190});
+}
+
+void draw_object(cv::Mat& picture, const MapScale& scale, const TrackedObject& object) {
+  constexpr int kDisc = 7;  // pixels
+  const cv::Scalar colour = class_colour(object.class_id);
+  const cv::Point place = scale.at(object.T_world_object.translation());
+  const int sure = static_cast<int>(std::lround(2.0 * deviation_of(object) * scale.px_per_m));
+  cv::circle(picture, place, kDisc, colour, is_seen(object) ? cv::FILLED : 1, cv::LINE_AA);
+  if (sure > kDisc) cv::circle(picture, place, std::min(sure, 2000), colour, 1, cv::LINE_AA);
+  draw_text(picture, label_of(object), place + cv::Point(10, 4), 0.4);
+}
+
+}  // namespace
+
+void WorldState::add(const WorldObjects& world) {
+  if (world.world_number != last.world_number || world.world != last.world) {
+    T_world_camera.clear();
+    trails.clear();
+  }
+  last = world;
+  T_world_camera[world.frame.channel] = world.T_world_camera;
+  std::map<std::int64_t, std::deque<Eigen::Vector3d>> kept;
+  for (const TrackedObject& object : world.objects) {
+    std::deque<Eigen::Vector3d>& trail = kept[object.track_id];
+    if (const auto known = trails.find(object.track_id); known != trails.end()) trail = std::move(known->second);
+    trail.push_back(object.T_world_object.translation());
+    if (trail.size() > kTrail) trail.pop_front();
+  }
+  trails = std::move(kept);
+}
+
+void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& frame) {
+  const auto camera = world.T_world_camera.find(frame.id.channel);
+  if (camera == world.T_world_camera.end() || std::abs(world.last.frame.utime - frame.id.utime) > kOfThisTimeUs) return;
+  const Eigen::Isometry3d T_camera_world = camera->second.inverse();
+  const auto pixel_of = [&](const Eigen::Vector3d& place) -> std::optional<cv::Point> {
+    const Eigen::Vector3d point = T_camera_world * place;
+    if (point.z() < kNearM) return std::nullopt;
+    const Eigen::Vector2d pixel = frame.camera.project(point).cwiseMax(-1e4).cwiseMin(1e4);
+    return cv::Point(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+  };
+  for (const TrackedObject& object : world.last.objects) {
+    const cv::Scalar colour = class_colour(object.class_id);
+    std::optional<cv::Point> before;
+    for (const Eigen::Vector3d& place : world.trails.at(object.track_id)) {
+      const std::optional<cv::Point> here = pixel_of(place);
+      if (before && here) cv::line(picture, *before, *here, colour, 1, cv::LINE_AA);
+      before = here;
+    }
+    const std::optional<cv::Point> centre = pixel_of(object.T_world_object.translation());
+    if (!centre || object.state == TrackState::kGone) continue;
+    const double depth = (T_camera_world * object.T_world_object.translation()).z();
+    const int radius =
+        std::clamp(static_cast<int>(2.0 * deviation_of(object) / frame.camera.metres_per_px(depth)), 4, 400);
+    cv::circle(picture, *centre, radius, colour, is_seen(object) ? 2 : 1, cv::LINE_AA);
+    draw_text(picture, label_of(object), *centre + cv::Point(radius + 4, 4), 0.4);
+  }
+}
+
+cv::Mat draw_world_from_above(const WorldState& world, const cv::Size& size) {
+  cv::Mat picture(size, CV_8UC3, cv::Scalar(30, 30, 30));
+  const MapScale scale = scale_of(world, size);
+  draw_grid(picture, scale);
+  for (const auto& [channel, T] : world.T_world_camera) draw_camera(picture, scale, channel, T);
+  for (const TrackedObject& object : world.last.objects) {
+    std::vector<cv::Point> way;
+    for (const Eigen::Vector3d& place : world.trails.at(object.track_id)) way.push_back(scale.at(place));
+    cv::polylines(picture, way, false, class_colour(object.class_id), 1, cv::LINE_AA);
+    if (object.state != TrackState::kGone) draw_object(picture, scale, object);
+  }
+  draw_text(picture, fmt::format("{} from above, grid 10 cm, {} objects", world.last.world, world.last.objects.size()),
+            {8, 16});
+  return picture;
+}
+
+}  // namespace houghstream::view

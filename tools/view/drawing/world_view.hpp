@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "pipeline/types/camera.hpp"
+#include "pipeline/types/frame.hpp"
+#include "pipeline/types/tracked_object.hpp"
+
+namespace houghstream::view {
+
+/// What hs-track said of the world last, and where its objects were before.
+struct WorldState {
+  WorldObjects last;
+  std::map<std::string, Eigen::Isometry3d> T_world_camera;     ///< of each camera, by channel, as it was told last
+  std::map<std::int64_t, std::deque<Eigen::Vector3d>> trails;  ///< by track_id: places of the last seconds, metres
+
+  /// A new world has no past.
+  void add(const WorldObjects& world);
+};
+
+/// Draws over a picture of a frame (CV_8UC3, BGR) the objects of the world in it: a ring as wide as the place is
+/// uncertain (two standard deviations), number, class and probability, and the way of the last seconds. What is not
+/// seen is drawn thin, with its state in words. Nothing where the world's camera was elsewhere: it is of another time.
+void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& frame);
+
+/// The world from above, x to the right and y up, of that size (CV_8UC3): objects as discs with their numbers and ways,
+/// cameras as wedges that point where they look, and a grid of 10 cm.
+cv::Mat draw_world_from_above(const WorldState& world, const cv::Size& size);
+
+}  // namespace houghstream::view
