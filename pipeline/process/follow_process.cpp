@@ -91,7 +91,7 @@ class FollowProcess {
     {
       const BlockStopSignals block;
       answering = std::thread([&] {
-        constexpr int kPolite = 5;
+        constexpr int kPolite = 2;
         if (nice(kPolite) == -1) log_debug("the priority of answers cannot be lowered");
         while (running) answer_next(milliseconds(100));
       });

@@ -43,7 +43,7 @@ struct DetectOptions {
 /// Looks by a budget come at leisure: who follows objects from frame to frame goes first. Of all threads that are
 /// started from here on.
 void give_way() {
-  constexpr int kPolite = 5;
+  constexpr int kPolite = 2;
   if (nice(kPolite) == -1) log_debug("the priority of looks cannot be lowered");
 }
 

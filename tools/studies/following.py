@@ -9,14 +9,17 @@ import argparse
 import json
 import pathlib
 import statistics
+import struct
 
 from studies.command import call, step
+from studies.lcm_log import HEADER, SYNC, read_log
 from studies.measured import about, read_json, write_json
 from studies.stream import Stream, enter_private_network
 
 RATES = (30, 60, 90)  # Hz
 LOOKS = 5  # of the detector, a second
-SECONDS, ROUNDS = 60, 3
+SECONDS, ROUNDS = 20, 3  # a minute at each rate in all
+FIRST_UTIME = 1_500_000_000_000_000
 
 
 def figures(folder, frames):
@@ -39,12 +42,24 @@ def medians(runs):
     return {key: statistics.median(run[key] for run in runs) for key in runs[0]}
 
 
+def restamp(source, target, rate):
+    """Copies a log of images_t whose utimes become those of a camera of that rate; a dataset's are of 30 Hz."""
+    with open(target, "wb") as out:
+        for number, (timestamp, channel, data) in enumerate(read_log(source)):
+            utime = struct.pack(">q", FIRST_UTIME + round(number * 1e6 / rate))
+            data = data[:8] + utime + data[16:]  # behind the fingerprint
+            name = channel.encode()
+            out.write(HEADER.pack(SYNC, number, timestamp, len(name), len(data)) + name + data)
+
+
 def make_log(programs, scene, rate, seconds, log):
     """The scene's frames over and over, with the times of a camera of that rate; made once."""
     if not log.exists():
-        part = log.with_suffix(".part")
+        captured, part = log.with_suffix(".captured"), log.with_suffix(".part")
         call(programs / "hs-capture", "--source", f"bop:{scene}", "--rate", rate, "--loop", "--frames", rate * seconds, "--log",
-             part, into=log.with_suffix(".txt"))  # fmt: skip
+             captured, into=log.with_suffix(".txt"))  # fmt: skip
+        restamp(captured, part, rate)
+        captured.unlink()
         part.rename(log)
     return log
 

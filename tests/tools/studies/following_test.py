@@ -2,10 +2,12 @@
 
 import json
 import pathlib
+import struct
 import tempfile
 import unittest
 
 from studies import following
+from studies.lcm_log import HEADER, SYNC, read_log, utime_of
 
 
 def observed(p50, p99, received, skipped):
@@ -35,6 +37,20 @@ class Figures(unittest.TestCase):
         rounds = [following.figures(self.folder(observed(p50, p99, 600, 0)), 600) for p50, p99 in ((5, 30), (4, 9), (6, 8))]
         self.assertEqual(following.medians(rounds)["p50_ms"], 5)
         self.assertEqual(following.medians(rounds)["p99_ms"], 9)
+
+    def test_frames_get_the_times_of_a_camera_of_that_rate(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        source, target = pathlib.Path(place.name) / "a", pathlib.Path(place.name) / "b"
+        with open(source, "wb") as log:
+            for i in range(3):
+                data = struct.pack(">qq", 42, 33333 * i) + b"pixels"
+                log.write(HEADER.pack(SYNC, i, 16667 * i, 5, len(data)) + b"FRAME" + data)
+        following.restamp(source, target, 60)
+        events = list(read_log(target))
+        self.assertEqual([utime_of(data) - following.FIRST_UTIME for _, _, data in events], [0, 16667, 33333])
+        self.assertEqual({(name, data[:8], data[16:]) for _, name, data in events}, {("FRAME", struct.pack(">q", 42), b"pixels")})
+        self.assertEqual([timestamp for timestamp, _, _ in events], [0, 16667, 33334])
 
     def test_a_log_is_made_once(self):
         place = tempfile.TemporaryDirectory()
