@@ -1,6 +1,7 @@
 #include "pipeline/process/detect_process.hpp"
 
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/process/newest_of_each.hpp"
@@ -15,18 +16,28 @@ struct EncodedFrame {
   std::chrono::steady_clock::time_point arrival;
 };
 
-void receive_frame(const Arrival& arrival, StatusReporter& status, NewestOfEach<EncodedFrame>& newest) {
-  status.count_received();
+/// How the frame follows those before it; nothing where it cannot be understood, which is counted.
+std::optional<FrameOrder> order_of(const Arrival& arrival, StatusReporter& status) {
   try {
-    status.note_sequence(read_frame_header(arrival.bytes).sequence, arrival.channel);
+    const FrameHeader header = read_frame_header(arrival.bytes);
+    return status.note_number({header.sequence, header.utime, header.run}, arrival.channel);
   } catch (const InputError& error) {
+    status.count_received();
     status.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
-    return;
+    return std::nullopt;
   }
+}
+
+/// `is_log`: every frame of a log is worked on, as often as it is there.
+void receive_frame(const Arrival& arrival, bool is_log, StatusReporter& status, NewestOfEach<EncodedFrame>& newest) {
+  const std::optional<FrameOrder> order = order_of(arrival, status);
+  if (!order || (*order == FrameOrder::kDuplicate && !is_log)) return;
+  status.count_received();
   const ByteView& bytes = arrival.bytes;
-  const bool replaced =
-      newest.put(arrival.channel, {arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time});
-  if (replaced) status.count_skipped(1);
+  EncodedFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
+  const bool passed_over = *order == FrameOrder::kLate ? newest.put_late(arrival.channel, std::move(frame))
+                                                       : newest.put(arrival.channel, std::move(frame));
+  if (passed_over) status.count_skipped(1);
 }
 
 RgbdFrame decode(const EncodedFrame& encoded, const std::optional<Camera>& camera) {
@@ -47,10 +58,11 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   StatusReporter status(options.process);
   status.tell_objects(options.objects);
   NewestOfEach<EncodedFrame> newest;
+  catch_stop_signals();
   bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
     if (options.keep_frames) bus.publish(arrival.channel, arrival.bytes, arrival.event_us);
-    receive_frame(arrival, status, newest);
+    receive_frame(arrival, bus.is_log(), status, newest);
   });
   log_info("ready: frames from {} at {}", options.frame_channels, bus.url());
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {

@@ -4,7 +4,6 @@
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/process/detect_process.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
@@ -80,7 +79,6 @@ int main(int argc, char** argv) {
   add_lcm_url_option(app, options.url);
 
   return run_tool(app, argc, argv, [&] {
-    catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
     options.objects.empty() ? run_with_forest(options) : run_with_store(options);

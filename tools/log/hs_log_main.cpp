@@ -8,6 +8,7 @@
 #include "tools/log/filter_log.hpp"
 #include "tools/log/import_log.hpp"
 #include "tools/log/log_info.hpp"
+#include "tools/log/seal_log.hpp"
 
 namespace houghstream::log_tools {
 namespace {
@@ -42,6 +43,13 @@ CommandLine add_filter(CommandLine& app, Options& options) {
       .capture_default_str();
   filter.add_flag("-i,--invert", options.filter.others, "keep the channels that do not match");
   return filter;
+}
+
+CommandLine add_seal(CommandLine& app, Options& options) {
+  CommandLine seal = app.add_subcommand("seal", "copies a log with a checksum for each event, which every reader checks");
+  seal.add_option("log", options.in, "LCM log").required();
+  seal.add_option("out", options.out, "LCM log to write").required();
+  return seal;
 }
 
 CommandLine add_import(CommandLine& app, Options& options) {
@@ -81,6 +89,7 @@ int main(int argc, char** argv) {
   Options options;
   const CommandLine info = add_info(app, options);
   const CommandLine filter = add_filter(app, options);
+  const CommandLine seal = add_seal(app, options);
   const CommandLine import = add_import(app, options);
   CommandLine exporter = app.add_subcommand("export", "writes frames or results to files");
   exporter.require_subcommand();
@@ -98,12 +107,13 @@ int main(int argc, char** argv) {
       fmt::print("{}", to_text(read_log_info(options.in, losses)));
     } else {
       const std::int64_t count = filter.given()   ? filter_log(options.in, options.filter, options.out, losses)
+                                 : seal.given()   ? seal_log(options.in, options.out)
                                  : import.given() ? import_log(options.recording, options.channel, options.out, losses)
                                  : bop.given()    ? export_bop(options.recording, options.out, losses)
                                  : png.given()    ? export_pngs(options.recording, options.out, losses)
                                  : csv.given()    ? export_results_csv(options.in, options.out, losses)
                                                   : export_results_json(options.in, options.out, losses);
-      fmt::print("{} {} in {}\n", count, filter.given() ? "events" : "frames", options.out);
+      fmt::print("{} {} in {}\n", count, filter.given() || seal.given() ? "events" : "frames", options.out);
     }
     if (!losses.line().empty()) log_warning("{}: {}", options.in, losses.line());
   });
