@@ -189,7 +189,8 @@ void check_numbers(const Forest& forest, const std::string& source) {
   for (const float weight : forest.leaf_weights)
     require(is_share(weight), "{}: a leaf of weight {}, expected 0 to 1", source, weight);
   for (const TrainedView& view : forest.views) {
-    const bool has_box = std::all_of(view.box.begin(), view.box.end(), [](float side) { return std::abs(side) < kFar; });
+    const bool has_box =
+        std::all_of(view.box.begin(), view.box.end(), [](float side) { return std::abs(side) < kFar; });
     require(has_box && std::abs(view.R_ray_object.norm() - 1.0F) < 0.01F && view.class_index < forest.classes.size(),
             "{}: a view of class {} with a rotation of length {}, expected one of {} and 1", source, view.class_index,
             view.R_ray_object.norm(), forest.classes.size());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <sstream>
 #include <tuple>
 #include <vector>
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "drivers/datasets/bop_dataset.hpp"

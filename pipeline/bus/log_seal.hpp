@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,11 @@ struct LogEvent;
 /// message that nobody listens to.
 inline const std::string kSealChannel = "HOUGHSTREAM_SEAL";
 constexpr std::size_t kSealedBlock = 256;  ///< events, at most
+
+/// Copies a whole log and seals it: from then on every reader of ours refuses an event of which a bit has changed, and
+/// a log of which events are missing. Returns the number of events. Throws InputError where the log is damaged: what
+/// cannot be trusted is not sealed.
+std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file);
 
 std::uint32_t checksum_of(const LogEvent& event);
 

@@ -57,8 +57,7 @@ bool refuse_other_hosts(int socket) {
                                          BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PACKET_LOOPBACK, 3, 0),
                                          BPF_STMT(BPF_LD | BPF_W | BPF_ABS, ancillary(SKF_AD_IFINDEX)),
                                          BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, if_nametoindex("lo"), 1, 0),
-                                         BPF_STMT(BPF_RET | BPF_K, 0),
-                                         BPF_STMT(BPF_RET | BPF_K, 0xFFFFFFFF)}};
+                                         BPF_STMT(BPF_RET | BPF_K, 0), BPF_STMT(BPF_RET | BPF_K, 0xFFFFFFFF)}};
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   return setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter) == 0;
 }

@@ -67,13 +67,15 @@ FrameOrder SequenceCount::note_in(Run& run, const FrameNumber& frame, std::int64
   mark(run, number, frame.utime, now_us);
   if (is_near) {
     --lost_;
+    if (number > run.jump_from && run.jump_lost > 0) --run.jump_lost;
     return FrameOrder::kLate;
   }
   const std::int64_t missing = number - run.newest - 1;
   lost_ += missing;
-  if (missing >= kWindow) {
-    run.jump_from = run.newest;
-    run.jump_lost = missing;
+  if (missing > 0) {
+    const bool goes_on = run.jump_lost > 0 && run.newest - run.jump_from < kWindow;
+    if (!goes_on) run.jump_from = run.newest;
+    run.jump_lost = missing + (goes_on ? run.jump_lost : 0);
   }
   run.newest = number;
   return FrameOrder::kNext;
@@ -81,7 +83,8 @@ FrameOrder SequenceCount::note_in(Run& run, const FrameNumber& frame, std::int64
 
 FrameOrder SequenceCount::note_far(Run& run, const FrameNumber& frame, std::int64_t number, std::int64_t now_us) {
   const std::int64_t before = run.candidate ? *run.candidate->sequence : number;
-  if (run.candidate && number == before && run.candidate->utime == frame.utime && now_us - run.candidate_us <= kRepeatUs)
+  if (run.candidate && number == before && run.candidate->utime == frame.utime &&
+      now_us - run.candidate_us <= kRepeatUs)
     return FrameOrder::kDuplicate;
   const bool follows = number > before && number - before < kWindow;
   if (!follows) {
@@ -109,8 +112,7 @@ bool RepeatedMessages::is_repeated(const FrameId& frame, const std::uint8_t* byt
                                    std::int64_t now_us) {
   while (!heard_.empty() && (now_us - heard_.front().arrival_us > kRepeatUs || heard_.size() >= kHeard))
     heard_.pop_front();
-  const std::size_t hash =
-      std::hash<std::string_view>()(std::string_view(reinterpret_cast<const char*>(bytes), size));
+  const std::size_t hash = std::hash<std::string_view>()(std::string_view(reinterpret_cast<const char*>(bytes), size));
   const bool found = std::any_of(heard_.begin(), heard_.end(),
                                  [&](const Heard& heard) { return heard.hash == hash && heard.frame == frame; });
   if (!found) heard_.push_back({frame, hash, now_us});

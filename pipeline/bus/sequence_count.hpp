@@ -52,7 +52,7 @@ class SequenceCount {
     std::int64_t id = 0;
     std::int64_t first = 0;
     std::int64_t newest = 0;
-    std::int64_t jump_from = 0;  // before a long jump: taken back where what follows goes on from there
+    std::int64_t jump_from = 0;  // before the last gaps: they are taken back where what follows goes on from there
     std::int64_t jump_lost = 0;
     std::array<Seen, kWindow> seen;  // by number modulo the window
     std::optional<FrameNumber> candidate;

@@ -28,8 +28,8 @@ class StatusReporter {
   explicit StatusReporter(std::string process);
 
   void count_received();
-  /// What its source says of a frame that has arrived; missing numbers count as lost frames (SequenceCount). Each source
-  /// (a camera's channel) counts its own. A duplicate is to be dropped, and counts as a duplicate only.
+  /// What its source says of a frame that has arrived; missing numbers count as lost frames (SequenceCount). Each
+  /// source (a camera's channel) counts its own. A duplicate is to be dropped, and counts as a duplicate only.
   FrameOrder note_number(const FrameNumber& number, const std::string& source = "");
   /// Another message than a frame that has come before.
   void note_duplicate();

@@ -1,9 +1,8 @@
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
@@ -144,13 +143,13 @@ class GltfCheck {
   static std::int64_t components(const Json& accessor) {
     const Json type = accessor.value("type", Json());
     const std::string name = type.is_string() ? type.get<std::string>() : "";
-    return name == "SCALAR"                    ? 1
-           : name == "VEC2"                    ? 2
-           : name == "VEC3"                    ? 3
-           : name == "VEC4" || name == "MAT2"  ? 4
-           : name == "MAT3"                    ? 9
-           : name == "MAT4"                    ? 16
-                                               : 0;
+    return name == "SCALAR"                   ? 1
+           : name == "VEC2"                   ? 2
+           : name == "VEC3"                   ? 3
+           : name == "VEC4" || name == "MAT2" ? 4
+           : name == "MAT3"                   ? 9
+           : name == "MAT4"                   ? 16
+                                              : 0;
   }
 
   void check_accessor(const Json& accessor) {

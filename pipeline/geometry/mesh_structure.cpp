@@ -211,8 +211,8 @@ void check_text_item(const PlyElement& element, const Words& words, const PlyHea
     }
     require(count <= static_cast<std::int64_t>(left()), "{}: {} numbers, expected more", where, words.size());
     for (; count > 0; --count, ++at) {
-      const bool is_number = property.is_whole ? number_of<std::int64_t>(words[at]).has_value()
-                                               : number_of<double>(words[at]).has_value();
+      const bool is_number =
+          property.is_whole ? number_of<std::int64_t>(words[at]).has_value() : number_of<double>(words[at]).has_value();
       require(is_number, "{}: '{}', expected a number", where, shown(words[at]));
       if (corners) check_corner(number_of<std::int64_t>(words[at]), header.vertices, where);
     }
@@ -241,7 +241,8 @@ std::int64_t binary_integer(std::string_view bytes, const PlyProperty& type, Ply
     value = value << 8U | static_cast<std::uint8_t>(bytes[at]);
   }
   const std::uint64_t sign = std::uint64_t{1} << (8 * bytes.size() - 1);
-  if (type.is_signed && (value & sign) != 0) return static_cast<std::int64_t>(value) - static_cast<std::int64_t>(2 * sign);
+  if (type.is_signed && (value & sign) != 0)
+    return static_cast<std::int64_t>(value) - static_cast<std::int64_t>(2 * sign);
   return static_cast<std::int64_t>(value);
 }
 
@@ -262,8 +263,7 @@ void check_binary_list(const PlyElement& element, const PlyProperty& property, c
                        std::int64_t item, PlyBody& body) {
   const bool corners = is_corners(element, property);
   const PlyProperty counting{"", property.count_bytes, true, false, 0};
-  const std::int64_t count =
-      binary_integer(body.take(property.count_bytes, element, item), counting, header.format);
+  const std::int64_t count = binary_integer(body.take(property.count_bytes, element, item), counting, header.format);
   const std::string where = fmt::format("{}: entry {} '{}'", body.source, item, shown(element.name));
   check_count(count, corners, where);
   require(!corners || property.is_whole, "{}: corners of faces are fractions, expected integers", body.source);
@@ -301,7 +301,7 @@ struct ObjCounts {
   std::int64_t vertices = 0;
   std::int64_t uvs = 0;
   std::int64_t normals = 0;
-  std::int64_t last_used = 0;  // the highest vertex that belongs to a face
+  std::int64_t last_used = 0;                                // the highest vertex that belongs to a face
   std::vector<std::pair<std::int64_t, std::int64_t>> edges;  // of faces, the smaller vertex first
 };
 
@@ -363,8 +363,8 @@ bool is_closed(ObjCounts& counts) {
 }
 
 bool is_passed_over(std::string_view word) {
-  static constexpr std::array<std::string_view, 12> kWords = {"o",   "g",     "s",       "mg",      "usemtl",     "mtllib",
-                                                              "lod", "bevel", "usemap",  "maplib",  "shadow_obj", "trace_obj"};
+  static constexpr std::array<std::string_view, 12> kWords = {
+      "o", "g", "s", "mg", "usemtl", "mtllib", "lod", "bevel", "usemap", "maplib", "shadow_obj", "trace_obj"};
   return word.front() == '#' || std::find(kWords.begin(), kWords.end(), word) != kWords.end();
 }
 

@@ -181,9 +181,9 @@ class PoseProcess {
     }
     for (const std::string& name : names) {
       if (heard->names.insert(name).second) continue;
-      status_.note_bad_message(
-          fmt::format("frame {}: two detectors find '{}', which gets two poses; expected detectors of different objects",
-                      to_string(detections.frame), name));
+      status_.note_bad_message(fmt::format(
+          "frame {}: two detectors find '{}', which gets two poses; expected detectors of different objects",
+          to_string(detections.frame), name));
     }
   }
 

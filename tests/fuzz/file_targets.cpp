@@ -144,10 +144,10 @@ void read_scene(ByteView input) {
 }
 
 std::vector<Bytes> scenes() {
-  return {bytes_of_text(std::string(
-              R"({"0":{"cam_K":[525,0,8,0,525,6,0,0,1],"depth_scale":1.0,"width":16,"height":12}})") +
-          '\0' + R"({"0":[{"cam_R_m2c":[1,0,0,0,1,0,0,0,1],"cam_t_m2c":[0,0,700],"obj_id":1}]})" + '\0' +
-          R"({"0":[{"bbox_visib":[1,2,3,4],"visib_fract":0.9}]})")};
+  return {
+      bytes_of_text(std::string(R"({"0":{"cam_K":[525,0,8,0,525,6,0,0,1],"depth_scale":1.0,"width":16,"height":12}})") +
+                    '\0' + R"({"0":[{"cam_R_m2c":[1,0,0,0,1,0,0,0,1],"cam_t_m2c":[0,0,700],"obj_id":1}]})" + '\0' +
+                    R"({"0":[{"bbox_visib":[1,2,3,4],"visib_fract":0.9}]})")};
 }
 
 const std::vector<std::string> kStore = {"store.json", "models/models_info.json"};
@@ -182,9 +182,10 @@ void read_calibration(ByteView input) {
 }
 
 std::vector<Bytes> calibrations() {
-  return {bytes_of_text("image_width: 640\nimage_height: 480\ncamera_name: rgb\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
-                        "  data: [525, 0, 319.5, 0, 525, 239.5, 0, 0, 1]\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n"
-                        "  data: [0, 0, 0, 0, 0]\n")};
+  return {
+      bytes_of_text("image_width: 640\nimage_height: 480\ncamera_name: rgb\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+                    "  data: [525, 0, 319.5, 0, 525, 239.5, 0, 0, 1]\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n"
+                    "  data: [0, 0, 0, 0, 0]\n")};
 }
 
 void read_picture(ByteView input) {
@@ -206,7 +207,8 @@ std::vector<Bytes> recordings() {
   Bytes bytes = {'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};
   bytes.resize(24);
   const auto record = [&](std::uint32_t type, const Bytes& fields, std::uint32_t payload) {
-    for (const std::uint32_t word : {0x0052494EU, type, 1U, 28 + static_cast<std::uint32_t>(fields.size()), payload, 0U, 0U}) {
+    for (const std::uint32_t word :
+         {0x0052494EU, type, 1U, 28 + static_cast<std::uint32_t>(fields.size()), payload, 0U, 0U}) {
       for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(word >> shift));
     }
     bytes.insert(bytes.end(), fields.begin(), fields.end());
@@ -230,15 +232,20 @@ std::string as_file(ByteView input, const std::string& ending) {
 }
 
 std::vector<FuzzTarget> file_targets() {
-  return {{"log", read_log, logs, nullptr, {"\xED\xA1\xDA\x01"}},
-          {"forest", read_forest, forests, repair_forest, {"realtime", "paper", "gall"}},
-          {"klg", read_klg, klgs, nullptr, {}},
-          {"mat", read_mat, mats, nullptr, {"bboxes"}},
-          {"scene", read_scene, scenes, nullptr, {"cam_K", "cam_R_m2c", "cam_t_m2c", "bbox_visib", "obj_id", "null", "1e400"}},
-          {"store", read_stored, stores, nullptr, {"symmetries_discrete", "symmetries_continuous", "version", "objects"}},
-          {"calibration", read_calibration, calibrations, nullptr, {"!!opencv-matrix", "data:", "&a", "*a", "- [", "{"}},
-          {"picture", read_picture, pictures, nullptr, {"IHDR", "IDAT", "PLTE", "tRNS", "IEND"}},
-          {"oni", read_oni, recordings, nullptr, {"NIR"}}};
+  return {
+      {"log", read_log, logs, nullptr, {"\xED\xA1\xDA\x01"}},
+      {"forest", read_forest, forests, repair_forest, {"realtime", "paper", "gall"}},
+      {"klg", read_klg, klgs, nullptr, {}},
+      {"mat", read_mat, mats, nullptr, {"bboxes"}},
+      {"scene",
+       read_scene,
+       scenes,
+       nullptr,
+       {"cam_K", "cam_R_m2c", "cam_t_m2c", "bbox_visib", "obj_id", "null", "1e400"}},
+      {"store", read_stored, stores, nullptr, {"symmetries_discrete", "symmetries_continuous", "version", "objects"}},
+      {"calibration", read_calibration, calibrations, nullptr, {"!!opencv-matrix", "data:", "&a", "*a", "- [", "{"}},
+      {"picture", read_picture, pictures, nullptr, {"IHDR", "IDAT", "PLTE", "tRNS", "IEND"}},
+      {"oni", read_oni, recordings, nullptr, {"NIR"}}};
 }
 
 std::vector<FuzzTarget> fuzz_targets() {

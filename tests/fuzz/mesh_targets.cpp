@@ -34,7 +34,8 @@ std::vector<Bytes> plys() {
                            "property uchar red\nproperty uchar green\nproperty uchar blue\n" + faces +
                            "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n4 0 1 2 3\n";
   Bytes binary = bytes_of_text("ply\nformat binary_little_endian 1.0\nelement vertex 4\n" + axes + faces);
-  for (const float value : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 1.0F, 1.0F, 0.0F, 0.0F, 1.0F, 0.0F}) append(value, binary);
+  for (const float value : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 1.0F, 1.0F, 0.0F, 0.0F, 1.0F, 0.0F})
+    append(value, binary);
   for (const int third : {2, 3}) {
     append(std::uint8_t{3}, binary);
     for (const std::int32_t corner : {0, third - 1, third}) append(corner, binary);
@@ -43,8 +44,9 @@ std::vector<Bytes> plys() {
 }
 
 std::vector<Bytes> objs() {
-  return {bytes_of_text("o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n"
-                        "f -4/1/1 -2/1/1 -1/1/1\n")};
+  return {
+      bytes_of_text("o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n"
+                    "f -4/1/1 -2/1/1 -1/1/1\n")};
 }
 
 std::vector<Bytes> glbs() {
@@ -84,9 +86,19 @@ void repair_glb(Bytes& input) {
 }  // namespace
 
 std::vector<FuzzTarget> mesh_targets() {
-  return {{"ply", read_ply, plys, nullptr, {"element ", "property ", "list ", "vertex_index", "end_header", "double ", "short "}, 1024},
+  return {{"ply",
+           read_ply,
+           plys,
+           nullptr,
+           {"element ", "property ", "list ", "vertex_index", "end_header", "double ", "short "},
+           1024},
           {"obj", read_obj, objs, nullptr, {"v ", "vt ", "vn ", "f ", "mtllib ", "usemtl ", "//", "\\\n", "nan"}, 1024},
-          {"glb", read_glb, glbs, repair_glb, {"\"children\"", "\"matrix\"", "\"mode\"", "\"TEXCOORD_0\"", "\"byteStride\"", "\"images\"", "\"textures\""}, 2048}};
+          {"glb",
+           read_glb,
+           glbs,
+           repair_glb,
+           {"\"children\"", "\"matrix\"", "\"mode\"", "\"TEXCOORD_0\"", "\"byteStride\"", "\"images\"", "\"textures\""},
+           2048}};
 }
 
 }  // namespace houghstream::fuzz

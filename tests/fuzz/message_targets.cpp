@@ -63,8 +63,8 @@ std::vector<Bytes> results() {
   known.objects = {{"mug", 5}};
   status_t status{};
   status.process = "hs-detect";
-  return {encode_message(to_message(detections)), encode_message(to_message(poses)), encode_message(to_message(teaching)),
-          encode_message(to_message(known)), encode_message(status)};
+  return {encode_message(to_message(detections)), encode_message(to_message(poses)),
+          encode_message(to_message(teaching)), encode_message(to_message(known)), encode_message(status)};
 }
 
 void read_foreign(ByteView input) {
@@ -74,8 +74,8 @@ void read_foreign(ByteView input) {
 
 std::vector<Bytes> foreign_frames() {
   const RgbdFrame frame = make_test_frame(5, 16, 12);
-  return {encode_message(log_tools::kinect_message(frame, true)), encode_message(log_tools::kinect_message(frame, false)),
-          encode_message(log_tools::drake_message(frame))};
+  return {encode_message(log_tools::kinect_message(frame, true)),
+          encode_message(log_tools::kinect_message(frame, false)), encode_message(log_tools::drake_message(frame))};
 }
 
 /// What people and messages name in words: a first letter says which reader takes the rest.

@@ -37,7 +37,8 @@ TEST(FuzzReplay, CutAndDamagedInputsAreRefusedInOneLineOrTaken) {
     for (const Bytes& seed : target.seeds()) {
       for (std::size_t i = 0; i < 30; ++i) {
         const std::size_t length = seed.size() * i / 30;
-        takes(target, {seed.begin(), seed.begin() + static_cast<std::ptrdiff_t>(length)}, fmt::format("cut to {}", length));
+        takes(target, {seed.begin(), seed.begin() + static_cast<std::ptrdiff_t>(length)},
+              fmt::format("cut to {}", length));
       }
       std::mt19937 random(11);
       for (int i = 0; i < 100; ++i) {

@@ -131,7 +131,9 @@ openni::CameraListener listener_of(StatusReporter& status, Heartbeat& heart) {
     return stop_requested();
   };
   return {beat_and_ask, [&](const std::string& reason) { status.remember_error(reason); },
-          [&](std::int64_t number) { status.note_number({number, number, 0}); }};
+          [&](std::int64_t number) {
+            status.note_number({number, number, 0});
+          }};
 }
 
 double seconds_since(Clock::time_point start) {

@@ -137,7 +137,7 @@ std::int64_t export_results_csv(const std::filesystem::path& log_file, const std
   const std::vector<FrameResult> results = read_results(log_file, losses);
   std::string text =
       "utime,source_channel,detection,class_id,class_name,score,box_x,box_y,box_width,box_height,"
-         "centre_x,centre_y,centre_z,pose_status,x,y,z,qw,qx,qy,qz,quality\n";
+      "centre_x,centre_y,centre_z,pose_status,x,y,z,qw,qx,qy,qz,quality\n";
   for (const FrameResult& frame : results) {
     for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) text += row(frame, i) + '\n';
   }

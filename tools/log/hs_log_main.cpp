@@ -2,13 +2,13 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/bus/log_seal.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
 #include "tools/log/import_log.hpp"
 #include "tools/log/log_info.hpp"
-#include "tools/log/seal_log.hpp"
 
 namespace houghstream::log_tools {
 namespace {
@@ -46,7 +46,8 @@ CommandLine add_filter(CommandLine& app, Options& options) {
 }
 
 CommandLine add_seal(CommandLine& app, Options& options) {
-  CommandLine seal = app.add_subcommand("seal", "copies a log with a checksum for each event, which every reader checks");
+  CommandLine seal =
+      app.add_subcommand("seal", "copies a log with a checksum for each event, which every reader checks");
   seal.add_option("log", options.in, "LCM log").required();
   seal.add_option("out", options.out, "LCM log to write").required();
   return seal;

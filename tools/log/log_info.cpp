@@ -120,15 +120,16 @@ std::string to_text(const LogInfo& info) {
   for (const auto& [name, channel] : info.channels) {
     const double mean_kb = static_cast<double>(channel.bytes) / static_cast<double>(channel.messages) * 1e-3;
     text += fmt::format("{:<28} {:<30} {:>8} {:>8.2f} {:>9.2f} {:>9.2f}  ", printable(name),
-                        printable(fmt::format("{}", fmt::join(channel.types, ", "))), channel.messages, channel.rate_hz(),
-                        megabytes(channel.bytes), mean_kb);
+                        printable(fmt::format("{}", fmt::join(channel.types, ", "))), channel.messages,
+                        channel.rate_hz(), megabytes(channel.bytes), mean_kb);
     text += channel.messages < 2 ? "-\n"
                                  : fmt::format("{:.3f} s before {:.3f} s\n", seconds(channel.longest_gap),
                                                seconds(microseconds_between(info.first, channel.gap_at)));
   }
   for (const auto& [name, channel] : info.channels) {
     if (channel.frames.empty()) continue;
-    text += fmt::format("{}: {}; {} frames missing in their numbering\n", printable(name), channel.frames, channel.frames_lost);
+    text += fmt::format("{}: {}; {} frames missing in their numbering\n", printable(name), channel.frames,
+                        channel.frames_lost);
   }
   return text;
 }

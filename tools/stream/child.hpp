@@ -20,8 +20,8 @@ struct Ending {
 /// that lives as long as the process does.
 class Child {
  public:
-  /// `command`: program with its path, arguments. With `hears_words` what it writes to stderr goes through this process,
-  /// which remembers its last line. Throws InputError when it cannot be started.
+  /// `command`: program with its path, arguments. With `hears_words` what it writes to stderr goes through this
+  /// process, which remembers its last line. Throws InputError when it cannot be started.
   explicit Child(const std::vector<std::string>& command, bool hears_words = false);
   /// Kills it if it still runs.
   ~Child();

@@ -51,8 +51,8 @@ void Supervisor::start(Member& member) {
 void Supervisor::plan_restart(Member& member, const std::string& words) {
   const bool settled = Clock::now() - member.since > settings_.settled;
   member.failures = settled ? 1 : member.failures + 1;
-  require(member.failures < settings_.most_failures, "{} {}, {} times in a row: it is given up; {}",
-          member.plan.name, words, member.failures, last_words_of(*member.child));
+  require(member.failures < settings_.most_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
+          words, member.failures, last_words_of(*member.child));
   member.wait =
       settled || member.wait.count() == 0 ? settings_.first_wait : std::min(2 * member.wait, settings_.longest_wait);
   member.since = Clock::now() + member.wait;

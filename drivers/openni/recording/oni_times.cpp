@@ -31,8 +31,7 @@ struct RecordHeader {
 
 class OniFile {
  public:
-  explicit OniFile(const std::filesystem::path& file, std::ios::openmode mode = std::ios::in)
-      : name_(file.string()) {
+  explicit OniFile(const std::filesystem::path& file, std::ios::openmode mode = std::ios::in) : name_(file.string()) {
     require_regular_file(file, "a recording of OpenNI2's");
     size_ = std::filesystem::file_size(file);
     stream_.open(file, mode | std::ios::binary);
@@ -95,7 +94,8 @@ std::vector<std::uint64_t> times_in(const RecordHeader& record, std::uint64_t at
 
 /// OpenNI2 makes place for as many images as a node states.
 void check_images(OniFile& oni, const RecordHeader& record, std::uint64_t at) {
-  require(record.fields >= kRecordHeader + kImages, "{}: a stream of {} bytes at byte {}", oni.name(), record.fields, at);
+  require(record.fields >= kRecordHeader + kImages, "{}: a stream of {} bytes at byte {}", oni.name(), record.fields,
+          at);
   const auto images = oni.read<std::uint32_t>(at + record.fields - kImages);
   require(images <= oni.size() / kRecordHeader, "{}: states {} images, expected at most what {} bytes hold", oni.name(),
           images, oni.size());

@@ -15,13 +15,17 @@ TEST(Printable, ShowsWhatWouldSteerATerminal) {
   EXPECT_EQ(printable("\x1b]0;title\x07"), "\\x1b]0;title\\x07");
   EXPECT_EQ(printable("a\nb\r\t"), "a\\x0ab\\x0d\\x09");
   EXPECT_EQ(printable("\x7f"), "\\x7f");
-  EXPECT_EQ(printable("\xc2\x9b""2J"), "\\xc2\\x9b2J");  // CSI in eight bits
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J"),
+            "\\xc2\\x9b2J");  // CSI in eight bits
 }
 
 TEST(Printable, ShowsWhatIsNotUtf8) {
-  EXPECT_EQ(printable("a\xff""b"), "a\\xffb");
-  EXPECT_EQ(printable("\xe2\x82"), "\\xe2\\x82");      // cut
-  EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");      // overlong
+  EXPECT_EQ(printable("a\xff"
+                      "b"),
+            "a\\xffb");
+  EXPECT_EQ(printable("\xe2\x82"), "\\xe2\\x82");           // cut
+  EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");           // overlong
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // a surrogate
 }
 

@@ -87,7 +87,9 @@ TEST(SequenceCount, ASenderThatIsStartedAgainLosesNothingByIt) {
       for (std::int64_t number = 0; number < frames; ++number) arrivals.come(number);
       arrivals.pass(1'500'000);
       for (std::int64_t number = 0; number < frames; ++number) {
-        if (number != 10) EXPECT_EQ(arrivals.come(number, 0, start), FrameOrder::kNext) << number;
+        if (number != 10) {
+          EXPECT_EQ(arrivals.come(number, 0, start), FrameOrder::kNext) << number;
+        }
       }
       EXPECT_EQ(arrivals.count.lost(), 1);
     }

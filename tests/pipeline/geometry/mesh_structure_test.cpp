@@ -145,8 +145,9 @@ TEST(MeshStructure, CutFilesAreRefused) {
           << kind.ending << " cut to " << length << " of " << kind.bytes.size();
     }
     const std::size_t vertices_end = kind.bytes.find("end_header");
-    if (vertices_end != std::string::npos)
+    if (vertices_end != std::string::npos) {
       EXPECT_EQ(triangles_of(kind, kind.bytes.substr(0, vertices_end - 5)), std::nullopt) << "in its header";
+    }
   }
 }
 
@@ -160,25 +161,29 @@ TEST(MeshStructure, DamagedFilesAreRefusedOrAsLarge) {
       const std::optional<std::size_t> triangles = triangles_of(kind, bytes);
       if (!triangles) ++refused;
       // Corners that have become the same leave a face without area, which is no triangle.
-      if (triangles) EXPECT_GE(*triangles + 2, ball().triangles.size()) << kind.ending << ", flip " << i;
+      if (triangles) {
+        EXPECT_GE(*triangles + 2, ball().triangles.size()) << kind.ending << ", flip " << i;
+      }
     }
     EXPECT_GT(refused, 0) << kind.ending;
   }
 }
 
 TEST(MeshStructure, WhatIsWrittenByOthersIsRead) {
-  EXPECT_NO_THROW(check_obj("v 1 2 3\r\nv +1.5e-3 0 0\r\nv 0 1 0\r\nvt 0 1\r\ng top\r\nusemtl red\r\ns off\r\n"
-                            "f -3/1 -2/1 -1/1\r\n",
-                            "of Windows"));
+  EXPECT_NO_THROW(
+      check_obj("v 1 2 3\r\nv +1.5e-3 0 0\r\nv 0 1 0\r\nvt 0 1\r\ng top\r\nusemtl red\r\ns off\r\n"
+                "f -3/1 -2/1 -1/1\r\n",
+                "of Windows"));
   EXPECT_NO_THROW(check_obj("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 \\\n 2 3\n", "continued"));
   const std::string tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4";
   EXPECT_NO_THROW(check_obj(tetrahedron, "closed, its last line without an end"));
   EXPECT_THROW(check_obj(tetrahedron.substr(0, tetrahedron.size() - 8), "cut behind a line"), InputError);
-  EXPECT_NO_THROW(check_ply("ply\r\nformat ascii 1.0\r\ncomment made\r\nelement vertex 3\r\nproperty double x\r\n"
-                            "property double y\r\nproperty double z\r\nelement face 1\r\n"
-                            "property list uint8 uint32 vertex_index\r\nend_header\r\n0 0 0\r\n1 0 0\r\n0 nan 0\r\n"
-                            "3 0 1 2\r\n",
-                            "of Windows"));
+  EXPECT_NO_THROW(
+      check_ply("ply\r\nformat ascii 1.0\r\ncomment made\r\nelement vertex 3\r\nproperty double x\r\n"
+                "property double y\r\nproperty double z\r\nelement face 1\r\n"
+                "property list uint8 uint32 vertex_index\r\nend_header\r\n0 0 0\r\n1 0 0\r\n0 nan 0\r\n"
+                "3 0 1 2\r\n",
+                "of Windows"));
 }
 
 TEST(MeshStructure, NodesThatGoRoundAreRefused) {

@@ -1,4 +1,4 @@
-#include "tools/log/seal_log.hpp"
+#include "pipeline/bus/log_seal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/bus/log_seal.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/good_events.hpp"
@@ -64,8 +63,12 @@ TEST_F(SealLog, EveryFlippedBitIsFound) {
     write_whole_file(folder_ / "damaged", bytes);
     const auto [kept, words] = read(folder_ / "damaged");
     // An event's number in its header is nobody's business: LCM counts anew.
-    if (words.empty()) EXPECT_EQ(kept, events);
-    if (!words.empty()) EXPECT_LT(kept, events + 1) << words;
+    if (words.empty()) {
+      EXPECT_EQ(kept, events);
+    }
+    if (!words.empty()) {
+      EXPECT_LT(kept, events + 1) << words;
+    }
   }
   std::string jpeg = whole;
   jpeg[whole.find("\xFF\xDA") + 40] ^= 4;
@@ -79,8 +82,7 @@ TEST_F(SealLog, MissingEventsAreFound) {
   const std::string whole = read_file(sealed_, "a log");
   write_whole_file(folder_ / "cut", whole.substr(0, whole.size() - (28 + 5 + 3)));  // the last event
   LogReader log(folder_ / "cut");
-  EXPECT_THROW(
-      while (log.next()) {}, InputError);
+  EXPECT_THROW(while (log.next()){}, InputError);
   EXPECT_NE(read(folder_ / "cut").second.find("1 sealed event"), std::string::npos) << read(folder_ / "cut").second;
 }
 
