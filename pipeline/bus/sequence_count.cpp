@@ -11,6 +11,7 @@ constexpr std::int64_t kBelieved = 300;        // frames that a single number ma
 constexpr std::int64_t kMostLost = 100'000;    // and two that follow one another: an hour
 constexpr std::int64_t kRepeatUs = 1'000'000;  // a duplicate comes within this time
 constexpr std::size_t kRuns = 4;               // senders on one channel whose numbers are kept apart
+constexpr std::int64_t kFew = 8;               // frames behind a jump that may be of who forged it
 constexpr std::size_t kHeard = 256;
 
 std::size_t slot_of(std::int64_t number, std::size_t window) {
@@ -92,7 +93,8 @@ FrameOrder SequenceCount::note_far(Run& run, const FrameNumber& frame, std::int6
     run.candidate_us = now_us;
     return FrameOrder::kNext;
   }
-  if (run.jump_lost > 0 && before > run.jump_from && before - run.jump_from < kWindow) {
+  const bool has_just_jumped = run.jump_lost > 0 && run.newest - run.jump_from - run.jump_lost < kFew;
+  if (has_just_jumped && before > run.jump_from && before - run.jump_from < kWindow) {
     lost_ += before - run.jump_from - 1 - run.jump_lost;
   } else if (before > run.newest && before - run.newest <= kMostLost) {
     lost_ += before - run.newest - 1;
