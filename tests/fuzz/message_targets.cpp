@@ -1,4 +1,5 @@
 #include <houghstream/drake_image_array_t.hpp>
+#include <houghstream/status_t.hpp>
 
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"

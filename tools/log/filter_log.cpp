@@ -56,7 +56,7 @@ class Dates {
                                      -1e-6 * static_cast<double>(earliest_),
                                      by_time ? ", and count as earlier than second 0" : ""));
     }
-    if (jumps_ > 0) losses.note_oddity(fmt::format("{} times the date jumps by more than an hour", jumps_));
+    if (jumps_ > 0) losses.note_oddity(fmt::format("the date jumps by more than an hour at {} places", jumps_));
   }
 
  private:

@@ -67,12 +67,14 @@ class Faults:
         try:
             for run in range(restarts):
                 relay = Relay(SENT, HEARD, self.frames, seed=run + 1, **faults)
-                capture = self.capture(folder, f"capture{run}", SENT, self.frames)
-                if meanwhile:
-                    meanwhile()
-                capture.wait(60 + self.frames)
-                time.sleep(0.5)
-                relay.stop()
+                try:
+                    capture = self.capture(folder, f"capture{run}", SENT, self.frames)
+                    if meanwhile:
+                        meanwhile()
+                    capture.wait(60 + self.frames)
+                    time.sleep(0.5)
+                finally:
+                    relay.stop()
                 passed = {key: passed.get(key, 0) + count for key, count in relay.counts.items()}
             detector.stop(5.0)
         finally:
