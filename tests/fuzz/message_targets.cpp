@@ -58,6 +58,7 @@ std::vector<Bytes> results() {
   Teaching teaching;
   teaching.frame = detections.frame;
   teaching.name = "mug";
+  teaching.state = TeachingState::kTracking;
   teaching.directions = {{Eigen::Vector3f::UnitZ(), true}};
   KnownObjects known;
   known.store = "my.store";
