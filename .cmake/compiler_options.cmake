@@ -42,7 +42,12 @@ function(houghstream_compile_options target)
   # goes without them, as precompiled headers have one set of options.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                            -Wno-float-conversion ${HOUGHSTREAM_WERROR} -ffp-contract=off -fno-strict-aliasing)
-  if(HOUGHSTREAM_SANITIZE)
+  if(HOUGHSTREAM_FUZZ) # by clang, whose warnings are others
+    target_compile_options(${target} PRIVATE -Wno-error -fsanitize=fuzzer-no-link,address,undefined
+                                             -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+    target_compile_definitions(${target} PRIVATE EIGEN_MALLOC_ALREADY_ALIGNED=1)
+  elseif(HOUGHSTREAM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer -g)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
@@ -64,7 +69,7 @@ endfunction()
 # include itself is noticed.
 function(houghstream_share_headers name)
   cmake_parse_arguments(ARG "QUICKLY" "" "HEADERS;LINK" ${ARGN})
-  if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_SANITIZE)
+  if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_SANITIZE OR HOUGHSTREAM_FUZZ)
     return()
   endif()
   set(source "${PROJECT_BINARY_DIR}/${name}.cpp")

@@ -14,6 +14,7 @@
 #include "detector/forest/packed_trees.hpp"
 #include "detector/profiles.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream {
 namespace {
@@ -83,6 +84,7 @@ struct Reader {
 
   void copy(void* to, std::size_t size) {
     require(size <= bytes.size() - at, "{}: forest payload ends {} bytes early", source, size - (bytes.size() - at));
+    if (size == 0) return;  // into an empty list, which has no place
     std::memcpy(to, bytes.data() + at, size);
     at += size;
   }
@@ -171,6 +173,30 @@ void check_leaves(const Forest& forest, const std::string& source) {
   }
 }
 
+bool is_share(float value) {
+  return value >= 0.0F && value <= 1.001F;
+}
+
+/// Numbers that are none become any integer later.
+void check_numbers(const Forest& forest, const std::string& source) {
+  constexpr float kFar = 100.0F;  // metres
+  for (const LeafVote& vote : forest.votes) {
+    require(vote.offset.array().abs().maxCoeff() < kFar && vote.offset.allFinite() && is_share(vote.weight),
+            "{}: a vote of weight {}, expected metres and 0 to 1", source, vote.weight);
+  }
+  for (const LeafView& view : forest.leaf_views)
+    require(is_share(view.weight), "{}: a view of weight {}, expected 0 to 1", source, view.weight);
+  for (const float weight : forest.leaf_weights)
+    require(is_share(weight), "{}: a leaf of weight {}, expected 0 to 1", source, weight);
+  for (const TrainedView& view : forest.views) {
+    const bool has_box =
+        std::all_of(view.box.begin(), view.box.end(), [](float side) { return std::abs(side) < kFar; });
+    require(has_box && std::abs(view.R_ray_object.norm() - 1.0F) < 0.01F && view.class_index < forest.classes.size(),
+            "{}: a view of class {} with a rotation of length {}, expected one of {} and 1", source, view.class_index,
+            view.R_ray_object.norm(), forest.classes.size());
+  }
+}
+
 void check_settings(const Forest& forest, const std::string& source) {
   const FeatureSettings& f = forest.features;
   require(f.image_scale > 0.05 && f.image_scale <= 2.0, "{}: image scale {}, expected 0.05 to 2", source,
@@ -222,16 +248,12 @@ void save_forest(const Forest& forest, const std::filesystem::path& file) {
   Writer header;
   header(static_cast<std::uint64_t>(payload.bytes.size()));
   header(checksum(payload.bytes));
-  std::filesystem::path partial = file;
-  partial += ".partial";
-  {
-    std::ofstream out(partial, std::ios::binary);
-    out << kName << kForestFileVersion << '\n' << header.bytes << payload.bytes;
-    require(out.flush().good(), "{}: cannot be written", partial.string());
-  }
-  std::error_code error;
-  std::filesystem::rename(partial, file, error);
-  require(!error, "{}: cannot be written: {}", file.string(), error.message());
+  WholeFile whole(file);
+  std::ofstream out(whole.partial(), std::ios::binary);
+  out << kName << kForestFileVersion << '\n' << header.bytes << payload.bytes;
+  out.close();
+  require(out.good(), "{}: cannot be written", file.string());
+  whole.publish();
 }
 
 /// Read at once: a forest of many objects has hundreds of megabytes.
@@ -247,6 +269,7 @@ static std::string rest_of(std::ifstream& in) {
 
 Forest load_forest(const std::filesystem::path& file) {
   const std::string source = file.string();
+  require_regular_file(file, "a forest file");
   std::ifstream in(file, std::ios::binary);
   require(in.good(), "{}: forest file cannot be opened", source);
   std::string line;
@@ -275,6 +298,7 @@ Forest load_forest(const std::filesystem::path& file) {
   require_extensions(forest.features, source);
   check_indices(forest, source);
   check_leaves(forest, source);
+  check_numbers(forest, source);
   note_leaf_heads(forest);
   note_view_neighbours(forest);
   pack_trees(forest);

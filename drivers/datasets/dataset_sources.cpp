@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <tuple>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "drivers/files/frame_folder.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream {
 namespace {
@@ -64,7 +64,7 @@ struct TumPair {
 
 std::vector<TimedImage> read_list(const fs::path& folder, const char* name) {
   const fs::path file = folder / name;
-  std::ifstream in(file);
+  std::istringstream in(read_file(file, "a list of images"));
   require(in.good(), "{}: cannot be read, expected the image list of a TUM sequence", file.string());
   std::vector<TimedImage> images;
   std::string line;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "drivers/datasets/bop_dataset.hpp"
@@ -14,6 +14,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/natural_order.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 
 namespace houghstream {
@@ -110,7 +111,7 @@ std::vector<ViewName> list_views(const Instance& instance) {
 }
 
 cv::Point read_location(const fs::path& file) {
-  std::ifstream in(file);
+  std::istringstream in(read_file(file, "a place of a cut"));
   cv::Point location(-1, -1);
   char comma = 0;
   in >> location.x >> comma >> location.y;

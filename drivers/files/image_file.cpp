@@ -3,13 +3,14 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/image_decoding.hpp"
 
 namespace houghstream {
 namespace {
 
 cv::Mat read_image(const std::filesystem::path& file, int mode) {
-  require(std::filesystem::is_regular_file(file), "{}: no such file, expected an image", file.string());
+  require_regular_file(file, "an image");
   cv::Mat image = decode_image_file(file, mode);
   require(!image.empty(), "{}: cannot be decoded, expected an image", file.string());
   return image;
@@ -35,13 +36,19 @@ cv::Mat read_mask_image(const std::filesystem::path& file) {
 void write_png(const cv::Mat& image, const std::filesystem::path& file) {
   // Level 1 writes several times faster than the default and costs about a tenth in size.
   constexpr int kCompression = 1;
-  bool written = false;
+  write_image(image, file, {cv::IMWRITE_PNG_COMPRESSION, kCompression});
+}
+
+void write_image(const cv::Mat& image, const std::filesystem::path& file, const std::vector<int>& settings) {
+  std::vector<unsigned char> bytes;
+  bool encoded = false;
   try {
-    written = cv::imwrite(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, kCompression});
+    encoded = cv::imencode(file.extension().string(), image, bytes, settings);
   } catch (const cv::Exception&) {
-    written = false;  // an image type that PNG does not know
+    encoded = false;  // no such format, or a type of image that it does not know
   }
-  require(written, "{}: cannot be written", file.string());
+  require(encoded, "{}: not a picture format that can be written, expected .png or .jpg", file.string());
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace houghstream

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <vector>
 
 namespace houghstream {
 
@@ -16,5 +17,8 @@ cv::Mat read_mask_image(const std::filesystem::path& file);
 
 /// PNG, compressed for speed. Throws InputError when the file cannot be written.
 void write_png(const cv::Mat& image, const std::filesystem::path& file);
+
+/// Writes an image in the format that its name ends with, with OpenCV's `settings` of that format. Throws InputError.
+void write_image(const cv::Mat& image, const std::filesystem::path& file, const std::vector<int>& settings = {});
 
 }  // namespace houghstream

@@ -2,9 +2,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream {
 namespace {
@@ -24,9 +24,7 @@ int index_of(const std::string& key, const std::string& file) {
 }
 
 nlohmann::json read_json(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  require(in.good(), "{}: missing or unreadable, expected a JSON file", file.string());
-  return nlohmann::json::parse(in, nullptr, false);
+  return nlohmann::json::parse(read_file(file, "a JSON file"), nullptr, false);
 }
 
 }  // namespace
@@ -55,10 +53,8 @@ std::map<int, nlohmann::json> read_json_by_id(const std::filesystem::path& file)
 }
 
 void write_json(const OrderedJson& json, const std::filesystem::path& file) {
-  std::ofstream out(file);
-  out << json.dump(1) << '\n';
-  out.close();
-  require(out.good(), "{}: cannot be written", file.string());
+  // A name off the wire may hold any bytes; JSON holds Unicode only (RFC 8259, section 8.1).
+  write_whole_file(file, json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + '\n');
 }
 
 double json_number(const nlohmann::json& object, const std::string& key, const std::string& where) {

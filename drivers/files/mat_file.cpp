@@ -11,6 +11,7 @@
 
 #include "drivers/files/mat_parser.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream {
 namespace {
@@ -20,6 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kHeaderBytes = 128;
 
 std::vector<unsigned char> read_bytes(const fs::path& path) {
+  require_regular_file(path, "a MATLAB file");
   std::ifstream in(path, std::ios::binary);
   require(in.good() && fs::is_regular_file(path), "{}: missing or unreadable, expected a MATLAB file", path.string());
   return {std::istreambuf_iterator<char>(in), {}};

@@ -2,11 +2,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <opencv2/core.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 
 namespace houghstream::openni {
@@ -14,15 +13,17 @@ namespace {
 
 /// OpenCV reads YAML that starts with its own header; ROS writes none.
 cv::FileStorage parse_yaml(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  require(in.good(), "{}: cannot be read, expected a camera calibration file", file.string());
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text = read_file(file, "a camera calibration file");
   if (text.rfind("%YAML", 0) != 0) text = "%YAML:1.0\n---\n" + text;
+  cv::FileStorage yaml;
   try {
-    return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
+    yaml.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
   } catch (const cv::Exception&) {
     fail("{}: no YAML, expected a camera calibration file", file.string());
   }
+  require(yaml.isOpened() && yaml.root().isMap(), "{}: no YAML of names and values, expected a camera calibration file",
+          file.string());
+  return yaml;
 }
 
 std::vector<double> numbers_of(const cv::FileNode& list) {
@@ -33,8 +34,15 @@ std::vector<double> numbers_of(const cv::FileNode& list) {
   return numbers;
 }
 
+/// Nothing where `map` is none; OpenCV itself throws.
+cv::FileNode member(const cv::FileNode& map, const char* key) {
+  return map.isMap() ? map[key] : cv::FileNode();
+}
+
 int size_of(const cv::FileStorage& yaml, const char* key, const std::filesystem::path& file) {
   require(yaml[key].isInt(), "{}: no {}, expected pixels", file.string(), key);
+  require(yaml[key].real() >= 1.0 && yaml[key].real() <= 1e5, "{}: {} of {}, expected pixels", file.string(), key,
+          yaml[key].real());
   return static_cast<int>(yaml[key].real());
 }
 
@@ -64,11 +72,11 @@ CameraMode parse_camera_mode(const std::string& text) {
 
 Camera read_camera_info(const std::filesystem::path& file) {
   const cv::FileStorage yaml = parse_yaml(file);
-  const std::vector<double> K = numbers_of(yaml["camera_matrix"]["data"]);
+  const std::vector<double> K = numbers_of(member(yaml["camera_matrix"], "data"));
   require(K.size() == 9, "{}: camera_matrix has {} numbers in its data, expected 9", file.string(), K.size());
   const Camera camera{size_of(yaml, "image_width", file), size_of(yaml, "image_height", file), K[0], K[4], K[2], K[5]};
   check_camera(camera, file.string());
-  for (const double coefficient : numbers_of(yaml["distortion_coefficients"]["data"])) {
+  for (const double coefficient : numbers_of(member(yaml["distortion_coefficients"], "data"))) {
     if (std::abs(coefficient) < 1e-9) continue;
     log_warning("{}: its distortion is not corrected; boxes and poses near the image's edge may be a little off",
                 file.string());

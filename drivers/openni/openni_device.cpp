@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "drivers/openni/openni_parts.hpp"
+#include "drivers/openni/recording/oni_times.hpp"
 #include "drivers/openni/recording/openni_recording.hpp"
 #include "drivers/openni/stream_reader.hpp"
 #include "pipeline/base/checks.hpp"
@@ -84,7 +85,7 @@ struct OpenniDevice::State {
     depth.destroy();
     colour.destroy();
     device.close();
-    if (recording && recording->started()) recording->mend_times();
+    if (recording && recording->started()) recording->finish();
   }
 
   void open() {
@@ -198,6 +199,7 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, 
 }
 
 std::unique_ptr<OpenniDevice> OpenniDevice::open_file(const std::string& file, const StopRequested& stop_requested) {
+  check_oni(file);
   auto state = std::make_unique<State>(file, stop_requested);
   state->is_file = true;
   state->open();

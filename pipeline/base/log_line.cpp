@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "pipeline/base/printable.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -32,7 +34,8 @@ void hush_log() {
 }
 
 void log_line(LogLevel level, const std::string& line) {
-  spdlog::log(to_spdlog(level), spdlog::string_view_t(line));
+  const std::string shown = printable_lines(line);
+  spdlog::log(to_spdlog(level), spdlog::string_view_t(shown));
 }
 
 }  // namespace houghstream

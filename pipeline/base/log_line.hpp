@@ -16,7 +16,8 @@ void start_log(const std::string& name, LogLevel least);
 void hush_log();
 
 /// A line of the log. spdlog writes it, but lines are composed here: where spdlog is handed values, each source that
-/// logs holds the whole of fmt's formatting again, and takes two seconds longer to compile.
+/// logs holds the whole of fmt's formatting again, and takes two seconds longer to compile. What would steer a terminal
+/// is shown as \xNN: names and errors come off the wire.
 void log_line(LogLevel level, const std::string& line);
 
 template <typename... Args>

@@ -1,6 +1,8 @@
 #include "pipeline/base/stop_signal.hpp"
 
 #include <atomic>
+#include <cstdint>
+#include <ctime>
 
 namespace houghstream {
 namespace {
@@ -8,8 +10,23 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
 
-void on_signal(int /*number*/) {
-  stop = true;
+std::atomic<std::int64_t> stopped_ms{0};  // when it was set
+static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler may set it");
+
+std::int64_t now_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);  // may be called from a signal handler
+  return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
+}
+
+void on_signal(int number) {
+  constexpr std::int64_t kOneRequest = 1000;  // Ctrl-C may reach a process from the terminal and from who started it
+  if (!stop.exchange(true)) {
+    stopped_ms = now_ms();
+  } else if (now_ms() - stopped_ms > kOneRequest) {
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+  }
 }
 
 }  // namespace

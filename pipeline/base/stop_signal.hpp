@@ -4,7 +4,9 @@
 
 namespace houghstream {
 
-/// From now on SIGINT and SIGTERM only set a flag.
+/// From now on SIGINT and SIGTERM only set a flag; the next one ends the program when it comes more than a second
+/// later, so that nothing that hangs is deaf. Before, both end the program: call it when what takes long (a forest,
+/// models) has been read, and before it is said that the program is ready.
 void catch_stop_signals();
 
 /// Whether one of them has come since.

@@ -32,5 +32,6 @@ namespace houghstream::metadata {
 inline const std::string kCamera = "houghstream.camera";      ///< an encoded camera_t
 inline const std::string kStages = "houghstream.stages";      ///< encoded stage_time_t, one after another
 inline const std::string kSequence = "houghstream.sequence";  ///< the source's frame counter from 0, decimal text
+inline const std::string kRun = "houghstream.run";  ///< of hs-capture: when it began, microseconds, decimal text
 
 }  // namespace houghstream::metadata

@@ -4,8 +4,11 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
+#include "pipeline/bus/log_seal.hpp"
 
 namespace houghstream {
 namespace {
@@ -22,7 +25,7 @@ void LogWriter::Closer::operator()(lcm_eventlog_t* log) const {
 }
 
 LogWriter::LogWriter(const std::filesystem::path& file)
-    : file_(file.string()), log_(lcm_eventlog_create(file_.c_str(), "w")) {
+    : whole_(file), file_(file.string()), log_(lcm_eventlog_create(whole_.partial().c_str(), "w")) {
   require(log_ != nullptr, "{}: cannot be written: {}", file_, std::strerror(errno));
 }
 
@@ -44,9 +47,17 @@ void LogWriter::close() {
   const int error = errno;
   log_.reset();
   require(flushed, "{}: the end of the log could not be written: {}", file_, std::strerror(error));
+  whole_.publish();
 }
 
-LogReader::LogReader(const std::filesystem::path& file) : file_(file.string()), in_(std::fopen(file_.c_str(), "rb")) {
+void LogWriter::keep() {
+  log_.reset();
+  whole_.keep();
+}
+
+LogReader::LogReader(const std::filesystem::path& file) : file_(file.string()) {
+  require_regular_file(file, "an LCM log");
+  in_.reset(std::fopen(file_.c_str(), "rb"));
   require(in_ != nullptr, "{}: cannot be read: {}", file_, std::strerror(errno));
   std::error_code error;
   size_ = std::filesystem::file_size(file, error);
@@ -84,6 +95,37 @@ LogReader::Header LogReader::read_header() {
 }
 
 std::optional<LogEvent> LogReader::next() {
+  while (true) {
+    std::optional<LogEvent> event = read_event();
+    if (!event) {
+      const std::size_t missing = std::exchange(seals_, {}).size();
+      require(missing == 0, "{}: cut after event {}: {} sealed {} missing", file_, events_, missing,
+              missing == 1 ? "event is" : "events are");
+      return std::nullopt;
+    }
+    if (event->channel != kSealChannel) {
+      break_seal(*event);
+      return event;
+    }
+    const std::size_t missing = std::exchange(seals_, {}).size();
+    const std::vector<std::uint32_t> checksums = decode_seal({event->data.data(), event->data.size()}, file_);
+    seals_.assign(checksums.begin(), checksums.end());
+    is_sealed_ = true;
+    is_unlike_seal_ = missing > 0;
+    require(missing == 0, "{}: {} sealed events are missing before event {}", file_, missing, events_);
+  }
+}
+
+void LogReader::break_seal(const LogEvent& event) {
+  if (seals_.empty()) return;
+  const std::uint32_t expected = seals_.front();
+  seals_.pop_front();
+  is_unlike_seal_ = checksum_of(event) != expected;
+  require(!is_unlike_seal_, "{}: event {} on {} is damaged: checksum {:08x}, its seal says {:08x}", file_, events_ - 1,
+          printable(event.channel), checksum_of(event), expected);
+}
+
+std::optional<LogEvent> LogReader::read_event() {
   if (position_ == size_) return std::nullopt;
   const Header header = read_header();
   LogEvent event;
@@ -131,6 +173,8 @@ std::optional<std::uint64_t> LogReader::find_event(std::uint64_t from) {
 }
 
 LogReader::Damage LogReader::skip_damage() {
+  if (std::exchange(is_unlike_seal_, false)) return {position_ - last_position_, false};
+  seals_.clear();  // which of them are of what follows is not known
   const std::uint64_t damaged = position_;
   // A wrong length in a header reaches into later events: those are looked for too.
   const std::uint64_t from = events_ > 0 ? last_position_ + 1 : damaged + 1;

@@ -15,6 +15,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
 namespace houghstream {
@@ -77,8 +78,12 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(s
   state_->url = complete_url(url);
   if (state_->url.rfind(kFileScheme, 0) == 0) {
     const std::string path = state_->url.substr(kFileScheme.size());
-    state_->input_log.emplace(path.substr(0, path.find('?')));
-    if (!output_log.empty()) state_->output_log.emplace(output_log);
+    const std::string input = path.substr(0, path.find('?'));
+    state_->input_log.emplace(input);
+    if (!output_log.empty()) {
+      require_other_file(output_log, input);
+      state_->output_log.emplace(output_log);
+    }
     return;
   }
   require(output_log.empty(), "an output log goes with a file:// URL, not with {}; record a bus with lcm-logger",
@@ -107,6 +112,14 @@ void LcmBus::subscribe(const std::string& channels, Handler handler) {
       lcm_subscribe(state_->lcm.get(), whole.c_str(), on_message, &state_->subscriptions.back());
   require(subscription != nullptr, "{}: cannot subscribe to {}; is there a multicast route?", state_->url, channels);
   lcm_subscription_set_queue_capacity(subscription, kQueueCapacity);
+  if (is_of_own_host(state_->url)) refuse_others();
+}
+
+// LCM opens the socket with the first subscription.
+void LcmBus::refuse_others() {
+  bool good = true;
+  for (const int socket : receiving_sockets(state_->url)) good = refuse_other_hosts(socket) && good;
+  if (!good) log_warning("{}: messages of other hosts cannot be kept out: {}", state_->url, std::strerror(errno));
 }
 
 bool LcmBus::handle(std::chrono::milliseconds timeout) {

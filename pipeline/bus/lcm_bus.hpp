@@ -25,9 +25,10 @@ class LcmBus {
  public:
   using Handler = std::function<void(const Arrival&)>;
 
-  /// `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with ttl=0. A udpm URL that does not state it gets a
-  /// recv_buf_size. Logs what is missing where the kernel grants less than needed. `output_log` is for file:// only,
-  /// and may be empty: then nothing can be published. Throws InputError.
+  /// With ttl=0, messages that other hosts send are dropped by the kernel; with a ttl of 1 or more anybody on the
+  /// network may send, and nobody is asked who he is. `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with
+  /// ttl=0. A udpm URL that does not state it gets a recv_buf_size. Logs what is missing where the kernel grants less
+  /// than needed. `output_log` is for file:// only, and may be empty: then nothing can be published. Throws InputError.
   explicit LcmBus(const std::string& url, const std::string& output_log = "");
   ~LcmBus();
 
@@ -57,6 +58,8 @@ class LcmBus {
 
  private:
   struct State;
+  void refuse_others();
+
   std::unique_ptr<State> state_;
 };
 

@@ -14,6 +14,7 @@ namespace houghstream {
 namespace {
 
 constexpr std::chrono::seconds kPeriod(1);
+constexpr std::size_t kMostSources = 256;          // a sender of rubbish may make up channels without end
 constexpr std::chrono::seconds kLatencyWindow(5);  // at 30 Hz enough frames for a 99th percentile
 
 }  // namespace
@@ -25,12 +26,19 @@ void StatusReporter::count_received() {
   ++received_;
 }
 
-void StatusReporter::note_sequence(std::optional<std::int64_t> sequence, const std::string& source) {
+FrameOrder StatusReporter::note_number(const FrameNumber& number, const std::string& source) {
+  const std::int64_t now_us =
+      std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!sequence) return;
-  const auto [last, is_first] = last_sequences_.emplace(source, *sequence);
-  if (!is_first && *sequence > last->second) lost_ += *sequence - last->second - 1;
-  last->second = *sequence;
+  if (sequences_.size() >= kMostSources && sequences_.count(source) == 0) return FrameOrder::kNext;
+  const FrameOrder order = sequences_[source].note(number, now_us);
+  if (order == FrameOrder::kDuplicate) ++duplicates_;
+  return order;
+}
+
+void StatusReporter::note_duplicate() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++duplicates_;
 }
 
 void StatusReporter::count_skipped(std::int64_t frames) {
@@ -84,7 +92,10 @@ status_t StatusReporter::message() const {
   status.frames_received = received_;
   status.frames_processed = processed_;
   status.frames_skipped = skipped_;
-  status.frames_lost = last_sequences_.empty() ? -1 : lost_;
+  status.frames_lost = -1;
+  for (const auto& [source, count] : sequences_) {
+    if (count.lost()) status.frames_lost = std::max<std::int64_t>(status.frames_lost, 0) + *count.lost();
+  }
   status.frames_refused = refused_;
   status.latency_p50_ms = static_cast<float>(latency.p50);
   status.latency_p95_ms = static_cast<float>(latency.p95);
@@ -106,13 +117,14 @@ void StatusReporter::publish(LcmBus& bus) {
   bus.publish(channel::kKnownObjects, objects);
 }
 
-void StatusReporter::publish_if_due(LcmBus& bus) {
+bool StatusReporter::publish_if_due(LcmBus& bus) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (Clock::now() - last_published_ < kPeriod) return;
+    if (Clock::now() - last_published_ < kPeriod) return false;
     last_published_ = Clock::now();
   }
   publish(bus);
+  return true;
 }
 
 std::string StatusReporter::summary() const {
@@ -121,6 +133,7 @@ std::string StatusReporter::summary() const {
   std::string line = fmt::format("{} received, {} processed, {} skipped, {} lost, {} refused", status.frames_received,
                                  status.frames_processed, status.frames_skipped, lost, status.frames_refused);
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (duplicates_ > 0) line += fmt::format("; {} duplicates dropped", duplicates_);
   return bad_messages_ == 0 ? line : line + fmt::format("; {} other bad messages", bad_messages_);
 }
 

@@ -12,11 +12,13 @@
 
 #include "pipeline/base/limited_lines.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/types/known_objects.hpp"
 
 namespace houghstream {
 
-/// Keeps a process's account of its frames: received = processed + skipped + refused, and one or two in between.
+/// Keeps a process's account of its frames: received = processed + skipped + refused, and one or two in between;
+/// sent = received + lost. What comes twice is counted as a duplicate and as nothing else.
 /// Every function may be called from any thread.
 class StatusReporter {
  public:
@@ -26,9 +28,11 @@ class StatusReporter {
   explicit StatusReporter(std::string process);
 
   void count_received();
-  /// The source's number of a frame that has arrived. A jump counts as lost frames; a step back is a new run. Each
-  /// source (a camera's channel) counts its own.
-  void note_sequence(std::optional<std::int64_t> sequence, const std::string& source = "");
+  /// What its source says of a frame that has arrived; missing numbers count as lost frames (SequenceCount). Each
+  /// source (a camera's channel) counts its own. A duplicate is to be dropped, and counts as a duplicate only.
+  FrameOrder note_number(const FrameNumber& number, const std::string& source = "");
+  /// Another message than a frame that has come before.
+  void note_duplicate();
   void count_skipped(std::int64_t frames);
   /// `latency` is from the frame's arrival in this process until its result was published.
   void count_processed(Clock::duration latency);
@@ -45,8 +49,8 @@ class StatusReporter {
 
   /// Publishes the status, and the objects that are known where it was told of any.
   void publish(LcmBus& bus);
-  /// The same when a second has passed since the last time.
-  void publish_if_due(LcmBus& bus);
+  /// The same when a second has passed since the last time; whether it has.
+  bool publish_if_due(LcmBus& bus);
 
   /// The account in one line.
   std::string summary() const;
@@ -64,10 +68,10 @@ class StatusReporter {
   std::int64_t received_ = 0;
   std::int64_t processed_ = 0;
   std::int64_t skipped_ = 0;
-  std::int64_t lost_ = 0;
   std::int64_t refused_ = 0;
   std::int64_t bad_messages_ = 0;
-  std::map<std::string, std::int64_t> last_sequences_;  // by source
+  std::int64_t duplicates_ = 0;
+  std::map<std::string, SequenceCount> sequences_;  // by source
   std::string last_error_;
   std::function<KnownObjects()> objects_;
   std::deque<Finished> recent_;  // of the last few seconds

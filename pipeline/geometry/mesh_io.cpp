@@ -8,13 +8,14 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/mesh_paint.hpp"
+#include "pipeline/geometry/mesh_structure.hpp"
 
 namespace houghstream {
 namespace {
@@ -29,11 +30,24 @@ std::uint8_t to_byte(float value, bool is_linear) {
   return to_byte(value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F);
 }
 
-bool is_gltf(const std::filesystem::path& file) {
+std::string lower_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".glb" || extension == ".gltf";
+  return extension;
+}
+
+bool is_gltf(const std::filesystem::path& file) {
+  return lower_extension(file) == ".glb" || lower_extension(file) == ".gltf";
+}
+
+/// Assimp believes what a file states: cut or damaged ones make it loop for ever, end the process, or give a part.
+void require_whole(const std::filesystem::path& file) {
+  const std::string bytes = read_file(file, "a PLY, OBJ or glTF mesh");
+  if (lower_extension(file) == ".ply") return check_ply(bytes, file.string());
+  if (lower_extension(file) == ".obj") return check_obj(bytes, file.string());
+  require(is_gltf(file), "{}: expected a file .ply, .obj, .glb or .gltf", file.string());
+  check_gltf(bytes, file);
 }
 
 void append_vertices(const aiMesh& part, double unit_m, const std::filesystem::path& file, Mesh& mesh) {
@@ -152,7 +166,7 @@ void append_ply_vertices(const Mesh& mesh, const PlyParts& parts, std::string& t
 }  // namespace
 
 Mesh load_mesh(const std::filesystem::path& file, double unit_m) {
-  require(std::filesystem::is_regular_file(file), "{}: no such file, expected a PLY, OBJ or glTF mesh", file.string());
+  require_whole(file);
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene =
@@ -180,13 +194,12 @@ void save_ply(const Mesh& mesh, const std::filesystem::path& file) {
   std::string text = ply_header(mesh, parts, texture_file.filename().string());
   append_ply_vertices(mesh, parts, text);
   for (const auto& t : mesh.triangles) text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  require(out.good(), "{}: cannot be written", file.string());
-  if (parts.texture) {
-    require(cv::imwrite(texture_file.string(), mesh.texture), "{}: cannot be written", texture_file.string());
+  if (parts.texture) {  // before the mesh that names it
+    std::vector<unsigned char> png;
+    require(cv::imencode(".png", mesh.texture, png), "{}: cannot be written as PNG", texture_file.string());
+    write_whole_file(texture_file, {reinterpret_cast<const char*>(png.data()), png.size()});
   }
+  write_whole_file(file, text);
 }
 
 }  // namespace houghstream

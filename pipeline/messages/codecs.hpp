@@ -8,8 +8,8 @@
 
 namespace houghstream {
 
-/// More pixels than this are refused before memory is asked for.
-constexpr std::int64_t kMaxPixels = 4096LL * 4096LL;
+/// More pixels than this (4K) are refused before memory is asked for.
+constexpr std::int64_t kMaxPixels = 3840LL * 2160LL;
 
 /// Throws InputError unless both sizes are positive and their product is at most kMaxPixels.
 void check_image_size(std::int64_t width, std::int64_t height);
@@ -17,7 +17,9 @@ void check_image_size(std::int64_t width, std::int64_t height);
 /// CV_8UC3 BGR to JPEG (4:2:0), `quality` 1 to 100.
 std::vector<std::uint8_t> encode_jpeg(const cv::Mat& bgr, int quality);
 
-/// JPEG to CV_8UC3 BGR of exactly this size. Throws InputError when it is damaged, cut or of another size.
+/// JPEG to CV_8UC3 BGR of exactly this size. Throws InputError when it is damaged, cut or of another size, or when it
+/// has more than kMaxScans scans: each one goes over the whole image, and may take a few bytes only.
+constexpr int kMaxScans = 16;
 cv::Mat decode_jpeg(ByteView jpeg, int width, int height);
 
 /// CV_16UC1 to a zlib stream, `level` 1 to 9.

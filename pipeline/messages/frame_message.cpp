@@ -239,6 +239,11 @@ void add_sequence(images_t& message, std::int64_t sequence) {
   add_metadata(message, metadata::kSequence, {counter.begin(), counter.end()});
 }
 
+void add_run(images_t& message, std::int64_t run) {
+  const std::string text = std::to_string(run);
+  add_metadata(message, metadata::kRun, {text.begin(), text.end()});
+}
+
 RgbdFrame frame_from_message(const images_t& message, const std::string& channel,
                              const std::optional<Camera>& fallback_camera) {
   return decode_named({channel, message.utime}, [&] { return decode_frame(message, channel, fallback_camera); });

@@ -38,6 +38,9 @@ houghstream::images_t to_message(const RgbdFrame& frame, const WireFormat& forma
 void add_camera(houghstream::images_t& message, const Camera& camera);
 void add_sequence(houghstream::images_t& message, std::int64_t sequence);
 
+/// Says which run of its source a frame is of, so that numbers that begin anew are not taken for old ones.
+void add_run(houghstream::images_t& message, std::int64_t run);
+
 /// Finds colour (LEFT: RGB, BGR, RGBA, BGRA, GRAY or MJPEG) and depth (DEPTH_MM, DEPTH_MM_ZIPPED) by type, decodes them
 /// and checks sizes. `channel` is the one that the message came on: it is half of the frame's name. The camera comes
 /// from the metadata, else from `fallback_camera`, else the frame is refused.

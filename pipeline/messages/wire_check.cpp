@@ -31,13 +31,14 @@ constexpr std::size_t kKnownObject = 5 + 8;
 constexpr std::size_t kTeachingNumbers = 4 + 4 + 4 + 4 * 4 + 3 * 8 + 4 * 8;  // progress to quat
 constexpr std::size_t kSeenDirection = 3 * 4 + 1;
 
-void walk_image(WireReader& reader, std::optional<std::int64_t>& sequence) {
+void walk_image(WireReader& reader, FrameHeader& header) {
   reader.skip(8 + 4 * 4);  // utime, width, height, row_stride, pixelformat
   reader.skip(reader.read_count(1));
   for (std::size_t left = reader.read_count(kLeastMetadata); left > 0; --left) {
     const std::string key = reader.read_string();
     const ByteView value = reader.read_bytes(reader.read_count(1));
-    if (key == metadata::kSequence) sequence = parse_sequence(value);
+    if (key == metadata::kSequence) header.sequence = parse_sequence(value);
+    if (key == metadata::kRun) header.run = parse_sequence(value);
   }
 }
 
@@ -46,7 +47,7 @@ FrameHeader walk_images(WireReader& reader) {
   header.utime = reader.read_int64();
   const std::size_t images = reader.read_count(2 + kLeastImage);
   reader.skip(2 * images);
-  for (std::size_t i = 0; i < images; ++i) walk_image(reader, header.sequence);
+  for (std::size_t i = 0; i < images; ++i) walk_image(reader, header);
   return header;
 }
 

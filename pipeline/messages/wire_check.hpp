@@ -17,6 +17,7 @@ namespace houghstream {
 struct FrameHeader {
   std::int64_t utime = 0;
   std::optional<std::int64_t> sequence;  ///< the source's frame counter, if the message carries one
+  std::int64_t run = 0;                  ///< of the source, 0 where the message does not say
 };
 
 /// Walks through a whole encoded images_t. Throws InputError where its counts and sizes do not add up.
@@ -32,7 +33,7 @@ FrameId read_result_frame(ByteView bytes, const std::string& source);
 /// Whether the bytes begin with the fingerprint of images_t: all that is asked of what a pattern of channels brings.
 bool is_frame_message(ByteView bytes);
 
-/// A frame counter as it stands in the metadata, decimal text. Throws InputError.
+/// A frame counter, or a run, as it stands in the metadata, decimal text. Throws InputError.
 std::int64_t parse_sequence(ByteView text);
 
 /// Throws InputError unless the bytes are one whole message of the type with this fingerprint. Types known here:

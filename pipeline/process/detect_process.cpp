@@ -1,6 +1,7 @@
 #include "pipeline/process/detect_process.hpp"
 
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/process/look_budget.hpp"
@@ -19,17 +20,20 @@ struct EncodedFrame {
 /// What the receiving thread does.
 class Reception {
  public:
-  Reception(StatusReporter& status, NewestOfEach<EncodedFrame>& newest, double looks_per_second)
-      : status_(status), newest_(newest), budget_(looks_per_second) {}
+  Reception(const LcmBus& bus, StatusReporter& status, NewestOfEach<EncodedFrame>& newest, double looks_per_second)
+      : is_log_(bus.is_log()), status_(status), newest_(newest), budget_(looks_per_second) {}
 
   void receive_frame(const Arrival& arrival) {
-    status_.count_received();
     try {
       const FrameHeader header = read_frame_header(arrival.bytes);
-      status_.note_sequence(header.sequence, arrival.channel);
-      const bool passed_over = !budget_.is_due({arrival.channel, header.utime}) || put(arrival);
+      const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
+      // Every frame of a log is worked on, as often as it is there.
+      if (order == FrameOrder::kDuplicate && !is_log_) return;
+      status_.count_received();
+      const bool passed_over = !budget_.is_due({arrival.channel, header.utime}) || put(arrival, order);
       if (passed_over) status_.count_skipped(1);
     } catch (const InputError& error) {
+      status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
     }
   }
@@ -44,12 +48,15 @@ class Reception {
   }
 
  private:
-  /// Whether another frame is passed over for it.
-  bool put(const Arrival& arrival) {
+  /// Whether another frame is passed over for it, or it for another.
+  bool put(const Arrival& arrival, FrameOrder order) {
     const ByteView& bytes = arrival.bytes;
-    return newest_.put(arrival.channel, {arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time});
+    EncodedFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
+    return order == FrameOrder::kLate ? newest_.put_late(arrival.channel, std::move(frame))
+                                      : newest_.put(arrival.channel, std::move(frame));
   }
 
+  const bool is_log_;
   StatusReporter& status_;
   NewestOfEach<EncodedFrame>& newest_;
   LookBudget budget_;
@@ -73,7 +80,8 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   StatusReporter status(options.process);
   status.tell_objects(options.objects);
   NewestOfEach<EncodedFrame> newest;
-  Reception reception(status, newest, options.looks_per_second);
+  Reception reception(bus, status, newest, options.looks_per_second);
+  catch_stop_signals();
   bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
     if (options.keep_frames) bus.publish(arrival.channel, arrival.bytes, arrival.event_us);

@@ -111,17 +111,22 @@ class FollowProcess {
 
   void receive_frame(const Arrival& arrival) {
     if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
-    status_.count_received();
     try {
       const FrameHeader header = read_frame_header(arrival.bytes);
-      status_.note_sequence(header.sequence, arrival.channel);
+      const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
+      if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
+      status_.count_received();
       const FrameId id{arrival.channel, header.utime};
       const auto copy = [&] {
         return std::vector<std::uint8_t>(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
       };
-      if (frames_.put(arrival.channel, {id, copy(), arrival.time})) status_.count_skipped(1);
+      EncodedFrame frame{id, copy(), arrival.time};
+      const bool passed_over = order == FrameOrder::kLate ? frames_.put_late(arrival.channel, std::move(frame))
+                                                          : frames_.put(arrival.channel, std::move(frame));
+      if (passed_over) status_.count_skipped(1);
       detections_.put_frame(id, copy());
     } catch (const InputError& error) {
+      status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
     }
   }

@@ -17,16 +17,31 @@ namespace houghstream {
 template <typename T>
 class NewestOfEach {
  public:
-  /// Returns whether an item of the channel that nobody has taken was passed over. The newer one takes its turn.
+  /// Channels whose items wait at once; the item of one more is passed over. A sender of rubbish may make up channels.
+  static constexpr std::size_t kChannels = 64;
+
+  /// Returns whether an item that nobody has taken was passed over. The newer one of a channel takes its turn.
   bool put(const std::string& channel, T item) {
     bool is_first = false;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
+      if (is_full_for(channel)) return true;
       is_first = items_.insert_or_assign(channel, std::move(item)).second;
       if (is_first) turns_.push_back(channel);
     }
     filled_.notify_one();
     return !is_first;
+  }
+
+  /// An item that newer ones have overtaken: it is taken where none waits. Returns whether it was passed over.
+  bool put_late(const std::string& channel, T item) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (is_full_for(channel) || !items_.emplace(channel, std::move(item)).second) return true;
+      turns_.push_back(channel);
+    }
+    filled_.notify_one();
+    return false;
   }
 
   /// The item of the channel that has waited longest; waits up to `timeout` for one.
@@ -45,6 +60,10 @@ class NewestOfEach {
   }
 
  private:
+  bool is_full_for(const std::string& channel) const {
+    return items_.size() >= kChannels && items_.count(channel) == 0;
+  }
+
   mutable std::mutex mutex_;
   std::condition_variable filled_;
   std::map<std::string, T> items_;

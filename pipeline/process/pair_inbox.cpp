@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream {
 
 void PairInbox::put_frame(const FrameId& id, std::vector<std::uint8_t> bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    Camera& camera = cameras_[id.channel];
+    Camera& camera = camera_of(id.channel);
     if (camera.find_frame(id) != nullptr) detectors_.forget(id);
+    frame_bytes_ += bytes.size();
     camera.frames.push_back({id, std::move(bytes)});
-    if (camera.frames.size() > kHistory) camera.frames.pop_front();
+    if (camera.frames.size() > kHistory) forget_oldest(camera);
+    keep_within_bytes();
     ++camera.frames_seen;
     camera.fresh = newest_first_ && ahead_;
     drop_hopeless(camera);
@@ -22,12 +26,35 @@ void PairInbox::put_frame(const FrameId& id, std::vector<std::uint8_t> bytes) {
 void PairInbox::put_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    Camera& camera = cameras_[id.channel];
+    Camera& camera = camera_of(id.channel);
     detectors_.note_result(id);
     camera.waiting.push_back({id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen});
     drop_hopeless(camera);
   }
   changed_.notify_one();
+}
+
+PairInbox::Camera& PairInbox::camera_of(const std::string& channel) {
+  require(cameras_.size() < kCameras || cameras_.count(channel) > 0,
+          "a camera more than the {} that are listened to; expected a pattern that fewer channels match", kCameras);
+  return cameras_[channel];
+}
+
+void PairInbox::forget_oldest(Camera& camera) {
+  frame_bytes_ -= camera.frames.front().bytes.size();
+  camera.frames.pop_front();
+}
+
+// The newest frame of each camera stays.
+void PairInbox::keep_within_bytes() {
+  while (frame_bytes_ > kHistoryBytes) {
+    Camera* most = nullptr;
+    for (auto& [channel, camera] : cameras_) {
+      if (most == nullptr || camera.frames.size() > most->frames.size()) most = &camera;
+    }
+    if (most->frames.size() < 2) return;
+    forget_oldest(*most);
+  }
 }
 
 std::optional<PairedMessages> PairInbox::take(std::chrono::milliseconds timeout) {

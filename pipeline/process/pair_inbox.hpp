@@ -34,8 +34,12 @@ struct PairedMessages {
 /// pairs at any speed. May be used from any thread.
 class PairInbox {
  public:
-  /// Frames of each camera that are kept for detections still to come.
+  /// Frames of each camera that are kept for detections still to come: 64, and fewer where those of all cameras have
+  /// more bytes than this.
   static constexpr std::size_t kHistory = 64;
+  static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
+  /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
+  static constexpr std::size_t kCameras = 64;
   /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
   static constexpr std::int64_t kWait = 30;
 
@@ -44,8 +48,9 @@ class PairInbox {
   /// used.
   explicit PairInbox(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
 
+  /// Throws InputError for one camera too many.
   void put_frame(const FrameId& id, std::vector<std::uint8_t> bytes);
-  /// `id` is the frame that they were found in.
+  /// `id` is the frame that they were found in. Throws InputError for one camera too many.
   void put_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
@@ -84,6 +89,9 @@ class PairInbox {
     std::optional<std::size_t> first_complete() const;
   };
 
+  Camera& camera_of(const std::string& channel);
+  void forget_oldest(Camera& camera);
+  void keep_within_bytes();
   Camera* next_camera();
   void pass_over_older(const std::string& channel, Camera& camera);
   void drop_hopeless(Camera& camera);
@@ -96,6 +104,7 @@ class PairInbox {
   std::condition_variable changed_;
   std::map<std::string, Camera> cameras_;  // by channel
   DetectorCount detectors_;
+  std::size_t frame_bytes_ = 0;  // of all cameras
   std::int64_t arrivals_ = 0;
   std::int64_t turns_ = 0;
   Dropped dropped_;

@@ -2,11 +2,14 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <atomic>
+#include <deque>
 #include <map>
 #include <set>
 
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/process/model_check.hpp"
@@ -18,6 +21,9 @@
 namespace houghstream {
 namespace {
 
+// Of a detections_t: two thousand detections. 64 of each camera wait for their frames.
+constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+
 std::vector<std::uint8_t> copy(ByteView bytes) {
   return {bytes.data, bytes.data + bytes.size};
 }
@@ -25,6 +31,12 @@ std::vector<std::uint8_t> copy(ByteView bytes) {
 ByteView view(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size()};
 }
+
+/// What was found in a frame so far, by all its detectors.
+struct HeardClasses {
+  FrameId frame;
+  std::set<std::string> names;
+};
 
 class PoseProcess {
  public:
@@ -40,6 +52,7 @@ class PoseProcess {
 
   void run() {
     status_.tell_objects(options_.objects);
+    catch_stop_signals();
     bus_.subscribe(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
     bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
     log_info("ready: frames from {}, detections from {} at {}", options_.frame_channels, channel::kDetections,
@@ -57,7 +70,8 @@ class PoseProcess {
     if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
     try {
       const FrameHeader header = read_frame_header(arrival.bytes);
-      status_.note_sequence(header.sequence, arrival.channel);
+      const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
+      if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
       inbox_.put_frame({arrival.channel, header.utime}, copy(arrival.bytes));
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
@@ -66,21 +80,29 @@ class PoseProcess {
 
   void receive_detections(const Arrival& arrival) {
     try {
+      require(arrival.bytes.size <= kMostBytes, "detections of {} bytes, expected at most {}", arrival.bytes.size,
+              kMostBytes);
       check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
-      sources_.insert(frame.channel);
+      if (!bus_.is_log() && is_repeated(frame, arrival)) return status_.note_duplicate();
+      if (sources_.size() < PairInbox::kCameras) sources_.insert(frame.channel);
       ++detections_;
       if (!channels_.matches(frame.channel)) {
         ++others_;
         transforms_.note_other_camera(frame.channel);
         return;
       }
-      status_.count_received();
       inbox_.put_detections(frame, copy(arrival.bytes));
+      status_.count_received();
     } catch (const InputError& error) {
       status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
     }
+  }
+
+  bool is_repeated(const FrameId& frame, const Arrival& arrival) {
+    const auto now = std::chrono::duration_cast<std::chrono::microseconds>(arrival.time.time_since_epoch());
+    return repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, now.count());
   }
 
   bool step(std::chrono::milliseconds timeout) {
@@ -118,12 +140,33 @@ class PoseProcess {
     const DecodedFrame decoded =
         is_ahead ? ahead->second : decode_for_poses(pair.frame, pair.id.channel, options_.camera);
     detections.stages.push_back(decoded.decoding);
+    note_shared_classes(detections);
     note_models();
     warn(models_.note(detections));
     ObjectPoses poses = estimate_(decoded.frame, detections, memory_.before(detections));
     poses.frame = pair.id;
     memory_.keep(poses);
     return poses;
+  }
+
+  // Two detectors that know the same object give it two poses.
+  void note_shared_classes(const Detections& detections) {
+    constexpr std::size_t kFrames = 16;
+    const auto heard = std::find_if(heard_.begin(), heard_.end(),
+                                    [&](const HeardClasses& classes) { return classes.frame == detections.frame; });
+    std::set<std::string> names;
+    for (const Detection& detection : detections.detections) names.insert(detection.class_name);
+    if (heard == heard_.end()) {
+      heard_.push_back({detections.frame, std::move(names)});
+      if (heard_.size() > kFrames) heard_.pop_front();
+      return;
+    }
+    for (const std::string& name : names) {
+      if (heard->names.insert(name).second) continue;
+      status_.note_bad_message(fmt::format(
+          "frame {}: two detectors find '{}', which gets two poses; expected detectors of different objects",
+          to_string(detections.frame), name));
+    }
   }
 
   // A store's objects may have become others meanwhile.
@@ -171,10 +214,12 @@ class PoseProcess {
   PairInbox inbox_;
   std::map<std::string, DecodedFrame> ahead_;  // by channel
   PoseMemory memory_;
+  std::deque<HeardClasses> heard_;
   ModelCheck models_;
   TransformOutput transforms_;
   // What the receiving thread has seen.
   std::set<std::string> sources_;
+  RepeatedMessages repeats_;
   std::atomic<std::int64_t> detections_{0};
   std::atomic<std::int64_t> others_{0};  // of them, of other cameras' frames
   std::int64_t without_frame_ = 0;       // of the rest

@@ -4,7 +4,9 @@
 #include <exception>
 #include <thread>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
 
 namespace houghstream {
@@ -20,12 +22,13 @@ void play_log(LcmBus& bus, const WorkStep& work) {
     while (work(milliseconds(0))) {
     }
   }
+  require(!stop_requested(), "{}: stopped before its end, no output is written", bus.url());
 }
 
 /// Receives and reports in a thread of its own while it lives.
 class Receiver {
  public:
-  Receiver(LcmBus& bus, StatusReporter& status) : bus_(bus), status_(status) {
+  Receiver(LcmBus& bus, StatusReporter& status, const Heartbeat& work) : bus_(bus), status_(status), work_(work) {
     const BlockStopSignals block;
     thread_ = std::thread([this] { receive(); });
   }
@@ -51,7 +54,8 @@ class Receiver {
     try {
       while (running_) {
         bus_.handle(kPatience);
-        status_.publish_if_due(bus_);
+        // Who hangs says nothing more.
+        if (work_.is_beating() && status_.publish_if_due(bus_)) notify_service("WATCHDOG=1");
       }
     } catch (...) {
       failure_ = std::current_exception();
@@ -61,6 +65,7 @@ class Receiver {
 
   LcmBus& bus_;
   StatusReporter& status_;
+  const Heartbeat& work_;
   std::atomic<bool> running_{true};
   std::exception_ptr failure_;
   std::thread thread_;
@@ -72,8 +77,14 @@ void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work)
   if (bus.is_log()) {
     play_log(bus, work);
   } else {
-    Receiver receiver(bus, status);
-    while (!stop_requested() && receiver.running()) work(kPatience);
+    Heartbeat heart;
+    Receiver receiver(bus, status, heart);
+    notify_service("READY=1");
+    while (!stop_requested() && receiver.running()) {
+      work(kPatience);
+      heart.beat();
+    }
+    notify_service("STOPPING=1");
     receiver.finish();
   }
 }

@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/host_clock.hpp"
+#include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
@@ -72,14 +74,16 @@ class FrameFeed {
 /// Waits for each frame's turn. A source that is late is not made up for: a burst would be lost on the way.
 class Pace {
  public:
-  explicit Pace(double period_us)
-      : period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::micro>(period_us))) {}
+  Pace(double period_us, Heartbeat& heart)
+      : period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::micro>(period_us))),
+        heart_(heart) {}
 
   /// False where a stop signal comes first: at low rates a turn is seconds away.
   bool wait() {
     const Clock::time_point now = Clock::now();
     due_ = now - due_ > period_ ? now : due_;
     while (Clock::now() < due_) {
+      heart_.beat();
       if (stop_requested()) return false;
       std::this_thread::sleep_until(std::min(due_, Clock::now() + kGlance));
     }
@@ -91,17 +95,19 @@ class Pace {
   static constexpr std::chrono::milliseconds kGlance{50};  // how long a stop signal may go unnoticed
 
   Clock::duration period_;
+  Heartbeat& heart_;
   Clock::time_point due_ = Clock::now();
 };
 
 /// Sends the status once a second while it lives: a camera that is gone keeps the publishing thread waiting.
 class StatusTicker {
  public:
-  StatusTicker(StatusReporter& status, LcmBus& bus) {
+  StatusTicker(StatusReporter& status, LcmBus& bus, const Heartbeat& work) {
     const BlockStopSignals block;
-    thread_ = std::thread([this, &status, &bus] {
+    thread_ = std::thread([this, &status, &bus, &work] {
       while (running_) {
-        status.publish_if_due(bus);
+        // Who hangs says nothing more.
+        if (work.is_beating() && status.publish_if_due(bus)) notify_service("WATCHDOG=1");
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       }
     });
@@ -118,13 +124,36 @@ class StatusTicker {
   std::thread thread_;
 };
 
-openni::CameraListener listener_of(StatusReporter& status) {
-  return {stop_requested, [&](const std::string& reason) { status.remember_error(reason); },
-          [&](std::int64_t number) { status.note_sequence(number); }};
+/// A camera is asked for as long as it does not come, and with each question it is asked whether to stop.
+openni::CameraListener listener_of(StatusReporter& status, Heartbeat& heart) {
+  const auto beat_and_ask = [&heart] {
+    heart.beat();
+    return stop_requested();
+  };
+  return {beat_and_ask, [&](const std::string& reason) { status.remember_error(reason); },
+          [&](std::int64_t number) {
+            status.note_number({number, number, 0});
+          }};
 }
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// All frames of a source, each with the time of its capture, or for recordings at the wanted rate.
+CaptureResult write_frames(FrameFeed& feed, const CaptureSettings& settings, LogWriter& log) {
+  CaptureResult result;
+  const Clock::time_point start = Clock::now();
+  while (const std::optional<RgbdFrame> frame = feed.next()) {
+    const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
+    const std::int64_t since_first = std::llround(static_cast<double>(result.frames) * feed.period_us());
+    log.write(feed.is_live() ? frame->id.utime : feed.first_utime() + since_first, settings.channel,
+              {bytes.data(), bytes.size()});
+    ++result.frames;
+    result.bytes += static_cast<std::int64_t>(bytes.size());
+  }
+  result.seconds = seconds_since(start);
+  return result;
 }
 
 }  // namespace
@@ -133,15 +162,21 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
   LcmBus bus(url);
   require(!bus.is_log(), "{}: frames go to a network; to write a log give --log", url);
   StatusReporter status("hs-capture");
-  FrameFeed feed(open, settings, listener_of(status));
-  const StatusTicker ticker(status, bus);
-  Pace pace(feed.period_us());
+  Heartbeat heart;
+  FrameFeed feed(open, settings, listener_of(status, heart));
+  const StatusTicker ticker(status, bus, heart);
+  Pace pace(feed.period_us(), heart);
+  notify_service("READY=1");
   CaptureResult result;
+  const std::int64_t run = utime_now();
   const Clock::time_point start = Clock::now();
   while (const std::optional<RgbdFrame> frame = feed.next()) {
     const Clock::time_point read = Clock::now();
+    heart.beat();
     status.count_received();
-    const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
+    images_t message = to_message(*frame, settings.format, feed.count() - 1);
+    add_run(message, run);
+    const std::vector<std::uint8_t> bytes = encode_message(message);
     if (!feed.is_live() && !pace.wait()) break;
     bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->id.utime);
     status.count_processed(Clock::now() - read);
@@ -156,19 +191,15 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
 CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file) {
   FrameFeed feed(open, settings, {stop_requested, {}, {}});
   LogWriter log(file);
-  CaptureResult result;
-  const Clock::time_point start = Clock::now();
-  while (const std::optional<RgbdFrame> frame = feed.next()) {
-    const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
-    const std::int64_t since_first = std::llround(static_cast<double>(result.frames) * feed.period_us());
-    log.write(feed.is_live() ? frame->id.utime : feed.first_utime() + since_first, settings.channel,
-              {bytes.data(), bytes.size()});
-    ++result.frames;
-    result.bytes += static_cast<std::int64_t>(bytes.size());
+  try {
+    const CaptureResult result = write_frames(feed, settings, log);
+    log.close();
+    return result;
+  } catch (const std::exception& error) {
+    if (!feed.is_live()) throw;
+    log.keep();  // what a camera has seen cannot be had again
+    fail("{}; what was recorded until then is in {}.partial (hs-log filter makes a log of it)", error.what(), file);
   }
-  log.close();
-  result.seconds = seconds_since(start);
-  return result;
 }
 
 }  // namespace houghstream::capture

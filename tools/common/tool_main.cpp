@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 
@@ -19,7 +20,7 @@ int run_tool(CommandLine& line, int argc, char** argv, const std::function<void(
     body();
     return 0;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", line.name(), error.what());
+    fmt::print(stderr, "{}: {}\n", line.name(), printable_lines(error.what()));
     return 1;
   }
 }

@@ -6,7 +6,6 @@
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/process/detect_process.hpp"
 #include "pipeline/process/warm_up.hpp"
 #include "tools/common/search_options.hpp"
@@ -95,7 +94,6 @@ int main(int argc, char** argv) {
   add_lcm_url_option(app, options.url);
 
   return run_tool(app, argc, argv, [&] {
-    catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     if (options.process.looks_per_second > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");

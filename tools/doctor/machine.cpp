@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 #include "pipeline/bus/receive_buffer.hpp"
@@ -38,6 +40,16 @@ bool runs(const fs::path& program, const std::string& argument) {
   posix_spawn_file_actions_destroy(&quiet);
   int status = 0;
   return failed == 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// As far as this user may ask: nftables answers root only.
+bool refuses_others(const std::string& port) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> answer(
+      popen("nft list table inet houghstream 2>/dev/null", "r"), pclose);
+  std::string text;
+  char piece[512];
+  while (answer && std::fgets(piece, sizeof piece, answer.get()) != nullptr) text += piece;
+  return text.find("dport " + port) != std::string::npos && text.find("drop") != std::string::npos;
 }
 
 }  // namespace
@@ -71,6 +83,7 @@ Machine this_machine() {
   machine.self_test = self_test;
   machine.may_use = [](const fs::path& file) { return access(file.c_str(), R_OK | W_OK) == 0; };
   machine.load_error = load_error;
+  machine.refuses_others = refuses_others;
   machine.runs = runs;
   return machine;
 }

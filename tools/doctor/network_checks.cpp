@@ -8,6 +8,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
 namespace houghstream::doctor {
@@ -16,6 +17,7 @@ namespace {
 constexpr const char* kRoute = "multicast route";
 constexpr const char* kBuffer = "receive buffer";
 constexpr const char* kJavaBuffer = "Java's buffer";
+constexpr const char* kSenders = "who may send";
 constexpr const char* kSelfTest = "LCM self test";
 const std::string kRouteRemedy = "sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo";
 
@@ -112,6 +114,40 @@ Findings check_processes(const Machine& machine, const std::string& url) {
   return findings;
 }
 
+/// Interfaces that lead to other hosts.
+bool has_neighbours(const Machine& machine) {
+  std::istringstream lines(machine.read("proc/net/route"));
+  std::string line;
+  std::getline(lines, line);  // names of the columns
+  while (std::getline(lines, line)) {
+    if (!line.empty() && line.rfind("lo\t", 0) != 0) return true;
+  }
+  return false;
+}
+
+/// Who may send on the bus. LCM asks nobody who he is.
+Finding check_senders(const Machine& machine, const std::string& url) {
+  const auto group = group_of(url);
+  const bool is_tcp = url.rfind("tcpq://", 0) == 0;
+  if (!group && !is_tcp) return ok(kSenders, fmt::format("this machine only, with {}", url));
+  if (!has_neighbours(machine)) return ok(kSenders, "this machine only: no other is connected");
+  const std::string port = is_tcp ? "7700" : group->second;
+  const std::string drop = fmt::format(
+      "sudo nft add table inet houghstream; sudo nft add chain inet houghstream input '{{ type filter hook input "
+      "priority 0; }}'; sudo nft add rule inet houghstream input iifname != lo {} dport {} drop",
+      is_tcp ? "tcp" : "udp", port);
+  if (machine.refuses_others(port)) return ok(kSenders, "this machine only: nftables drops what others send");
+  if (is_tcp) return note(kSenders, "every host that reaches the server's port may send, and read what is sent", drop);
+  if (is_of_own_host(url))
+    return note(kSenders,
+                "ttl=0: our programs take what this machine sends only; lcm-spy, lcm-logger and other programs take "
+                "what any host sends to this port, unless a firewall drops it",
+                drop);
+  return note(kSenders,
+              "ttl above 0: every host on the network may send, and nobody is asked who he is: a network of "
+              "its own for the robot, or a firewall that knows its hosts");
+}
+
 }  // namespace
 
 Findings check_network(const Machine& machine, const BusSettings& settings) {
@@ -123,6 +159,7 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
     findings.push_back(check_buffer(machine, frame_bytes, heard > 0));
     findings.push_back(check_java_buffer(machine, frame_bytes));
   }
+  findings.push_back(check_senders(machine, settings.url));
   // Without a route LCM would wait for its own test for ten seconds, to say the same.
   findings.push_back(route ? check_self_test(machine, settings.url, frame_bytes)
                            : note(kSelfTest, "not tried: there is no route"));

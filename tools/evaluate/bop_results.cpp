@@ -5,11 +5,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 
 namespace houghstream {
@@ -113,21 +113,19 @@ std::vector<BopEstimate> bop_estimates(const std::vector<EvaluatedFrame>& frames
 }
 
 void write_bop_results(const std::vector<BopEstimate>& estimates, const fs::path& file) {
-  std::ofstream out(file);
-  out << kHeader << '\n';
+  std::string out = std::string(kHeader) + '\n';
   for (const BopEstimate& estimate : estimates) {
     const Rotation R = estimate.T_camera_object.linear();
     const Eigen::Vector3d t_mm = estimate.T_camera_object.translation() * 1e3;
-    out << fmt::format("{},{},{},{},{},{},{}\n", estimate.scene_id, estimate.image_id, estimate.object_id,
+    out += fmt::format("{},{},{},{},{},{},{}\n", estimate.scene_id, estimate.image_id, estimate.object_id,
                        estimate.score, fmt::join(R.data(), R.data() + R.size(), " "),
                        fmt::join(t_mm.data(), t_mm.data() + t_mm.size(), " "), estimate.time_s);
   }
-  out.close();
-  require(out.good(), "{}: cannot be written", file.string());
+  write_whole_file(file, out);
 }
 
 std::vector<BopEstimate> read_bop_results(const fs::path& file) {
-  std::ifstream in(file);
+  std::istringstream in(read_file(file, "BOP results"));
   std::string line;
   require(static_cast<bool>(std::getline(in, line)), "{}: missing or empty, expected '{}'", file.string(), kHeader);
   require(line == kHeader, "{}: begins with '{}', expected '{}'", file.string(), line, kHeader);

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream {
 namespace {
@@ -49,7 +49,7 @@ void append_difference(const std::optional<double>& from, const std::optional<do
 
 Latencies read_latencies(const std::filesystem::path& csv_file) {
   const std::string file = csv_file.string();
-  std::ifstream in(csv_file);
+  std::istringstream in(read_file(csv_file, "the times of frames"));
   std::string line;
   require(static_cast<bool>(std::getline(in, line)), "{}: missing or empty, expected hs-observe's CSV", file);
   const std::vector<std::string> header = split(line);

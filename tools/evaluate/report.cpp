@@ -1,10 +1,10 @@
 #include "tools/evaluate/report.hpp"
 
 #include <cmath>
-#include <fstream>
 
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/bus/percentiles.hpp"
 #include "tools/common/rounded.hpp"
 #include "tools/evaluate/reliability_picture.hpp"
@@ -112,10 +112,7 @@ OrderedJson localisation_json(const LocalisationScores& scores) {
 }
 
 void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  require(out.good(), "{}: cannot be written", file.string());
+  write_whole_file(file, text);
 }
 
 std::string curves_csv(const Evaluation& evaluation) {

@@ -90,6 +90,7 @@ std::vector<std::uint8_t> pixels_of(const cv::Mat& continuous) {
 image_t colour_image(const DrakeImage& image) {
   require(image.channel_type == Wire::CHANNEL_TYPE_UINT8, "colour of channel type {}, expected 8 bits (1)",
           image.channel_type);
+  check_image_size(image.width, image.height);  // before rows of so many pixels are spoken of
   if (image.compression == Wire::COMPRESSION_METHOD_JPEG) {
     return make_image(image.width, image.height, image_t::PIXEL_FORMAT_MJPEG, 0, bytes_of(image.data));
   }
@@ -118,6 +119,7 @@ std::vector<std::uint8_t> millimetres(const DrakeImage& image) {
 }
 
 image_t depth_image(const DrakeImage& image) {
+  check_image_size(image.width, image.height);
   require(!image.big_endian, "depth with the high byte first, expected the low one");
   const auto raw = [&](std::vector<std::uint8_t> data) {
     return make_image(image.width, image.height, image_t::PIXEL_FORMAT_LE_GRAY16, 2 * image.width, std::move(data));

@@ -1,10 +1,9 @@
 #include "tools/log/export_frames.hpp"
 
-#include <fstream>
-
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/messages/messages.hpp"
 
 namespace houghstream::log_tools {
@@ -27,6 +26,7 @@ std::int64_t for_each_frame(const RecordingSettings& settings, LossAccount& loss
 }  // namespace
 
 std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
+  require_other_place(settings, folder);
   BopWriter writer(folder);
   const auto write = [&](const RecordedFrame& recorded) {
     RgbdFrame frame;
@@ -45,23 +45,22 @@ std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folde
 }
 
 std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
+  require_other_place(settings, folder);
   std::error_code error;
   fs::create_directories(folder, error);
-  std::ofstream list(folder / "frames.csv");
-  require(!error && list.good(), "{}: cannot be written", folder.string());
-  list << "frame,utime,timestamp\n";
+  require(!error, "{}: cannot be written: {}", folder.string(), error.message());
+  std::string list = "frame,utime,timestamp\n";
   std::int64_t index = 0;
   const auto write = [&](const RecordedFrame& recorded) {
     const FrameImages images = images_from_message(recorded.message);
     const std::string name = fmt::format("{:06d}", index++);
     write_png(images.colour, folder / (name + "_color.png"));
     write_png(images.depth_mm, folder / (name + "_depth.png"));
-    list << fmt::format("{},{},{}\n", name, recorded.message.utime, recorded.timestamp);
+    list += fmt::format("{},{},{}\n", name, recorded.message.utime, recorded.timestamp);
     return true;
   };
   const std::int64_t frames = for_each_frame(settings, losses, write);
-  list.close();
-  require(!list.fail(), "{}: cannot be written to the end", (folder / "frames.csv").string());
+  write_whole_file(folder / "frames.csv", list);
   return frames;
 }
 

@@ -1,13 +1,13 @@
 #include "tools/log/export_results.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <utility>
 #include <vector>
 
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
@@ -133,20 +133,21 @@ OrderedJson frame_json(const FrameResult& frame) {
 
 std::int64_t export_results_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                                 LossAccount& losses) {
+  require_other_file(out_file, log_file);
   const std::vector<FrameResult> results = read_results(log_file, losses);
-  std::ofstream out(out_file);
-  out << "utime,source_channel,detection,class_id,class_name,score,box_x,box_y,box_width,box_height,"
-         "centre_x,centre_y,centre_z,pose_status,x,y,z,qw,qx,qy,qz,quality\n";
+  std::string text =
+      "utime,source_channel,detection,class_id,class_name,score,box_x,box_y,box_width,box_height,"
+      "centre_x,centre_y,centre_z,pose_status,x,y,z,qw,qx,qy,qz,quality\n";
   for (const FrameResult& frame : results) {
-    for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) out << row(frame, i) << '\n';
+    for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) text += row(frame, i) + '\n';
   }
-  out.close();
-  require(!out.fail(), "{}: cannot be written", out_file.string());
+  write_whole_file(out_file, text);
   return static_cast<std::int64_t>(results.size());
 }
 
 std::int64_t export_results_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                                  LossAccount& losses) {
+  require_other_file(out_file, log_file);
   const std::vector<FrameResult> results = read_results(log_file, losses);
   OrderedJson json;
   json["frames"] = OrderedJson::array();

@@ -9,6 +9,9 @@
 
 namespace houghstream::log_tools {
 
+/// `to` - `from`, microseconds; at most what the type holds, as the times of a damaged log may be any.
+std::int64_t microseconds_between(std::int64_t from, std::int64_t to);
+
 /// What of a recording could not be kept.
 class LossAccount {
  public:
@@ -18,7 +21,10 @@ class LossAccount {
 
   std::int64_t damaged_places() const { return damaged_places_; }
   std::int64_t refused() const { return refused_; }
-  /// One line that says what was lost and why, or "" where nothing was.
+  /// Something that looks wrong, though nothing is lost by it.
+  void note_oddity(const std::string& words) { oddities_ += (oddities_.empty() ? "" : "; ") + words; }
+
+  /// One line that says what was lost and why, and what looks wrong, or "" where nothing was and does.
   std::string line() const;
 
  private:
@@ -27,6 +33,7 @@ class LossAccount {
   std::int64_t refused_ = 0;
   std::string first_damage_;
   std::string first_refusal_;
+  std::string oddities_;
 };
 
 /// Reads the events of a log that are whole, and goes on behind damage.

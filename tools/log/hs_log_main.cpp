@@ -2,6 +2,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/bus/log_seal.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"
 #include "tools/log/export_objects.hpp"
@@ -45,6 +46,14 @@ CommandLine add_filter(CommandLine& app, Options& options) {
   return filter;
 }
 
+CommandLine add_seal(CommandLine& app, Options& options) {
+  CommandLine seal =
+      app.add_subcommand("seal", "copies a log with a checksum for each event, which every reader checks");
+  seal.add_option("log", options.in, "LCM log").required();
+  seal.add_option("out", options.out, "LCM log to write").required();
+  return seal;
+}
+
 CommandLine add_import(CommandLine& app, Options& options) {
   CommandLine import = app.add_subcommand("import", "makes a log of images_t of other recordings");
   import.add_option("source", options.in, kSources).required();
@@ -82,6 +91,7 @@ int main(int argc, char** argv) {
   Options options;
   const CommandLine info = add_info(app, options);
   const CommandLine filter = add_filter(app, options);
+  const CommandLine seal = add_seal(app, options);
   const CommandLine import = add_import(app, options);
   CommandLine exporter = app.add_subcommand("export", "writes frames or results to files");
   exporter.require_subcommand();
@@ -104,6 +114,7 @@ int main(int argc, char** argv) {
       fmt::print("{}", to_text(read_log_info(options.in, losses)));
     } else {
       const std::int64_t count = filter.given()   ? filter_log(options.in, options.filter, options.out, losses)
+                                 : seal.given()   ? seal_log(options.in, options.out)
                                  : import.given() ? import_log(options.recording, options.channel, options.out, losses)
                                  : bop.given()    ? export_bop(options.recording, options.out, losses)
                                  : png.given()    ? export_pngs(options.recording, options.out, losses)
@@ -111,7 +122,7 @@ int main(int argc, char** argv) {
                                  : json.given()   ? export_results_json(options.in, options.out, losses)
                                  : objects_csv.given() ? export_objects_csv(options.in, options.out, losses)
                                                        : export_objects_json(options.in, options.out, losses);
-      fmt::print("{} {} in {}\n", count, filter.given() ? "events" : "frames", options.out);
+      fmt::print("{} {} in {}\n", count, filter.given() || seal.given() ? "events" : "frames", options.out);
     }
     if (!losses.line().empty()) log_warning("{}: {}", options.in, losses.line());
   });

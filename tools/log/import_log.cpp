@@ -7,9 +7,7 @@ namespace houghstream::log_tools {
 
 std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
                         const std::filesystem::path& log_file, LossAccount& losses) {
-  std::error_code no_such_file;
-  require(!std::filesystem::equivalent(settings.source, log_file, no_such_file),
-          "{}: is the source itself, expected another file to write", log_file.string());
+  require_other_place(settings, log_file);
   const NextFrame next = open_recording(settings, losses);
   std::optional<LogWriter> log;  // not before there is something to write
   std::int64_t frames = 0;

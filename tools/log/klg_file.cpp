@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/messages/codecs.hpp"
 #include "tools/log/image_parts.hpp"
 
@@ -20,8 +21,10 @@ Number little_endian(const std::vector<std::uint8_t>& bytes, std::size_t at) {
 }  // namespace
 
 KlgFile::KlgFile(const std::filesystem::path& file, int width, int height)
-    : file_(file.string()), in_(file, std::ios::binary), width_(width), height_(height) {
+    : file_(file.string()), width_(width), height_(height) {
   check_image_size(width, height);
+  require_regular_file(file, "a .klg file");
+  in_.open(file, std::ios::binary);
   std::error_code error;
   size_ = std::filesystem::file_size(file, error);
   require(in_.good() && !error, "{}: cannot be read, expected a .klg file", file_);

@@ -9,6 +9,8 @@
 #include <houghstream/images_t.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
+#include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tools/log/message_types.hpp"
@@ -48,27 +50,26 @@ class Counter {
     info_.last = std::max(info_.last, event.timestamp);
     ChannelInfo& channel = info_.channels[event.channel];
     if (channel.messages++ == 0) channel.first = channel.last = event.timestamp;
-    if (event.timestamp - channel.last > channel.longest_gap) {
-      channel.longest_gap = event.timestamp - channel.last;
+    const std::int64_t gap = microseconds_between(channel.last, event.timestamp);
+    if (gap > channel.longest_gap) {
+      channel.longest_gap = gap;
       channel.gap_at = event.timestamp;
     }
     channel.last = std::max(channel.last, event.timestamp);
     channel.bytes += event.data.size();
     const ByteView bytes{event.data.data(), event.data.size()};
     channel.types.insert(type_name(fingerprint_of(bytes)));
-    if (fingerprint_of(bytes) == images_t::getHash()) add_frame(event.channel, channel, bytes);
+    if (fingerprint_of(bytes) == images_t::getHash()) add_frame(event.channel, channel, bytes, event.timestamp);
   }
 
  private:
-  void add_frame(const std::string& name, ChannelInfo& channel, ByteView bytes) {
+  void add_frame(const std::string& name, ChannelInfo& channel, ByteView bytes, std::int64_t timestamp) {
     try {
       const FrameHeader header = read_frame_header(bytes);
       if (channel.frames.empty()) channel.frames = describe_frame(bytes);
-      const auto before = last_sequences_.find(name);
-      if (header.sequence && before != last_sequences_.end() && *header.sequence > before->second) {
-        channel.frames_lost += *header.sequence - before->second - 1;
-      }
-      if (header.sequence) last_sequences_[name] = *header.sequence;
+      SequenceCount& numbers = numbers_[name];
+      numbers.note({header.sequence, header.utime, header.run}, timestamp);
+      channel.frames_lost = numbers.lost().value_or(0);
     } catch (const InputError& error) {
       losses_.note_refused(error.what());
     }
@@ -76,7 +77,7 @@ class Counter {
 
   LogInfo& info_;
   LossAccount& losses_;
-  std::map<std::string, std::int64_t> last_sequences_;
+  std::map<std::string, SequenceCount> numbers_;  // by channel
 };
 
 double seconds(std::int64_t microseconds) {
@@ -88,13 +89,16 @@ double megabytes(std::uint64_t bytes) {
 }
 
 std::string date_of(std::int64_t utime) {
-  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(utime / 1'000'000)));
+  constexpr std::int64_t kYear9999 = 253'402'300'799;  // seconds
+  const std::int64_t since_1970 = utime / 1'000'000;
+  if (since_1970 < 0 || since_1970 > kYear9999) return fmt::format("no date ({} us)", utime);
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(since_1970)));
 }
 
 }  // namespace
 
 double ChannelInfo::rate_hz() const {
-  return last > first ? static_cast<double>(messages - 1) / seconds(last - first) : 0.0;
+  return last > first ? static_cast<double>(messages - 1) / seconds(microseconds_between(first, last)) : 0.0;
 }
 
 LogInfo read_log_info(const std::filesystem::path& log_file, LossAccount& losses) {
@@ -110,21 +114,22 @@ LogInfo read_log_info(const std::filesystem::path& log_file, LossAccount& losses
 std::string to_text(const LogInfo& info) {
   std::string text =
       fmt::format("{}: {:.1f} MB, {} events in {:.2f} s from {}\n", info.file, megabytes(info.file_bytes), info.events,
-                  seconds(info.last - info.first), date_of(info.first));
+                  seconds(microseconds_between(info.first, info.last)), date_of(info.first));
   text += fmt::format("{:<28} {:<30} {:>8} {:>8} {:>9} {:>9}  {}\n", "channel", "type", "messages", "Hz", "MB",
                       "kB each", "longest gap");
   for (const auto& [name, channel] : info.channels) {
     const double mean_kb = static_cast<double>(channel.bytes) / static_cast<double>(channel.messages) * 1e-3;
-    text += fmt::format("{:<28} {:<30} {:>8} {:>8.2f} {:>9.2f} {:>9.2f}  ", name,
-                        fmt::format("{}", fmt::join(channel.types, ", ")), channel.messages, channel.rate_hz(),
-                        megabytes(channel.bytes), mean_kb);
+    text += fmt::format("{:<28} {:<30} {:>8} {:>8.2f} {:>9.2f} {:>9.2f}  ", printable(name),
+                        printable(fmt::format("{}", fmt::join(channel.types, ", "))), channel.messages,
+                        channel.rate_hz(), megabytes(channel.bytes), mean_kb);
     text += channel.messages < 2 ? "-\n"
                                  : fmt::format("{:.3f} s before {:.3f} s\n", seconds(channel.longest_gap),
-                                               seconds(channel.gap_at - info.first));
+                                               seconds(microseconds_between(info.first, channel.gap_at)));
   }
   for (const auto& [name, channel] : info.channels) {
     if (channel.frames.empty()) continue;
-    text += fmt::format("{}: {}; {} frames missing in their numbering\n", name, channel.frames, channel.frames_lost);
+    text += fmt::format("{}: {}; {} frames missing in their numbering\n", printable(name), channel.frames,
+                        channel.frames_lost);
   }
   return text;
 }

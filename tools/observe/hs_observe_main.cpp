@@ -1,6 +1,5 @@
-#include <fstream>
-
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
@@ -26,9 +25,7 @@ struct ObserveOptions {
 
 void write_file(const std::string& file, const std::string& text) {
   if (file.empty()) return;
-  std::ofstream out(file);
-  out << text << std::flush;
-  require(out.good(), "{}: cannot be written", file);
+  write_whole_file(file, text);
 }
 
 void observe(const ObserveOptions& options) {

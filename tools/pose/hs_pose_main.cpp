@@ -2,10 +2,11 @@
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/process/follow_process.hpp"
+#include "pipeline/process/pose_process.hpp"
 #include "pipeline/process/warm_up.hpp"
 #include "pose/following/object_follower.hpp"
+#include "pose/pose_estimator.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 
@@ -127,7 +128,6 @@ int main(int argc, char** argv) {
   add_lcm_url_option(app, options.url);
 
   return run_tool(app, argc, argv, [&] {
-    catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
     options.objects.empty() ? run_with_models(options) : run_with_store(options);

@@ -1,12 +1,16 @@
 #include "tools/stream/child.hpp"
 
+#include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "pipeline/base/checks.hpp"
 
@@ -24,7 +28,7 @@ Ending describe(int status) {
 
 }  // namespace
 
-Child::Child(const std::vector<std::string>& command) {
+Child::Child(const std::vector<std::string>& command, bool hears_words) {
   const std::string& program = command.at(0);
   require(access(program.c_str(), X_OK) == 0, "{}: cannot be started: {}", program, std::strerror(errno));
   // Between fork and exec only what is safe in a process with threads: memory is asked for before.
@@ -32,11 +36,19 @@ Child::Child(const std::vector<std::string>& command) {
   arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
+  // Neither end waits: where this process stands still, lines are lost and the child goes on.
+  std::array<int, 2> pipe = {-1, -1};
+  require(!hears_words || pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) == 0, "{}: cannot be heard: {}", program,
+          std::strerror(errno));
   const pid_t parent = getpid();
   pid_ = fork();
-  require(pid_ >= 0, "{}: cannot be started: {}", program, std::strerror(errno));
+  const int error = errno;
+  if (pid_ != 0 && hears_words) close(pipe[1]);
+  words_ = pipe[0];
+  require(pid_ >= 0, "{}: cannot be started: {}", program, std::strerror(error));
   if (pid_ == 0) {
     setpgid(0, 0);
+    if (hears_words) dup2(pipe[1], STDERR_FILENO);
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(1);  // the parent died before it could be watched
     execv(arguments[0], arguments.data());
@@ -46,14 +58,35 @@ Child::Child(const std::vector<std::string>& command) {
 }
 
 Child::~Child() {
-  if (ending()) return;
-  signal(SIGKILL);
-  waitpid(pid_, nullptr, 0);
+  if (!ending()) {
+    signal(SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pass_on_words();
+  }
+  if (words_ >= 0) close(words_);
+}
+
+void Child::pass_on_words() {
+  constexpr std::size_t kLongestLine = 1000;
+  std::array<char, 4096> piece{};
+  ssize_t size = 0;
+  while (words_ >= 0 && (size = read(words_, piece.data(), piece.size())) > 0) {
+    std::fwrite(piece.data(), 1, static_cast<std::size_t>(size), stderr);
+    for (ssize_t i = 0; i < size; ++i) {
+      const char c = piece[static_cast<std::size_t>(i)];
+      if (c != '\n' && line_.size() < kLongestLine) line_ += c;
+      if (c != '\n') continue;
+      if (!line_.empty()) last_words_ = std::exchange(line_, "");
+    }
+  }
+  std::fflush(stderr);
 }
 
 std::optional<Ending> Child::ending() {
   int status = 0;
+  pass_on_words();
   if (!ending_ && waitpid(pid_, &status, WNOHANG) == pid_) {
+    pass_on_words();
     ending_ = describe(status);
     signal(SIGKILL);  // what it has started and left behind
   }

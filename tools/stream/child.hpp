@@ -20,21 +20,29 @@ struct Ending {
 /// that lives as long as the process does.
 class Child {
  public:
-  /// `command`: program with its path, arguments. Throws InputError when it cannot be started.
-  explicit Child(const std::vector<std::string>& command);
+  /// `command`: program with its path, arguments. With `hears_words` what it writes to stderr goes through this
+  /// process, which remembers its last line. Throws InputError when it cannot be started.
+  explicit Child(const std::vector<std::string>& command, bool hears_words = false);
   /// Kills it if it still runs.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// How it ended; nothing while it runs.
+  /// How it ended; nothing while it runs. Passes on what it has written; call it often.
   std::optional<Ending> ending();
+  /// The last line of its stderr, for people; "" where it has written none, or is not heard.
+  const std::string& last_words() const { return last_words_; }
   /// Sends a signal to it and to what it has started.
   void signal(int number) const;
   pid_t pid() const { return pid_; }
 
  private:
+  void pass_on_words();
+
   pid_t pid_ = 0;
+  int words_ = -1;  // where its stderr is read
+  std::string line_;
+  std::string last_words_;
   std::optional<Ending> ending_;
 };
 

@@ -85,8 +85,7 @@ void run_stream(StreamOptions options, const Pace& pace) {
   StateBoard board;
   bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
     const auto status = decode_message<status_t>(arrival.bytes);
-    supervisor.note_running(status.pid);
-    board.note(status, arrival.time);
+    if (supervisor.note_running(status.pid)) board.note(status, arrival.time);
   });
   const auto period = from_seconds<StateBoard::Clock::duration>(pace.every);
   auto due = StateBoard::Clock::now() + period;
@@ -94,6 +93,7 @@ void run_stream(StreamOptions options, const Pace& pace) {
     bus.handle(std::chrono::milliseconds(50));
     if (StateBoard::Clock::now() < due) continue;
     due += period;
+    board.keep(supervisor.states());
     log_info("{}", board.line(supervisor.states(), StateBoard::Clock::now()));
   }
   for (const std::string& name : supervisor.stop()) log_warning("{} did not end when asked and was killed", name);

@@ -2,16 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream::stream {
 namespace {
 
 std::string describe(const status_t& status) {
+  constexpr std::size_t kLongestError = 300;
   std::string text = fmt::format("{:.1f} Hz", status.rate_hz);
   if (std::isfinite(status.latency_p50_ms)) text += fmt::format(" {:.0f} ms", status.latency_p50_ms);
   if (status.frames_lost > 0) text += fmt::format(", {} lost", status.frames_lost);
-  if (status.frames_refused > 0) text += fmt::format(", {} refused: {}", status.frames_refused, status.last_error);
+  if (status.frames_refused > 0)
+    text +=
+        fmt::format(", {} refused: {}", status.frames_refused, printable(status.last_error.substr(0, kLongestError)));
   return text;
 }
 
@@ -19,6 +25,14 @@ std::string describe(const status_t& status) {
 
 void StateBoard::note(const status_t& status, Clock::time_point time) {
   entries_[status.pid] = {status, time};
+}
+
+void StateBoard::keep(const std::vector<Supervisor::State>& states) {
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const bool is_known = std::any_of(states.begin(), states.end(),
+                                      [&](const Supervisor::State& state) { return state.pid == entry->first; });
+    entry = is_known ? std::next(entry) : entries_.erase(entry);
+  }
 }
 
 std::string StateBoard::line(const std::vector<Supervisor::State>& states, Clock::time_point now) const {

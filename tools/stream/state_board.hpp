@@ -15,7 +15,10 @@ class StateBoard {
  public:
   using Clock = std::chrono::steady_clock;
 
+  /// Only of the stream's own processes: anybody on the network may send a status of any other.
   void note(const status_t& status, Clock::time_point time);
+  /// Forgets all processes but these.
+  void keep(const std::vector<Supervisor::State>& states);
 
   /// The stream in one line: rate, latency and losses of each process, or that it waits for its restart, or has not
   /// been heard of for three seconds.

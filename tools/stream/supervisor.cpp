@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream::stream {
 
@@ -17,6 +18,10 @@ constexpr milliseconds kLongestStep(500);
 
 double seconds(milliseconds time) {
   return std::chrono::duration<double>(time).count();
+}
+
+std::string last_words_of(const Child& child) {
+  return child.last_words().empty() ? "it has said nothing" : "its last words: " + printable(child.last_words());
 }
 
 }  // namespace
@@ -35,7 +40,7 @@ Supervisor::~Supervisor() {
 }
 
 void Supervisor::start(Member& member) {
-  member.child = std::make_unique<Child>(member.plan.command);
+  member.child = std::make_unique<Child>(member.plan.command, true);
   member.since = Clock::now();
   member.has_spoken = false;
   member.silent = Clock::duration(0);
@@ -45,6 +50,9 @@ void Supervisor::start(Member& member) {
 
 void Supervisor::plan_restart(Member& member, const std::string& words) {
   const bool settled = Clock::now() - member.since > settings_.settled;
+  member.failures = settled ? 1 : member.failures + 1;
+  require(member.failures < settings_.most_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
+          words, member.failures, last_words_of(*member.child));
   member.wait =
       settled || member.wait.count() == 0 ? settings_.first_wait : std::min(2 * member.wait, settings_.longest_wait);
   member.since = Clock::now() + member.wait;
@@ -87,8 +95,8 @@ bool Supervisor::look_after(Member& member, Clock::duration listened) {
   }
   // A signal is somebody's doing; a status says that the process itself sees no way.
   const bool gave_up = !ending->success && !ending->by_signal;
-  require(member.has_run || !gave_up, "{} {} at its start; its own line above says why", member.plan.name,
-          ending->words);
+  require(member.has_run || !gave_up, "{} {} at its start; {}", member.plan.name, ending->words,
+          last_words_of(*member.child));
   plan_restart(member, ending->words);
   return true;
 }
@@ -100,12 +108,14 @@ bool Supervisor::step() {
   return std::all_of(members_.begin(), members_.end(), [&](Member& member) { return look_after(member, listened); });
 }
 
-void Supervisor::note_running(pid_t pid) {
+bool Supervisor::note_running(pid_t pid) {
   for (Member& member : members_) {
     if (!member.child || member.child->pid() != pid) continue;
     member.has_run = member.has_spoken = true;
     member.silent = Clock::duration(0);
+    return true;
   }
+  return false;
 }
 
 std::vector<std::string> Supervisor::stop() {

@@ -22,13 +22,15 @@ struct SupervisorSettings {
   std::chrono::milliseconds first_wait{250};  ///< before a restart; doubled by each failure that follows
   std::chrono::milliseconds longest_wait{10'000};
   std::chrono::milliseconds settled{10'000};        ///< after so long a run the next failure counts as the first
+  int most_failures = 8;                            ///< in a row: then it is given up, and the stream ends
   std::chrono::milliseconds start_time{3000};       ///< who runs that long has started
   std::chrono::milliseconds patience{1500};         ///< for a process to end by itself when it is asked to
   std::chrono::milliseconds silence{10'000};        ///< who has spoken and then says nothing for so long hangs
   std::chrono::milliseconds start_silence{60'000};  ///< the same for one that has not spoken yet: it may still read
 };
 
-/// Keeps the processes of a stream running: one that dies is started again, after a pause that grows with each failure.
+/// Keeps the processes of a stream running: one that dies is started again, after a pause that grows with each failure,
+/// until it has failed `most_failures` times in a row.
 /// One that fails before it has ever run is not: it would fail again for the same reason. One that hangs, as its
 /// silence tells, is asked to end (SIGTERM), killed where it does not (SIGKILL after `patience`), and started again
 /// likewise. Only silence that was listened to counts: where this process has stood still itself, its children have
@@ -43,11 +45,12 @@ class Supervisor {
   /// Ends them all.
   ~Supervisor();
 
-  /// Looks after the processes. False once the stream is to end. Throws InputError when one has failed at its start.
+  /// Looks after the processes. False once the stream is to end. Throws InputError, with its last words, when one has
+  /// failed at its start or is given up.
   bool step();
 
-  /// The process has shown that it runs; expected of each one every second.
-  void note_running(pid_t pid);
+  /// The process has shown that it runs; expected of each one every second. False where it is none of these.
+  bool note_running(pid_t pid);
 
   /// Asks all to end, waits, insists after `patience`. Returns the names of those that had to be killed.
   std::vector<std::string> stop();
@@ -69,6 +72,7 @@ class Supervisor {
     Clock::duration silent{0};                   // so long, as far as was listened
     std::optional<Clock::time_point> asked_end;  // when it was asked to end because it hangs
     int restarts = 0;
+    int failures = 0;  // in a row
     std::chrono::milliseconds wait{0};
     Clock::time_point since;  // of the start, or when the restart is due
   };

@@ -59,7 +59,7 @@ cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& 
 void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& sheet) {
   cv::Mat all;
   for (const std::filesystem::path& file : pictures) all.push_back(read_colour_image(file));
-  require(cv::imwrite(sheet.string(), all), "{}: cannot be written", sheet.string());
+  write_image(all, sheet);
 }
 
 }  // namespace houghstream::teach

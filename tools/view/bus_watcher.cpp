@@ -47,10 +47,10 @@ void BusWatcher::subscribe_to_frames(const std::string& frame_channels) {
   const bool is_pattern = !ChannelPattern(frame_channels).is_name();
   bus_.subscribe(frame_channels, [this, is_pattern](const Arrival& arrival) {
     if (is_pattern && !is_frame_message(arrival.bytes)) return;
-    status_.count_received();
     try {
       take_frame(arrival);
     } catch (const InputError& error) {
+      status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
     }
   });
@@ -58,7 +58,9 @@ void BusWatcher::subscribe_to_frames(const std::string& frame_channels) {
 
 void BusWatcher::take_frame(const Arrival& arrival) {
   const FrameHeader header = read_frame_header(arrival.bytes);
-  status_.note_sequence(header.sequence, arrival.channel);
+  const FrameNumber number{header.sequence, header.utime, header.run};
+  if (status_.note_number(number, arrival.channel) == FrameOrder::kDuplicate) return;
+  status_.count_received();
   cameras_.note(arrival.channel);
   if (!cameras_.is_shown(arrival.channel)) {
     status_.count_skipped(1);

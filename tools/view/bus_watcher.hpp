@@ -33,6 +33,8 @@ class BusWatcher {
   void note_drawn(const MatchedFrame& frame);
   void note_refused(const std::string& reason) { status_.count_refused(reason); }
   void note_skipped() { status_.count_skipped(1); }
+  /// Something about a frame that was drawn all the same.
+  void note_trouble(const std::string& reason) { status_.note_bad_message(reason); }
 
   /// Which camera is shown; frames of the others are skipped.
   ShownCamera& cameras() { return cameras_; }

@@ -68,7 +68,12 @@ void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
   if (!picture) return;
   if (window_) window_->show(*picture, matched.id);
   outputs_.add(*picture, matched.id.utime, matched.slot);
-  if (preview_) watcher.publish_preview(*picture, matched.id.utime);
+  if (!preview_) return;
+  try {
+    watcher.publish_preview(*picture, matched.id.utime);
+  } catch (const InputError& error) {
+    watcher.note_trouble(error.what());
+  }
 }
 
 bool FrameShow::handle_keys(BusWatcher& watcher) {
@@ -110,7 +115,7 @@ std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher&
     viewed_ = std::move(viewed);
     watcher.note_drawn(matched);
     return picture;
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {  // OpenCV's too: no frame may end the program
     watcher.note_refused(error.what());
     return std::nullopt;
   }

@@ -18,7 +18,14 @@ void StreamWatch::note_frame(std::int64_t now_us) {
 
 void StreamWatch::note_process(ProcessState process) {
   const std::lock_guard lock(mutex_);
-  processes_[{process.name, process.pid}] = std::move(process);
+  constexpr std::size_t kProcesses = 64;  // a sender of rubbish may make them up without end
+  if (processes_.size() >= kProcesses) {
+    for (auto entry = processes_.begin(); entry != processes_.end();)
+      entry = process.heard_us - entry->second.heard_us > kSilenceUs ? processes_.erase(entry) : std::next(entry);
+  }
+  const std::pair<std::string, std::int32_t> key(process.name, process.pid);
+  if (processes_.size() >= kProcesses && processes_.count(key) == 0) return;
+  processes_[key] = std::move(process);
 }
 
 void StreamWatch::note_teaching(Teaching teaching, std::int64_t now_us) {
@@ -51,8 +58,9 @@ StreamState StreamWatch::state(std::int64_t now_us) {
 
 void ShownCamera::note(const std::string& channel) {
   const std::lock_guard lock(mutex_);
+  constexpr std::size_t kCameras = 64;
   if (heard_.empty()) shown_ = channel;
-  heard_.insert(channel);
+  if (heard_.size() < kCameras) heard_.insert(channel);
 }
 
 void ShownCamera::next() {

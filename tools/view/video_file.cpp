@@ -1,5 +1,7 @@
 #include "tools/view/video_file.hpp"
 
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
@@ -9,9 +11,22 @@ namespace houghstream::view {
 VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::move(file)), rate_hz_(rate_hz) {}
 
 void VideoFile::open(const cv::Mat& picture) {
+  whole_.emplace(file_, ".partial" + file_.extension().string());
   const int codec = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
-  const bool opened = writer_.open(file_.string(), cv::CAP_FFMPEG, codec, rate_hz_, picture.size());
+  size_ = {std::max(picture.cols / 2 * 2, 2), std::max(picture.rows / 2 * 2, 2)};
+  const bool opened = writer_.open(whole_->partial().string(), cv::CAP_FFMPEG, codec, rate_hz_, size_);
   require(opened, "{}: cannot be written as H.264 video (folder missing, or OpenCV without FFmpeg)", file_.string());
+}
+
+cv::Mat VideoFile::fitted(const cv::Mat& picture) const {
+  if (picture.size() == size_) return picture.clone();
+  const double scale = std::min(1.0 * size_.width / picture.cols, 1.0 * size_.height / picture.rows);
+  const cv::Size inner(std::clamp(cvRound(scale * picture.cols), 1, size_.width),
+                       std::clamp(cvRound(scale * picture.rows), 1, size_.height));
+  cv::Mat out = cv::Mat::zeros(size_, picture.type());
+  cv::Mat place = out(cv::Rect({(size_.width - inner.width) / 2, (size_.height - inner.height) / 2}, inner));
+  cv::resize(picture, place, inner, 0.0, 0.0, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return out;
 }
 
 void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
@@ -19,15 +34,21 @@ void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
     open(picture);
     first_slot_ = slot;
   }
-  require(last_.empty() || picture.size() == last_.size(), "{}: picture of {}x{} in a video of {}x{}", file_.string(),
-          picture.cols, picture.rows, last_.cols, last_.rows);
+  const cv::Mat fitting = fitted(picture);
   while (!last_.empty() && frames_written_ < slot - first_slot_) {
     writer_.write(last_);
     ++frames_written_;
   }
-  writer_.write(picture);
+  writer_.write(fitting);
   ++frames_written_;
-  last_ = picture.clone();
+  last_ = fitting;
+}
+
+void VideoFile::finish() {
+  if (!whole_) return;
+  writer_.release();
+  whole_->publish();
+  whole_.reset();
 }
 
 }  // namespace houghstream::view

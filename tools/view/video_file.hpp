@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
+#include <optional>
+
+#include "pipeline/base/files.hpp"
 
 namespace houghstream::view {
 
@@ -13,18 +16,24 @@ class VideoFile {
  public:
   VideoFile(std::filesystem::path file, double rate_hz);
 
-  /// Slots must grow. All pictures have the size of the first, even in both directions; throws InputError when the
-  /// file cannot be written.
+  /// Slots must grow. The video has the size of the first picture, made even in both directions; one of another size
+  /// (the camera's mode has changed) is fitted into it. Throws InputError when the file cannot be written.
   void add(const cv::Mat& picture, std::int64_t slot);
+
+  /// Ends the video, which is in its place from here on, and not before (WholeFile). Throws InputError.
+  void finish();
 
   std::int64_t frames_written() const { return frames_written_; }
 
  private:
   void open(const cv::Mat& picture);
+  cv::Mat fitted(const cv::Mat& picture) const;
 
   std::filesystem::path file_;
+  std::optional<WholeFile> whole_;
   double rate_hz_;
   cv::VideoWriter writer_;
+  cv::Size size_;
   cv::Mat last_;
   std::int64_t first_slot_ = 0;
   std::int64_t frames_written_ = 0;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <system_error>
 #include <utility>
 
+#include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream::view {
@@ -23,13 +23,7 @@ void make_folder(const fs::path& folder) {
 }  // namespace
 
 void write_picture(const fs::path& file, const cv::Mat& picture) {
-  bool written = false;
-  try {
-    written = cv::imwrite(file.string(), picture);
-  } catch (const cv::Exception&) {
-    fail("{}: not a picture format that can be written, expected .png or .jpg", file.string());
-  }
-  require(written, "{}: cannot be written", file.string());
+  write_image(picture, file);
 }
 
 ViewOutputs::ViewOutputs(OutputSettings settings) : settings_(std::move(settings)) {
@@ -54,6 +48,7 @@ void ViewOutputs::finish() {
   const bool wanted = !settings_.snapshot.empty() || !settings_.video.empty() || !settings_.pictures.empty();
   require(!wanted || added_ > 0, "nothing to write: no frame was seen on the bus");
   if (!settings_.snapshot.empty() && !snapshot_written_) write_picture(settings_.snapshot, last_);
+  if (video_) video_->finish();
   video_.reset();
 }
 

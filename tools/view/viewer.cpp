@@ -29,8 +29,8 @@ std::size_t waiting_frames(const ShowSettings& settings) {
 }  // namespace
 
 void run_viewer(const ViewerSettings& settings) {
-  catch_stop_signals();
   FrameShow frame_show(settings.show, settings.lcm_url);
+  catch_stop_signals();
   MatchSettings match;
   match.rate_hz = settings.show.outputs.rate_hz;
   LcmBus bus(settings.lcm_url);

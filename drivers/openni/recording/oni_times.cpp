@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream::openni {
 namespace {
@@ -17,6 +18,8 @@ constexpr std::uint32_t kMagic = 0x0052494E;
 constexpr std::uint64_t kSeekEntry = 20;  // time, configuration, position
 constexpr std::uint64_t kRangeEnd = 24;   // before the end of a node's fields: first time, last time, seek table
 
+constexpr std::uint64_t kImages = kRangeEnd + 4;  // likewise: their number, before the first time
+
 enum class Type : std::uint32_t { kNewData = 10, kEnd = 11, kNodeAdded = 13, kSeekTable = 14 };
 
 struct RecordHeader {
@@ -28,8 +31,10 @@ struct RecordHeader {
 
 class OniFile {
  public:
-  explicit OniFile(const std::filesystem::path& file)
-      : name_(file.string()), stream_(file, std::ios::in | std::ios::out | std::ios::binary) {
+  explicit OniFile(const std::filesystem::path& file, std::ios::openmode mode = std::ios::in) : name_(file.string()) {
+    require_regular_file(file, "a recording of OpenNI2's");
+    size_ = std::filesystem::file_size(file);
+    stream_.open(file, mode | std::ios::binary);
     std::array<char, kFileStart.size()> start{};
     stream_.read(start.data(), start.size());
     require(stream_ && start == kFileStart, "{}: no recording of OpenNI2's, version 1.0.1", name_);
@@ -47,8 +52,13 @@ class OniFile {
   RecordHeader record(std::uint64_t at) {
     const auto words = read<std::array<std::uint32_t, 5>>(at);
     require(words[0] == kMagic && words[3] >= kRecordHeader, "{}: no record at byte {}", name_, at);
-    return {words[1], words[2], words[3], words[4]};
+    const RecordHeader header{words[1], words[2], words[3], words[4]};
+    require(header.fields + header.payload <= size_ - at, "{}: cut in the record at byte {}", name_, at);
+    return header;
   }
+
+  std::uint64_t size() const { return size_; }
+  const std::string& name() const { return name_; }
 
   void add(const std::vector<std::uint64_t>& places, std::uint64_t amount) {
     for (const std::uint64_t at : places) {
@@ -62,6 +72,7 @@ class OniFile {
 
  private:
   std::string name_;
+  std::uint64_t size_ = 0;
   std::fstream stream_;
 };
 
@@ -81,11 +92,29 @@ std::vector<std::uint64_t> times_in(const RecordHeader& record, std::uint64_t at
   return places;
 }
 
+/// OpenNI2 makes place for as many images as a node states.
+void check_images(OniFile& oni, const RecordHeader& record, std::uint64_t at) {
+  require(record.fields >= kRecordHeader + kImages, "{}: a stream of {} bytes at byte {}", oni.name(), record.fields,
+          at);
+  const auto images = oni.read<std::uint32_t>(at + record.fields - kImages);
+  require(images <= oni.size() / kRecordHeader, "{}: states {} images, expected at most what {} bytes hold", oni.name(),
+          images, oni.size());
+}
+
 }  // namespace
+
+void check_oni(const std::filesystem::path& file) {
+  OniFile oni(file);
+  std::uint64_t at = kFileHeader;
+  for (RecordHeader record = oni.record(at); static_cast<Type>(record.type) != Type::kEnd; record = oni.record(at)) {
+    if (static_cast<Type>(record.type) == Type::kNodeAdded) check_images(oni, record, at);
+    at += record.fields + record.payload;
+  }
+}
 
 void delay_oni_node(const std::filesystem::path& file, OniNode node, std::int64_t delay_us) {
   require(delay_us >= 0, "{}: a delay of {} us, expected none or more", file.string(), delay_us);
-  OniFile oni(file);
+  OniFile oni(file, std::ios::in | std::ios::out);
   std::vector<std::uint64_t> places;
   std::uint64_t at = kFileHeader;
   for (RecordHeader record = oni.record(at); static_cast<Type>(record.type) != Type::kEnd; record = oni.record(at)) {

@@ -8,6 +8,10 @@ namespace houghstream::openni {
 /// The streams of a .oni file in the order in which they were attached to OpenNI2's recorder.
 enum class OniNode : std::uint32_t { kFirst = 1, kSecond = 2 };
 
+/// Throws InputError unless the file is a whole recording of OpenNI2's (version 1.0.1) as far as its records and their
+/// lengths go: OpenNI2 itself asks for as much memory as the file states.
+void check_oni(const std::filesystem::path& file);
+
 /// Adds `delay_us`, which is not negative, to all times of one stream in a finished .oni file: those of its images, of
 /// its seek table and of its range. OpenNI2's recorder begins each stream at zero (OniRecorder.cpp), whenever its first
 /// image was taken, so what two streams have to do with each other must be said afterwards. Throws InputError where the

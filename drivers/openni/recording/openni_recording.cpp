@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 
 #include "drivers/openni/openni_device.hpp"
 #include "drivers/openni/openni_parts.hpp"
@@ -38,11 +37,9 @@ std::int64_t device_start_us(const std::string& stream, const std::vector<Rememb
 
 }  // namespace
 
-OpenniRecording::OpenniRecording(std::string file, bool jpeg, ::openni::VideoStream& depth,
+OpenniRecording::OpenniRecording(const std::string& file, bool jpeg, ::openni::VideoStream& depth,
                                  ::openni::VideoStream& colour)
-    : file_(std::move(file)), jpeg_(jpeg) {
-  // OpenNI2 would crash later.
-  require(std::ofstream(file_).good(), "{}: cannot be written, expected a place for a recording", file_);
+    : whole_(file, ".partial.oni"), file_(whole_.partial().string()), jpeg_(jpeg) {
   check_openni(recorder_.create(file_.c_str()), file_ + ": cannot be recorded to");
   check_openni(recorder_.attach(depth, false), file_ + ": depth");
   check_openni(recorder_.attach(colour, jpeg_), file_ + ": colour");
@@ -59,15 +56,24 @@ void OpenniRecording::note(const SensorImage& image) {
   if (may_be_recorded && own.size() < kRemembered) own.push_back(remember(image));
 }
 
-void OpenniRecording::mend_times() noexcept {
+void OpenniRecording::mend_times() {
+  const FirstImages recorded = first_recorded(file_);
+  const std::int64_t colour_later_us = device_start_us(file_ + ", colour", recorded.colour, live_.colour, jpeg_) -
+                                       device_start_us(file_ + ", depth", recorded.depth, live_.depth, false);
+  const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
+  if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
+}
+
+void OpenniRecording::finish() noexcept {
   try {
-    const FirstImages recorded = first_recorded(file_);
-    const std::int64_t colour_later_us = device_start_us(file_ + ", colour", recorded.colour, live_.colour, jpeg_) -
-                                         device_start_us(file_ + ", depth", recorded.depth, live_.depth, false);
-    const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
-    if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
+    mend_times();
   } catch (const std::exception& error) {
     log_warning("{}; in the recording colour may lie beside its depth", error.what());
+  }
+  try {
+    whole_.publish();
+  } catch (const std::exception& error) {
+    log_error("{}", error.what());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "drivers/openni/recording/recorded_start.hpp"
 #include "drivers/openni/timestamp_pairing.hpp"
+#include "pipeline/base/files.hpp"
 
 // Recording of a camera to a .oni file. Included by the .cpp files of this folder only.
 
@@ -27,7 +28,7 @@ struct FirstImages {
 class OpenniRecording {
  public:
   /// Throws InputError where the file cannot be written.
-  OpenniRecording(std::string file, bool jpeg, ::openni::VideoStream& depth, ::openni::VideoStream& colour);
+  OpenniRecording(const std::string& file, bool jpeg, ::openni::VideoStream& depth, ::openni::VideoStream& colour);
 
   bool started() const { return started_us_ > 0; }
   void start();
@@ -38,12 +39,15 @@ class OpenniRecording {
   /// Ends the recording; the streams must still exist, and have been stopped.
   void stop() { recorder_.destroy(); }
 
-  /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero. Warns where
-  /// that fails; the file is then as OpenNI2 has left it.
-  void mend_times() noexcept;
+  /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero, and puts it
+  /// into its place. Warns where that fails; the file is then as OpenNI2 has left it.
+  void finish() noexcept;
 
  private:
-  std::string file_;
+  void mend_times();
+
+  WholeFile whole_;
+  std::string file_;  // while it is written
   bool jpeg_;
   ::openni::Recorder recorder_;
   std::int64_t started_us_ = 0;  // host's time, 0 before

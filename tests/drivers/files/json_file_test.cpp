@@ -34,6 +34,14 @@ TEST(JsonFile, IsWrittenInOrderAndComesBack) {
   EXPECT_THROW(write_json(json, "/no/such/folder/file.json"), InputError);
 }
 
+TEST(JsonFile, BytesThatAreNoTextAreReplaced) {
+  const fs::path file = file_with("");
+  OrderedJson json;
+  json["name"] = "mug\xff";
+  write_json(json, file);
+  EXPECT_EQ(read_json_object(file).at("name"), "mug\xef\xbf\xbd");
+}
+
 TEST(JsonFile, WhatIsNoObjectIsRefused) {
   for (const std::string text : {"", "[1, 2]", "{\"a\": 1", "{\"a\": 1} more", "text"}) {
     const fs::path file = file_with(text);

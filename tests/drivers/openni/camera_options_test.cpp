@@ -62,6 +62,10 @@ TEST(CameraInfo, BadFilesAreRefused) {
     replace_in_file(file, line, line == "528.5" ? "-1" : "x: 1");
     EXPECT_THROW(read_camera_info(file), InputError) << line;
   }
+  for (const char* text : {"- 1\n- 2\n", "640", "camera_matrix: [1, 2]\n", "camera_matrix:\n  data: 3\n"}) {
+    write_text(file, text);
+    EXPECT_THROW(read_camera_info(file), InputError) << text;
+  }
   write_text(file, "[1, 2");
   EXPECT_THROW(read_camera_info(file), InputError) << "no YAML";
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <thread>
 
@@ -18,6 +20,21 @@ TEST(StopSignal, BothOnlySetAFlagWhichAFreshStartClears) {
   }
   catch_stop_signals();
   EXPECT_FALSE(stop_requested());
+}
+
+TEST(StopSignal, ASecondOneLaterEndsAProgramThatHangs) {
+  const pid_t child = fork();
+  if (child == 0) {
+    catch_stop_signals();
+    std::raise(SIGTERM);
+    std::raise(SIGTERM);  // the same request by another way
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    std::raise(SIGTERM);
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
 }
 
 bool takes(int number) {

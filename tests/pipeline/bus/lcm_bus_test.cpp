@@ -135,6 +135,9 @@ TEST(LcmBus, ReadsALogWithoutSkippingAndWritesAnother) {
   EXPECT_EQ(first->channel, "Z");
   EXPECT_EQ(reader.next()->timestamp, 2);
 
+  EXPECT_THROW(LcmBus("file://" + input.string(), input.string()), InputError) << "its own source";
+  EXPECT_GT(std::filesystem::file_size(input), 200U * 28);
+
   LcmBus read_only("file://" + input.string());
   EXPECT_THROW(read_only.publish("Z", numbered(1)), InputError);
   std::filesystem::remove(input);

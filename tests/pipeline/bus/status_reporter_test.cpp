@@ -37,19 +37,19 @@ TEST(StatusReporter, GapsInTheNumberingAreLostFrames) {
   StatusReporter status("hs-test");
   EXPECT_EQ(status.message().frames_lost, -1) << "without a number it cannot be told";
   EXPECT_TRUE(std::isnan(status.message().latency_p50_ms));
-  status.note_sequence(std::nullopt);
+  status.note_number({});
   EXPECT_EQ(status.message().frames_lost, -1);
-  for (const std::int64_t sequence : {5, 6, 9, 10}) status.note_sequence(sequence);
+  for (const std::int64_t sequence : {5, 6, 9, 10}) status.note_number({sequence, sequence, 0});
   EXPECT_EQ(status.message().frames_lost, 2);
-  for (const std::int64_t sequence : {0, 1, 3}) status.note_sequence(sequence);
+  for (const std::int64_t sequence : {0, 1, 3}) status.note_number({sequence, sequence, 0});
   EXPECT_EQ(status.message().frames_lost, 3) << "a new run starts at 0 and loses nothing by it";
 }
 
 TEST(StatusReporter, EachCameraHasANumberingOfItsOwn) {
   StatusReporter status("hs-test");
   for (const std::int64_t sequence : {0, 1, 2}) {
-    status.note_sequence(sequence, "LEFT");
-    status.note_sequence(100 + 2 * sequence, "RIGHT");
+    status.note_number({sequence, sequence, 0}, "LEFT");
+    status.note_number({100 + 2 * sequence, sequence, 0}, "RIGHT");
   }
   EXPECT_EQ(status.message().frames_lost, 2);
 }

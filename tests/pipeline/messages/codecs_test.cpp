@@ -78,5 +78,24 @@ TEST(Codecs, SettingsOutOfRangeAreRefused) {
   EXPECT_THROW(zip_depth(frame.depth, 1), InputError);
 }
 
+/// A baseline JPEG with so many empty scans before its end.
+std::vector<std::uint8_t> with_scans(int scans) {
+  std::vector<std::uint8_t> jpeg = encode_jpeg(cv::Mat(16, 16, CV_8UC3, cv::Scalar::all(90)), 90);
+  const std::vector<std::uint8_t> scan = {0xFF, 0xDA, 0, 8, 1, 1, 0, 1, 63, 0, 0x2B};
+  for (; scans > 0; --scans) jpeg.insert(jpeg.end() - 2, scan.begin(), scan.end());
+  return jpeg;
+}
+
+TEST(Codecs, AJpegOfManyScansIsRefusedBeforeItIsDecoded) {
+  EXPECT_FALSE(decode_jpeg({with_scans(0).data(), with_scans(0).size()}, 16, 16).empty());
+  const std::vector<std::uint8_t> many = with_scans(kMaxScans);
+  try {
+    decode_jpeg({many.data(), many.size()}, 16, 16);
+    FAIL() << "was decoded";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("17 scans"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -53,5 +53,22 @@ TEST(NewestOfEach, AFastChannelDoesNotStarveASlowOne) {
   EXPECT_EQ(slots.waiting(), 0U);
 }
 
+TEST(NewestOfEach, WhatWasOvertakenGivesWay) {
+  NewestOfEach<int> slot;
+  slot.put("A", 3);
+  EXPECT_TRUE(slot.put_late("A", 2)) << "the newer one waits";
+  EXPECT_EQ(slot.take(milliseconds(0)), 3);
+  EXPECT_FALSE(slot.put_late("A", 2));
+  EXPECT_EQ(slot.take(milliseconds(0)), 2);
+}
+
+TEST(NewestOfEach, HoldsAFewChannelsOnly) {
+  NewestOfEach<int> slot;
+  for (std::size_t i = 0; i < NewestOfEach<int>::kChannels; ++i) EXPECT_FALSE(slot.put(std::to_string(i), 1));
+  EXPECT_TRUE(slot.put("one more", 1));
+  EXPECT_TRUE(slot.put("0", 2));
+  EXPECT_EQ(slot.waiting(), NewestOfEach<int>::kChannels);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -175,6 +177,27 @@ TEST(PairInbox, OldFramesAreForgotten) {
   EXPECT_FALSE(inbox.take(kNow).has_value());
   inbox.put_detections(id(1), bytes(0));
   EXPECT_TRUE(inbox.take(kNow).has_value());
+}
+
+TEST(PairInbox, LargeFramesAreKeptWithinABoundInBytes) {
+  PairInbox inbox(true);
+  constexpr std::size_t kLarge = PairInbox::kHistoryBytes / 8;
+  for (int i = 0; i < 20; ++i) inbox.put_frame({"LEFT", i}, std::vector<std::uint8_t>(kLarge));
+  inbox.put_frame({"RIGHT", 1}, std::vector<std::uint8_t>(kLarge));
+  inbox.put_detections({"LEFT", 19}, {});
+  EXPECT_TRUE(inbox.take(kNow).has_value());
+  inbox.put_detections({"RIGHT", 1}, {});
+  EXPECT_TRUE(inbox.take(kNow).has_value());
+  inbox.put_detections({"LEFT", 5}, {});
+  EXPECT_FALSE(inbox.take(kNow).has_value()) << "the oldest ones are gone";
+}
+
+TEST(PairInbox, ListensToAFewCamerasOnly) {
+  PairInbox inbox(true);
+  for (std::size_t i = 0; i < PairInbox::kCameras; ++i) inbox.put_frame({std::to_string(i), 1}, {1});
+  EXPECT_THROW(inbox.put_frame({"one more", 1}, {1}), InputError);
+  EXPECT_THROW(inbox.put_detections({"one more", 1}, {1}), InputError);
+  EXPECT_NO_THROW(inbox.put_frame({"0", 2}, {1}));
 }
 
 }  // namespace

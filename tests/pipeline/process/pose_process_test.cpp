@@ -267,5 +267,30 @@ TEST(PoseProcess, ModelsOfOtherObjectsThanTheDetectorsAreToldOnce) {
   EXPECT_NE(log.find("detected are bowl; there are models of mug"), std::string::npos) << log;
 }
 
+TEST(PoseProcess, TwoDetectorsOfOneObjectAreTold) {
+  ProcessOnMemq test({channel::kPoses, channel::kStatus});
+  test.start(run_fake);
+  send_frame(test, 10);
+  test.bus.publish(channel::kDetections, to_message(one_bowl(10)));
+  Detections other = one_bowl(10);
+  other.detections[0].score = 0.5F;
+  test.bus.publish(channel::kDetections, to_message(other));
+  ASSERT_TRUE(test.wait_for(channel::kPoses, 2));
+  test.stop();
+  const std::string error = test.last<status_t>(channel::kStatus).last_error;
+  EXPECT_NE(error.find("two detectors find 'bowl'"), std::string::npos) << error;
+}
+
+TEST(PoseProcess, DetectionsThatComeTwiceCountOnce) {
+  ProcessOnMemq test({channel::kPoses, channel::kStatus});
+  test.start(run_fake);
+  send_frame(test, 10);
+  for (int i = 0; i < 2; ++i) test.bus.publish(channel::kDetections, to_message(one_bowl(10)));
+  ASSERT_TRUE(test.wait_for(channel::kPoses, 1));
+  test.stop();
+  EXPECT_EQ(test.count(channel::kPoses), 1U);
+  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_received, 1);
+}
+
 }  // namespace
 }  // namespace houghstream

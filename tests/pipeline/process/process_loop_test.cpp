@@ -61,6 +61,23 @@ TEST(ProcessLoop, ADamagedLogIsAnError) {
   EXPECT_THROW(run_process_loop(bus, status, [](milliseconds) { return false; }), InputError);
 }
 
+TEST(ProcessLoop, ALogThatIsStoppedWritesNothing) {
+  const SmallLog log(5);
+  const std::filesystem::path output = log.path.string() + ".out";
+  {
+    catch_stop_signals();
+    LcmBus bus("file://" + log.path.string(), output.string());
+    StatusReporter status("test");
+    const WorkStep stop = [](milliseconds) {
+      std::raise(SIGTERM);
+      return false;
+    };
+    EXPECT_THROW(run_process_loop(bus, status, stop), InputError);
+  }
+  catch_stop_signals();
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
 TEST(ProcessLoop, OnANetworkReceivingGoesOnWhileWorkTakesItsTime) {
   ProcessOnMemq test({channel::kStatus});
   std::atomic<int> received{0};

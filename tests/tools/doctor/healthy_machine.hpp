@@ -45,6 +45,7 @@ struct HealthyMachine {
     machine.self_test = [](const std::string&, std::size_t) { return SelfTest{5, 5, ""}; };
     machine.may_use = [](const std::filesystem::path&) { return true; };
     machine.load_error = [](const std::filesystem::path&) { return std::string(); };
+    machine.refuses_others = [](const std::string&) { return true; };
     machine.runs = [](const std::filesystem::path&, const std::string&) { return true; };
   }
 

@@ -45,7 +45,7 @@ TEST(NetworkChecks, WithoutARouteTheBusIsLeftAlone) {
   healthy.machine.self_test = [&](const std::string&, std::size_t) { return SelfTest{++uses, 0, ""}; };
   const Findings findings = check_network(healthy.machine, kBus);
   EXPECT_EQ(uses, 0);
-  ASSERT_EQ(findings.size(), 4U);
+  ASSERT_EQ(findings.size(), 5U);
   EXPECT_EQ(findings.front().level, Level::kWrong);
   EXPECT_EQ(findings.back().level, Level::kNote);
 }
@@ -68,7 +68,7 @@ TEST(NetworkChecks, BuffersThatAreJustLargeEnoughForTheFramesHeardAreFine) {
     healthy.machine.granted_receive_buffer = [&](std::int64_t) { return needed - missing; };
     plant(healthy.machine.root / "proc/sys/net/core/rmem_default", std::to_string(needed - missing));
     const Findings findings = check_network(healthy.machine, kBus);
-    ASSERT_EQ(findings.size(), 4U);
+    ASSERT_EQ(findings.size(), 5U);
     EXPECT_EQ(findings[1].level, missing == 0 ? Level::kOk : Level::kWrong) << findings[1].what;
     EXPECT_EQ(findings[2].level, missing == 0 ? Level::kOk : Level::kNote) << findings[2].what;
   }
@@ -93,6 +93,25 @@ TEST(NetworkChecks, WhatProcessesComplainOfIsToldCamerasThatContradictAreWrong) 
   EXPECT_EQ(track.level, Finding::Level::kWrong);
   EXPECT_EQ(track.name, "hs-track");
   EXPECT_NE(track.remedy.find("hs-track --check"), std::string::npos);
+}
+
+TEST(NetworkChecks, WhoMaySendIsSaidWithWhatKeepsOthersOut) {
+  HealthyMachine healthy("network_senders");
+  healthy.machine.refuses_others = [](const std::string&) { return false; };
+  const auto senders = [&](const std::string& url) {
+    BusSettings bus = kBus;
+    bus.url = url;
+    const Findings findings = check_network(healthy.machine, bus);
+    return findings[findings.size() - 2];
+  };
+  const Finding own = senders(kBus.url);
+  EXPECT_EQ(own.level, Level::kNote);
+  EXPECT_NE(own.remedy.find("udp dport 7667 drop"), std::string::npos) << own.remedy;
+  EXPECT_EQ(senders("udpm://239.255.76.67:7667?ttl=1").level, Level::kNote);
+  EXPECT_NE(senders("tcpq://localhost").remedy.find("tcp dport 7700 drop"), std::string::npos);
+  EXPECT_EQ(senders("memq://").level, Level::kOk);
+  healthy.machine.refuses_others = [](const std::string& port) { return port == "7667"; };
+  EXPECT_EQ(senders(kBus.url).level, Level::kOk);
 }
 
 }  // namespace

@@ -57,6 +57,52 @@ TEST_F(FilterLog, ByChannel) {
   EXPECT_EQ(pass(filter).size(), 10U);
 }
 
+/// What a log keeps whose events have these dates, seconds, when it is filtered; and what is said of it.
+class DatedLog {
+ public:
+  explicit DatedLog(const std::vector<double>& dates_s) : folder_(fresh_folder("filter_log_dates")) {
+    LogWriter writer(folder_ / "in");
+    for (const double date : dates_s) {
+      const std::uint8_t data = 0;
+      writer.write(static_cast<std::int64_t>(1e6 * date), "A", {&data, 1});
+    }
+    writer.close();
+  }
+  std::int64_t kept(const LogFilter& filter) {
+    LossAccount losses;
+    const std::int64_t count = filter_log(folder_ / "in", filter, folder_ / "out", losses);
+    words = losses.line();
+    return count;
+  }
+  std::string words;
+
+ private:
+  fs::path folder_;
+};
+
+TEST(FilterLogDates, NothingIsDroppedUnlessAskedAndWhatLooksWrongIsSaid) {
+  DatedLog flipped({4.6e12, 1e6, 1e6 + 1, 1e6 + 2, 1e6 + 3});  // a bit of the first date
+  EXPECT_EQ(flipped.kept({}), 5);
+  EXPECT_NE(flipped.words.find("jumps by more than an hour"), std::string::npos) << flipped.words;
+  LogFilter from_second_two;
+  from_second_two.start_s = 2.0;
+  from_second_two.end_s = 10.0;
+  EXPECT_EQ(flipped.kept(from_second_two), 2) << "counted from the first date that fits";
+
+  DatedLog set_back({10'000, 10'001, 10'002, 6'403, 6'404});
+  EXPECT_EQ(set_back.kept({}), 5);
+  EXPECT_NE(set_back.words.find("2 events are dated before the log's first one, by up to 3597"), std::string::npos)
+      << set_back.words;
+  LogFilter from_start;
+  from_start.start_s = 0.0;
+  EXPECT_EQ(set_back.kept(from_start), 3);
+  EXPECT_NE(set_back.words.find("2 events"), std::string::npos) << set_back.words;
+
+  DatedLog healthy({1.0, 2.0, 3.0});
+  EXPECT_EQ(healthy.kept({}), 3);
+  EXPECT_EQ(healthy.words, "");
+}
+
 TEST_F(FilterLog, WhatMakesNoSenseIsRefused) {
   LogFilter filter;
   filter.channels = "(";

@@ -35,5 +35,26 @@ TEST(StateBoard, TellsTheStreamsStateInOneLine) {
             "capture 30.0 Hz (restarts: 1) | new silent");
 }
 
+TEST(StateBoard, ShowsNothingThatSteersATerminal) {
+  StateBoard board;
+  const auto now = StateBoard::Clock::now();
+  status_t status = status_of(10, 1.0F);
+  status.frames_refused = 1;
+  status.last_error = "\x1b]0;mine\x07" + std::string(1000, 'a');
+  board.note(status, now);
+  const std::string line = board.line({{"detect", 10, 0}}, now);
+  EXPECT_EQ(line.find('\x1b'), std::string::npos);
+  EXPECT_NE(line.find("\\x1b]0;mine\\x07"), std::string::npos) << line;
+  EXPECT_LT(line.size(), 400U);
+}
+
+TEST(StateBoard, ForgetsProcessesThatAreGone) {
+  StateBoard board;
+  const auto now = StateBoard::Clock::now();
+  board.note(status_of(10, 1.0F), now);
+  board.keep({{"detect", 11, 1}});
+  EXPECT_EQ(board.line({{"detect", 10, 0}}, now), "detect silent");
+}
+
 }  // namespace
 }  // namespace houghstream::stream

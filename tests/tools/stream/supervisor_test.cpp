@@ -175,5 +175,19 @@ TEST(Supervisor, AMissingProgramIsNamed) {
   EXPECT_THROW(Supervisor({{"a", {"/nowhere/hs-detect"}, false}}, quick(), be_silent), InputError);
 }
 
+TEST(Supervisor, WhoDiesAgainAndAgainIsGivenUpWithItsLastWords) {
+  SupervisorSettings settings = quick();
+  settings.most_failures = 3;
+  settings.start_time = milliseconds(0);  // it has run, and dies all the same
+  Supervisor supervisor({shell("a", "sleep 0.05; echo the disk is gone >&2; exit 3")}, settings, be_silent);
+  try {
+    step_until(supervisor, [] { return false; });
+    FAIL() << "is started again for ever";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "a ended with status 3, 3 times in a row: it is given up; its last words: the disk is gone");
+  }
+}
+
 }  // namespace
 }  // namespace houghstream::stream

@@ -31,6 +31,12 @@ TEST(Preview, EvenNoiseFitsTheReceiveBuffer) {
   EXPECT_FALSE(decode_jpeg({preview.jpeg.data(), preview.jpeg.size()}, preview.width, preview.height).empty());
 }
 
+TEST(Preview, TheSmallestPictureIsOne) {
+  const PreviewPicture preview = encode_preview(noise(1, 1));
+  EXPECT_EQ(preview.width, 1);
+  EXPECT_EQ(preview.height, 1);
+}
+
 TEST(Preview, WhatCannotFitIsAnError) {
   EXPECT_THROW(encode_preview(noise(64, 64), 100), InputError);
 }

@@ -19,6 +19,8 @@ TEST(VideoFile, LastsAsLongAsTheStreamThoughSlotsWereSkipped) {
     video.add(cv::Mat(kSize, CV_8UC3, cv::Scalar::all(120)), 8);
     video.add(cv::Mat(kSize, CV_8UC3, cv::Scalar::all(220)), 9);
     EXPECT_EQ(video.frames_written(), 5);
+    EXPECT_FALSE(std::filesystem::exists(file)) << "before it is whole";
+    video.finish();
   }
   cv::VideoCapture written(file.string());
   ASSERT_TRUE(written.isOpened());
@@ -32,14 +34,25 @@ TEST(VideoFile, LastsAsLongAsTheStreamThoughSlotsWereSkipped) {
   std::filesystem::remove(file);
 }
 
-TEST(VideoFile, UnwritableFileAndChangedSizeAreRefused) {
-  VideoFile nowhere("/nonexistent/folder/video.mp4", 10.0);
-  EXPECT_THROW(nowhere.add(cv::Mat(kSize, CV_8UC3), 0), InputError);
+TEST(VideoFile, FitsInWhatHasAnotherSize) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "video_file_test_size.mp4";
   VideoFile video(file, 10.0);
-  video.add(cv::Mat::zeros(kSize, CV_8UC3), 0);
-  EXPECT_THROW(video.add(cv::Mat::zeros(cv::Size(32, 48), CV_8UC3), 1), InputError);
+  video.add(cv::Mat(kSize, CV_8UC3, cv::Scalar::all(200)), 0);
+  video.add(cv::Mat(cv::Size(31, 48), CV_8UC3, cv::Scalar::all(200)), 1);
+  video.add(cv::Mat(cv::Size(1, 1), CV_8UC3, cv::Scalar::all(200)), 2);
+  video.finish();
+  cv::VideoCapture written(file.string());
+  cv::Mat picture;
+  ASSERT_TRUE(written.read(picture) && written.read(picture));
+  EXPECT_EQ(picture.size(), kSize);
+  EXPECT_LT(picture.at<cv::Vec3b>(24, 2)[0], 60) << "black beside a narrower one";
+  EXPECT_GT(picture.at<cv::Vec3b>(24, 32)[0], 140);
   std::filesystem::remove(file);
+}
+
+TEST(VideoFile, AnUnwritableFileIsRefused) {
+  VideoFile nowhere("/nonexistent/folder/video.mp4", 10.0);
+  EXPECT_THROW(nowhere.add(cv::Mat(kSize, CV_8UC3), 0), InputError);
 }
 
 }  // namespace

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <string>
 
-#include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream {
 namespace {
@@ -25,8 +24,7 @@ std::string milliseconds(const std::vector<StageTime>& stages, const std::string
 }  // namespace
 
 void write_search_times(const std::vector<EvaluatedFrame>& frames, const std::filesystem::path& file) {
-  std::ofstream out(file);
-  out << "scene,image_id,detect_ms,pose_ms,detections,poses\n";
+  std::string out = "scene,image_id,detect_ms,pose_ms,detections,poses\n";
   for (const EvaluatedFrame& frame : frames) {
     if (!frame.detections) continue;
     std::size_t poses = 0;
@@ -34,11 +32,10 @@ void write_search_times(const std::vector<EvaluatedFrame>& frames, const std::fi
       for (const ObjectPose& pose : frame.poses->poses) poses += pose.T_camera_object ? 1 : 0;
     }
     const std::vector<StageTime>& stages = frame.poses ? frame.poses->stages : frame.detections->stages;
-    out << fmt::format("{},{},{},{},{},{}\n", frame.scene, frame.image_id, milliseconds(stages, "detect."),
+    out += fmt::format("{},{},{},{},{},{}\n", frame.scene, frame.image_id, milliseconds(stages, "detect."),
                        milliseconds(stages, "pose."), frame.detections->detections.size(), poses);
   }
-  out.close();
-  require(out.good(), "{}: cannot be written", file.string());
+  write_whole_file(file, out);
 }
 
 }  // namespace houghstream

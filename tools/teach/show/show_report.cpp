@@ -178,8 +178,7 @@ void write_pictures(const Shown& shown, const std::vector<TrainingView>& views, 
   cv::Mat model = draw_model(shown.mesh);
   cv::resize(model, model, {sheet.cols, model.rows * sheet.cols / model.cols}, 0, 0, cv::INTER_AREA);
   sheet.push_back(model);
-  const fs::path file = folder / "contact_sheet.jpg";
-  require(cv::imwrite(file.string(), sheet), "{}: cannot be written", file.string());
+  write_image(sheet, folder / "contact_sheet.jpg");
 }
 
 void write_views(const Shown& shown, const std::vector<TrainingView>& views, const fs::path& folder) {

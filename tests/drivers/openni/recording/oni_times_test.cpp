@@ -108,5 +108,19 @@ TEST_F(OniTimes, WhatIsNoWholeRecordingIsRefusedAndLeftAsItWas) {
   EXPECT_THROW(delay_oni_node(folder / "none.oni", OniNode::kFirst, 1), InputError);
 }
 
+TEST(OniTimes, ARecordingThatStatesMoreThanItHoldsIsRefused) {
+  const auto file = fresh_folder("oni_states") / "tiny.oni";
+  const TinyOni oni;
+  write_text(file, oni.bytes());
+  EXPECT_NO_THROW(check_oni(file));
+  std::string many = oni.bytes();
+  const std::size_t images = many.find("Depth") + 6 + 8;  // behind type and codec
+  many.replace(images, 4, std::string("\0\0\0\x04", 4));
+  write_text(file, many);
+  EXPECT_THROW(check_oni(file), InputError) << "67 million images";
+  write_text(file, oni.bytes().substr(0, oni.bytes().size() - 30));
+  EXPECT_THROW(check_oni(file), InputError) << "cut";
+}
+
 }  // namespace
 }  // namespace houghstream::openni

@@ -1,0 +1,141 @@
+#include "pipeline/base/files.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An output through a symbolic link goes to what the link names, and the link stays.
+fs::path followed(const fs::path& file) {
+  std::error_code error;
+  fs::path target = fs::is_symlink(file, error) ? fs::canonical(file, error) : fs::path();
+  return error || target.empty() ? file : target;
+}
+
+bool is_device(const fs::path& file) {
+  std::error_code error;
+  const fs::file_type type = fs::status(file, error).type();
+  return type == fs::file_type::character || type == fs::file_type::fifo || type == fs::file_type::socket ||
+         type == fs::file_type::block;
+}
+
+bool is_same(int open_file, const fs::path& file) {
+  struct stat a {};
+  struct stat b {};
+  return fstat(open_file, &a) == 0 && stat(file.c_str(), &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+/// The file, open, empty and locked.
+int open_locked(const fs::path& partial, const fs::path& file) {
+  for (;;) {
+    const int opened = open(partial.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    require(opened >= 0, "{}: cannot be written: {}", file.string(), std::strerror(errno));
+    const bool locked = flock(opened, LOCK_EX | LOCK_NB) == 0;
+    if (locked && is_same(opened, partial)) {
+      if (ftruncate(opened, 0) == 0) return opened;
+      const int error = errno;
+      close(opened);
+      fail("{}: cannot be written: {}", file.string(), std::strerror(error));
+    }
+    close(opened);  // who held it may have put it into its place meanwhile
+    require(locked, "{}: another program is writing it ({})", file.string(), partial.string());
+  }
+}
+
+}  // namespace
+
+void require_regular_file(const fs::path& file, const char* expected) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  require(fs::exists(status), "{}: missing or unreadable, expected {}", file.string(), expected);
+  require(fs::is_regular_file(status), "{}: is {}, expected {}", file.string(),
+          fs::is_directory(status) ? "a folder" : "no ordinary file", expected);
+}
+
+std::string read_file(const fs::path& file, const char* expected) {
+  require_regular_file(file, expected);
+  std::ifstream in(file, std::ios::binary);
+  require(in.good(), "{}: missing or unreadable, expected {}", file.string(), expected);
+  const std::streamoff size = in.seekg(0, std::ios::end).tellg();
+  std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
+  in.seekg(0).read(bytes.data(), size);
+  require(in.gcount() == size, "{}: cannot be read to its end, expected {}", file.string(), expected);
+  return bytes;
+}
+
+void require_other_file(const fs::path& output, const fs::path& input) {
+  std::error_code missing;
+  require(!fs::equivalent(output, input, missing), "{}: is the source itself, expected another place to write",
+          output.string());
+}
+
+WholeFile::WholeFile(const fs::path& file, const std::string& ending) : file_(followed(file)), partial_(file_) {
+  std::error_code error;
+  require(!fs::is_directory(file_, error), "{}: is a folder, expected a file to write", file_.string());
+  if (is_device(file_)) return;
+  partial_ += ending;
+  lock_ = open_locked(partial_, file_);
+}
+
+WholeFile::WholeFile(WholeFile&& other) noexcept
+    : file_(std::move(other.file_)), partial_(std::move(other.partial_)), lock_(std::exchange(other.lock_, -1)) {}
+
+WholeFile::~WholeFile() {
+  if (lock_ < 0) return;
+  if (is_same(lock_, partial_)) unlink(partial_.c_str());
+  release();
+}
+
+void WholeFile::release() {
+  close(std::exchange(lock_, -1));
+}
+
+void WholeFile::publish() {
+  if (lock_ < 0) return;
+  struct stat before {};
+  // A library may have put another file into the place; what counts is what lies there.
+  const int written = open(partial_.c_str(), O_RDONLY | O_CLOEXEC);
+  require(written >= 0, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
+  bool good = true;
+  if (stat(file_.c_str(), &before) == 0) good = fchmod(written, before.st_mode) == 0 && fsync(written) == 0;
+  good = good && std::rename(partial_.c_str(), file_.c_str()) == 0;
+  const int error = errno;
+  close(written);
+  if (!good) unlink(partial_.c_str());
+  release();
+  require(good, "{}: cannot be written: {}", file_.string(), std::strerror(error));
+}
+
+void WholeFile::keep() {
+  if (lock_ >= 0) release();
+}
+
+void write_whole_file(const fs::path& file, std::string_view bytes) {
+  WholeFile whole(file);
+  const int out = open(whole.partial().c_str(), O_WRONLY | O_CLOEXEC);
+  bool good = out >= 0;
+  while (good && !bytes.empty()) {
+    const ssize_t written = write(out, bytes.data(), bytes.size());
+    good = written >= 0 || errno == EINTR;
+    if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  const int error = errno;
+  good = (out < 0 || close(out) == 0) && good;
+  require(good, "{}: cannot be written: {}", file.string(), std::strerror(error));
+  whole.publish();
+}
+
+}  // namespace houghstream

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+// How every program of this project reads and writes its files.
+
+namespace houghstream {
+
+/// Throws InputError unless `file` is an ordinary file that exists; `expected` says what was wanted ("an LCM log").
+/// Asked before it is opened: the opening of a named pipe would wait for somebody to write.
+void require_regular_file(const std::filesystem::path& file, const char* expected);
+
+/// All bytes of an ordinary file. Throws InputError where it is none, or cannot be read to its end.
+std::string read_file(const std::filesystem::path& file, const char* expected);
+
+/// Throws InputError where the output is the input itself, by whatever name.
+void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input);
+
+/// An output that is there as a whole or not at all: it is written as FILE.partial beside FILE and takes FILE's place
+/// in one step. Until then, and for good where it fails, FILE is what it was. A FILE.partial that a killed program left
+/// is removed by the next one that writes FILE. Where FILE is a device or a pipe, it is written as it is. Not
+/// thread-safe.
+class WholeFile {
+ public:
+  /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
+  /// another program is writing FILE.
+  explicit WholeFile(const std::filesystem::path& file, const std::string& ending = ".partial");
+  WholeFile(WholeFile&& other) noexcept;
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+  WholeFile& operator=(WholeFile&&) = delete;
+  ~WholeFile();  ///< removes what was neither published nor kept
+
+  const std::filesystem::path& file() const { return file_; }
+  /// Where to write: an empty file.
+  const std::filesystem::path& partial() const { return partial_; }
+
+  /// What was written, and has been closed by who wrote it, becomes FILE. An older FILE goes only once the new one is
+  /// on the disk. Throws InputError.
+  void publish();
+  /// What was written stays as FILE.partial: what cannot be had again, like a recording on a full disk.
+  void keep();
+
+ private:
+  void release();
+
+  std::filesystem::path file_;     // with symbolic links followed
+  std::filesystem::path partial_;  // = file_ for a device
+  int lock_ = -1;                  // the open file, locked; ends with the process, however that ends
+};
+
+/// Writes a whole file in this way. Throws InputError.
+void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace houghstream

@@ -1,0 +1,104 @@
+#include <cstring>
+
+#include "pipeline/geometry/mesh.hpp"
+#include "tests/fuzz/fuzz_targets.hpp"
+
+// Through to the mesh, so that the library behind the checks is tried too.
+
+namespace houghstream::fuzz {
+namespace {
+
+void read_ply(ByteView input) {
+  load_mesh(as_file(input, "mesh.ply"));
+}
+
+void read_obj(ByteView input) {
+  load_mesh(as_file(input, "mesh.obj"));
+}
+
+void read_glb(ByteView input) {
+  load_mesh(as_file(input, "mesh.glb"));
+}
+
+template <typename Number>
+void append(Number number, Bytes& bytes) {
+  std::uint8_t part[sizeof number];
+  std::memcpy(part, &number, sizeof number);
+  bytes.insert(bytes.end(), part, part + sizeof number);
+}
+
+std::vector<Bytes> plys() {
+  const std::string faces = "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string axes = "property float x\nproperty float y\nproperty float z\n";
+  const std::string text = "ply\nformat ascii 1.0\ncomment made\nelement vertex 4\n" + axes +
+                           "property uchar red\nproperty uchar green\nproperty uchar blue\n" + faces +
+                           "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n4 0 1 2 3\n";
+  Bytes binary = bytes_of_text("ply\nformat binary_little_endian 1.0\nelement vertex 4\n" + axes + faces);
+  for (const float value : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 1.0F, 1.0F, 0.0F, 0.0F, 1.0F, 0.0F})
+    append(value, binary);
+  for (const int third : {2, 3}) {
+    append(std::uint8_t{3}, binary);
+    for (const std::int32_t corner : {0, third - 1, third}) append(corner, binary);
+  }
+  return {bytes_of_text(text), binary};
+}
+
+std::vector<Bytes> objs() {
+  return {
+      bytes_of_text("o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n"
+                    "f -4/1/1 -2/1/1 -1/1/1\n")};
+}
+
+std::vector<Bytes> glbs() {
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[1,1,1]}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
+      R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+      R"({"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],)"
+      R"("buffers":[{"byteLength":42}]})";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  Bytes bytes = bytes_of_text("glTF");
+  append(std::uint32_t{2}, bytes);
+  append(static_cast<std::uint32_t>(28 + json.size() + 44), bytes);
+  append(static_cast<std::uint32_t>(json.size()), bytes);
+  for (const char c : "JSON" + json) bytes.push_back(static_cast<std::uint8_t>(c));
+  append(std::uint32_t{44}, bytes);
+  for (const char c : std::string("BIN\0", 4)) bytes.push_back(static_cast<std::uint8_t>(c));
+  for (const float value : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F}) append(value, bytes);
+  for (const int corner : {0, 1, 2, 0}) append(static_cast<std::uint16_t>(corner), bytes);
+  return {bytes};
+}
+
+/// The header's length of the whole, and of the binary chunk at its end.
+void repair_glb(Bytes& input) {
+  if (input.size() < 20 || std::memcmp(input.data(), "glTF", 4) != 0) return;
+  const auto size = static_cast<std::uint32_t>(input.size());
+  std::memcpy(input.data() + 8, &size, sizeof size);
+  std::uint32_t json = 0;
+  std::memcpy(&json, input.data() + 12, sizeof json);
+  if (std::uint64_t{28} + json > size) return;
+  const std::uint32_t rest = size - 28 - json;
+  std::memcpy(input.data() + 20 + json, &rest, sizeof rest);
+}
+
+}  // namespace
+
+std::vector<FuzzTarget> mesh_targets() {
+  return {{"ply",
+           read_ply,
+           plys,
+           nullptr,
+           {"element ", "property ", "list ", "vertex_index", "end_header", "double ", "short "},
+           1024},
+          {"obj", read_obj, objs, nullptr, {"v ", "vt ", "vn ", "f ", "mtllib ", "usemtl ", "//", "\\\n", "nan"}, 1024},
+          {"glb",
+           read_glb,
+           glbs,
+           repair_glb,
+           {"\"children\"", "\"matrix\"", "\"mode\"", "\"TEXCOORD_0\"", "\"byteStride\"", "\"images\"", "\"textures\""},
+           2048}};
+}
+
+}  // namespace houghstream::fuzz

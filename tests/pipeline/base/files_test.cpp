@@ -1,0 +1,108 @@
+#include "pipeline/base/files.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "pipeline/base/checks.hpp"
+
+namespace houghstream {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Files : public testing::Test {
+ protected:
+  Files() : folder(fs::temp_directory_path() / ("files_test." + std::to_string(getpid()))) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    file = folder / "out.txt";
+  }
+  ~Files() override { fs::remove_all(folder); }
+
+  void put(const std::string& text) const { std::ofstream(file) << text; }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+
+  fs::path folder;
+  fs::path file;
+};
+
+TEST_F(Files, AreWhatTheyWereUntilThePublishing) {
+  put("old");
+  WholeFile whole(file);
+  std::ofstream(whole.partial()) << "new";
+  EXPECT_EQ(read_file(file, "text"), "old");
+  whole.publish();
+  EXPECT_EQ(read_file(file, "text"), "new");
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(Files, StayWhatTheyWereWhereItFails) {
+  put("old");
+  { const WholeFile whole(file); }
+  EXPECT_EQ(read_file(file, "text"), "old");
+  EXPECT_EQ(entries(), 1U) << "the partial file is left";
+  EXPECT_THROW(write_whole_file(folder / "no" / "such" / "folder", "text"), InputError);
+  EXPECT_THROW(write_whole_file(folder, "text"), InputError);
+}
+
+TEST_F(Files, ClearWhatAKilledProgramLeft) {
+  std::ofstream(file.string() + ".partial") << "half of an earlier one, longer than what comes";
+  write_whole_file(file, "new");
+  EXPECT_EQ(read_file(file, "text"), "new");
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(Files, HaveOneWriterAtATime) {
+  const WholeFile first(file);
+  EXPECT_THROW(WholeFile{file}, InputError);
+}
+
+TEST_F(Files, MayBeKeptInParts) {
+  WholeFile whole(file);
+  std::ofstream(whole.partial()) << "a half";
+  whole.keep();
+  EXPECT_EQ(read_file(file.string() + ".partial", "text"), "a half");
+}
+
+TEST_F(Files, KeepLinksAndRights) {
+  put("old");
+  chmod(file.c_str(), 0640);
+  const fs::path link = folder / "link";
+  fs::create_symlink(file, link);
+  write_whole_file(link, "new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_file(file, "text"), "new");
+  struct stat is {};
+  ASSERT_EQ(stat(file.c_str(), &is), 0);
+  EXPECT_EQ(is.st_mode & 0777U, 0640U);
+}
+
+TEST_F(Files, NeverReplaceADevice) {
+  EXPECT_NO_THROW(write_whole_file("/dev/null", "text"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  EXPECT_THROW(write_whole_file("/dev/full", "text"), InputError);
+}
+
+TEST_F(Files, AreNotTheirOwnSource) {
+  put("old");
+  const fs::path link = folder / "link";
+  fs::create_symlink(file, link);
+  EXPECT_THROW(require_other_file(link, file), InputError);
+  EXPECT_NO_THROW(require_other_file(folder / "other", file));
+}
+
+TEST_F(Files, AreNoPipes) {
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(read_file(pipe, "text"), InputError);  // and not: waits for ever
+  EXPECT_THROW(read_file(folder, "text"), InputError);
+  EXPECT_THROW(read_file(folder / "none", "text"), InputError);
+}
+
+}  // namespace
+}  // namespace houghstream

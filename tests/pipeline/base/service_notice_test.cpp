@@ -1,0 +1,42 @@
+#include "pipeline/base/service_notice.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+
+namespace houghstream {
+namespace {
+
+TEST(ServiceNotice, GoesToTheSocketThatTheManagerNames) {
+  const std::string path = testing::TempDir() + "/service_notice_" + std::to_string(getpid());
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, path.c_str(), sizeof(address.sun_path) - 1);
+  const int manager = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  ASSERT_EQ(bind(manager, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  notify_service("READY=1");
+  char heard[64] = {};
+  EXPECT_EQ(recv(manager, heard, sizeof heard, 0), 7);
+  EXPECT_STREQ(heard, "READY=1");
+  unsetenv("NOTIFY_SOCKET");
+  notify_service("READY=1");
+  EXPECT_LT(recv(manager, heard, sizeof heard, 0), 0) << "without a manager nothing is sent";
+  setenv("NOTIFY_SOCKET", "/no/such/socket", 1);
+  notify_service("READY=1");
+  unsetenv("NOTIFY_SOCKET");
+  close(manager);
+  unlink(path.c_str());
+}
+
+TEST(Heartbeat, BeatsWhereItHasJustBegun) {
+  Heartbeat heart;
+  EXPECT_TRUE(heart.is_beating());
+}
+
+}  // namespace
+}  // namespace houghstream

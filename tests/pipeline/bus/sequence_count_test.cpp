@@ -1,0 +1,142 @@
+#include "pipeline/bus/sequence_count.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+constexpr std::int64_t kFrameUs = 33'333;
+
+/// Frames as they arrive, 30 a second; a frame's utime goes with its number and `start`.
+class Arrivals {
+ public:
+  FrameOrder come(std::int64_t number, std::int64_t run = 0, std::int64_t start = 0) {
+    now_us_ += kFrameUs;
+    const FrameOrder order = count.note({number, start + 1000 * number, run}, now_us_);
+    if (order != FrameOrder::kDuplicate) ++received;
+    return order;
+  }
+  void pass(std::int64_t us) { now_us_ += us; }
+
+  SequenceCount count;
+  std::int64_t received = 0;
+
+ private:
+  std::int64_t now_us_ = 0;
+};
+
+TEST(SequenceCount, GapsAreLost) {
+  Arrivals arrivals;
+  EXPECT_EQ(arrivals.count.lost(), std::nullopt) << "without a number it cannot be told";
+  for (const std::int64_t number : {5, 6, 9, 10}) EXPECT_EQ(arrivals.come(number), FrameOrder::kNext);
+  EXPECT_EQ(arrivals.count.lost(), 2);
+}
+
+TEST(SequenceCount, WhatIsOvertakenIsLostUntilItComes) {
+  Arrivals arrivals;
+  for (const std::int64_t number : {0, 1, 4}) arrivals.come(number);
+  EXPECT_EQ(arrivals.count.lost(), 2);
+  EXPECT_EQ(arrivals.come(3), FrameOrder::kLate);
+  EXPECT_EQ(arrivals.come(2), FrameOrder::kLate);
+  EXPECT_EQ(arrivals.come(5), FrameOrder::kNext);
+  EXPECT_EQ(arrivals.count.lost(), 0);
+}
+
+TEST(SequenceCount, WhatComesTwiceCountsOnce) {
+  Arrivals arrivals;
+  for (const std::int64_t number : {0, 1, 2}) arrivals.come(number);
+  EXPECT_EQ(arrivals.come(2), FrameOrder::kDuplicate);
+  EXPECT_EQ(arrivals.come(1), FrameOrder::kDuplicate);
+  EXPECT_EQ(arrivals.come(3), FrameOrder::kNext);
+  EXPECT_EQ(arrivals.count.lost(), 0);
+}
+
+TEST(SequenceCount, ForgedNumbersLoseNothing) {
+  Arrivals arrivals;
+  const std::int64_t largest = std::numeric_limits<std::int64_t>::max();
+  for (std::int64_t number = 0; number < 300; ++number) {
+    arrivals.come(number);
+    if (number % 10 == 5) arrivals.come(number % 20 == 5 ? 1'000'000'000'000'000 : largest);
+  }
+  arrivals.come(largest - 1);
+  arrivals.come(largest);
+  for (std::int64_t number = 300; number < 310; ++number) arrivals.come(number);
+  for (const std::int64_t number : {320, 420}) arrivals.count.note({number, 1, 0}, 0);  // not so far away
+  for (std::int64_t number = 310; number < 500; ++number) arrivals.come(number);
+  EXPECT_EQ(arrivals.count.lost(), 0);
+}
+
+TEST(SequenceCount, ALongSilenceIsALoss) {
+  Arrivals arrivals;
+  arrivals.come(0);
+  arrivals.come(5000);
+  EXPECT_EQ(arrivals.count.lost(), 0) << "not believed yet";
+  arrivals.come(5001);
+  EXPECT_EQ(arrivals.count.lost(), 4999);
+}
+
+TEST(SequenceCount, ASenderThatIsStartedAgainLosesNothingByIt) {
+  for (const std::int64_t frames : {20, 200}) {
+    for (const std::int64_t start : {0, 7'000'000}) {  // of a dataset the times are the same again
+      Arrivals arrivals;
+      for (std::int64_t number = 0; number < frames; ++number) arrivals.come(number);
+      arrivals.pass(1'500'000);
+      for (std::int64_t number = 0; number < frames; ++number) {
+        if (number != 10) {
+          EXPECT_EQ(arrivals.come(number, 0, start), FrameOrder::kNext) << number;
+        }
+      }
+      EXPECT_EQ(arrivals.count.lost(), 1);
+    }
+  }
+  Arrivals at_once;  // where it says that it is another run, no time need pass
+  for (std::int64_t number = 0; number < 20; ++number) at_once.come(number, 1);
+  for (std::int64_t number = 0; number < 20; ++number) EXPECT_EQ(at_once.come(number, 2), FrameOrder::kNext);
+  EXPECT_EQ(at_once.count.lost(), 0);
+}
+
+// Sent = received + lost, whatever the way does to them.
+TEST(SequenceCount, IsExactUnderLossReorderingDuplicatesForgeriesAndRestarts) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    Arrivals arrivals;
+    std::int64_t sent = 0;
+    for (std::int64_t run = 1; run <= 3; ++run) {
+      const std::int64_t frames = 100 + static_cast<std::int64_t>(random() % 400);
+      std::vector<std::int64_t> way;
+      for (std::int64_t number = 0; number < frames; ++number) {
+        const bool is_end = number == 0 || number == frames - 1;  // what is lost there nobody can know
+        if (is_end || random() % 20 != 0) way.push_back(number);
+        if (!way.empty() && random() % 10 == 0) way.push_back(way.back());
+      }
+      for (std::size_t i = 2; i + 2 < way.size(); ++i) {
+        if (random() % 10 == 0) std::swap(way[i], way[i + random() % 2]);
+      }
+      for (const std::int64_t number : way) {
+        arrivals.come(number, run);
+        if (random() % 30 == 0) arrivals.count.note({std::int64_t{1} << (20 + random() % 43), 5, run}, 0);
+      }
+      sent += frames;
+    }
+    EXPECT_EQ(sent, arrivals.received + arrivals.count.lost().value()) << "seed " << seed;
+  }
+}
+
+TEST(RepeatedMessages, AreTheSameBytesOfTheSameFrameSoonAfter) {
+  RepeatedMessages repeats;
+  const std::vector<std::uint8_t> a = {1, 2, 3};
+  const std::vector<std::uint8_t> b = {1, 2, 4};
+  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), 0));
+  EXPECT_TRUE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), 10));
+  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, b.data(), b.size(), 10)) << "of another detector";
+  EXPECT_FALSE(repeats.is_repeated({"RIGHT", 1}, a.data(), a.size(), 10));
+  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), 2'000'000)) << "a log that is replayed";
+}
+
+}  // namespace
+}  // namespace houghstream

@@ -1,0 +1,1 @@
+"""Faults and long runs of the stream (tools/soak)."""
