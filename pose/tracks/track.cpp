@@ -164,7 +164,7 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
   return weakest;
 }
 
-void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries) {
+void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries, bool doubted) {
   constexpr double kLead = 1.0;  // by which another hypothesis has to be ahead
   const double passed = std::max(0.0, seconds_between(weighed_utime_, pose.frame.utime));
   weighed_utime_ = std::max(weighed_utime_, pose.frame.utime);
@@ -178,7 +178,7 @@ void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries) {
   if (hypothesis.filter.moving()) {
     update_moving(turned.measured, hypothesis);
   } else {
-    update_standing(turned, hypothesis);
+    update_standing(turned, doubted, hypothesis);
   }
   if (hypothesis.weight > hypotheses_[best_].weight + kLead) best_ = index;
   if (hypothesis.filter.moving() && index == best_ && hypotheses_.size() > 1) {
@@ -197,7 +197,7 @@ bool PoseTrack::may_tell_of_motion(const std::string& channel, std::int64_t utim
   });
 }
 
-void PoseTrack::update_standing(const SeenPose& pose, Hypothesis& hypothesis) {
+void PoseTrack::update_standing(const SeenPose& pose, bool doubted, Hypothesis& hypothesis) {
   constexpr double kWithinS = 0.4;
   constexpr std::size_t kPlaces = 3;  // measured apart from where it stands
   constexpr std::size_t kTurns = 8;   // measured turned only
@@ -215,8 +215,8 @@ void PoseTrack::update_standing(const SeenPose& pose, Hypothesis& hypothesis) {
   }
   witness.apart.push_back(pose.measured);
   while (seconds_between(witness.apart.front().utime, pose.frame.utime) > kWithinS) witness.apart.pop_front();
-  if (witness.apart.size() < (in_place ? kTurns : kPlaces) || !may_tell_of_motion(pose.frame.channel, pose.frame.utime))
-    return;
+  const std::size_t needed = in_place ? kTurns : doubted ? 1 : kPlaces;
+  if (witness.apart.size() < needed || !may_tell_of_motion(pose.frame.channel, pose.frame.utime)) return;
   const PoseMeasurement& first = witness.apart.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
   hypothesis.filter.start_moving(pose.measured,

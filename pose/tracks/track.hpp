@@ -68,7 +68,8 @@ class PoseTrack {
   PoseTrack(const SeenPose& first, const PoseTrackSettings& settings);
 
   void predict(std::int64_t utime);
-  void take(const SeenPose& pose, const Symmetries& symmetries);
+  /// `doubted`: depth has spoken against where it was since it was measured last; then one measurement elsewhere tells.
+  void take(const SeenPose& pose, const Symmetries& symmetries, bool doubted);
 
   const MotionFilter& filter() const { return hypotheses_[best_].filter; }
   /// Metres from the nearest hypothesis, and radians to the nearest that looks the same.
@@ -86,7 +87,7 @@ class PoseTrack {
   };
 
   std::size_t hypothesis_for(const PoseMeasurement& measured, const Symmetries& symmetries);
-  void update_standing(const SeenPose& pose, Hypothesis& hypothesis);
+  void update_standing(const SeenPose& pose, bool doubted, Hypothesis& hypothesis);
   void update_moving(const PoseMeasurement& measured, Hypothesis& hypothesis);
   bool may_tell_of_motion(const std::string& channel, std::int64_t utime) const;
 

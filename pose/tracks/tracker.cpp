@@ -109,7 +109,7 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   const std::vector<SeenPose> poses = state.new_poses(seen);
   for (Track& track : state.tracks) {
     track.pose.predict(frame.utime);
-    track.seen_now = false;
+    track.seen_now = track.last_seen == frame;  // by another result of the same frame
   }
   std::set<std::string> classes;
   for (const SeenPose& pose : poses) classes.insert(pose.class_name);
@@ -215,7 +215,7 @@ void Tracker::State::take(Track& track, const SeenPose& pose, double seconds) {
   constexpr double kRateHz = 30.0;
   constexpr double kMost = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
-  track.pose.take(pose, symmetries_of(track.class_name));
+  track.pose.take(pose, symmetries_of(track.class_name), track.seen_through_s > 0.0);
   track.log_odds = std::min(settings.existence.most, track.log_odds + share * settings.existence.gain *
                                                                           std::clamp(logit(pose.quality), 0.3, kMost));
   ++track.seen;

@@ -5,7 +5,6 @@
 #include "pipeline/bus/log_seal.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"
-#include "tools/log/export_objects.hpp"
 #include "tools/log/export_results.hpp"
 #include "tools/log/filter_log.hpp"
 #include "tools/log/import_log.hpp"

@@ -35,13 +35,14 @@ struct Waiting {
   std::int64_t since_us = 0;  ///< on the bus' clock
 };
 
-/// Processes that send a status, and those that have fallen silent. May be used from any thread.
+/// Processes that find objects, and those of them that have fallen silent. May be used from any thread.
 class Silence {
  public:
   /// What is no status is somebody else's.
   void hear(const Arrival& arrival) {
     try {
       const auto status = decode_message<status_t>(arrival.bytes);
+      if (status.process != "hs-detect" && status.process != "hs-pose") return;
       const std::lock_guard<std::mutex> lock(mutex_);
       last_[fmt::format("{} (process {})", status.process, status.pid)] = arrival.event_us;
     } catch (const InputError&) {
@@ -286,7 +287,7 @@ class TrackProcess {
   void tell_silence() {
     if (bus_.is_log()) return;
     for (const std::string& name : silence_->fallen_silent(now_us()))
-      log_warning("{} has fallen silent: its objects are not seen any more", name);
+      log_warning("{} has fallen silent: what it alone finds is not seen any more", name);
   }
 
   void tell_contradictions() {

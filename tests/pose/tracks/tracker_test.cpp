@@ -146,6 +146,20 @@ TEST(Tracker, WhatMovesIsFollowedWithItsVelocityAndStandsAgain) {
   EXPECT_EQ(world.objects.at(0).track_id, 1);
 }
 
+TEST(Tracker, OnePoseElsewhereTellsWhereDepthHasDoubted) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(60);
+  scene.standing = {{"can", on_table(0.05, 0)}};
+  scene.posed.clear();
+  scene.frames(2);
+  scene.posed = scene.standing;
+  const WorldObjects world = scene.frame();
+  ASSERT_EQ(world.objects.size(), 1U);
+  EXPECT_EQ(world.objects[0].track_id, 1);
+  EXPECT_LT(distance(world.objects[0], on_table(0.05, 0)), 0.001);
+}
+
 TEST(Tracker, TwoTurnsOfAnObjectAreNeverAveraged) {
   TrackedScene scene;
   for (int i = 0; i < 120; ++i) {
@@ -198,6 +212,15 @@ TEST(Tracker, AClassThatAFrameWasToldOfIsNotToldAgain) {
     EXPECT_LE(scene.look().objects.size(), 1U);
     scene.posed = scene.standing;
   }
+}
+
+TEST(Tracker, WhatOneResultOfAFrameHasSeenAnotherDoesNotMiss) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(30);
+  scene.posed.clear();
+  EXPECT_EQ(scene.look().objects.at(0).state, TrackState::kVisible);
+  EXPECT_EQ(scene.frame().objects.at(0).state, TrackState::kUnrecognised);
 }
 
 TEST(Tracker, MoreObjectsThanAllowedAreRefused) {
