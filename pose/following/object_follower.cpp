@@ -93,17 +93,19 @@ ObjectPoses ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFra
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      Camera& camera) const {
   constexpr double kLongest = 0.25;    // seconds; no speed says anything about a later frame
-  constexpr std::int64_t kSettle = 4;  // one frame in so many; not all objects in the same one
+  constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so many, not all objects in the same one
   std::vector<ExpectedObject> expected;
   for (const Followed& object : camera.objects) {
     const double dt = seconds_between(object.utime, frame.id.utime);
     const double used = dt <= kLongest ? dt : 0.0;
+    const bool settle = (camera.frames + object.number) % kSettle == 0;
     expected.push_back({object.class_id,
                         object.class_name,
                         probability(object.log_odds),
                         {moved_on(object.T_camera_object, used * object.speed, used * object.turn_rate)},
-                        (camera.frames + object.number) % kSettle == 0,
-                        false});
+                        settle,
+                        false,
+                        settle ? std::nullopt : object.verified});
   }
   std::vector<FollowedPose> poses = estimator.follow(frame, expected);
   follow_again(estimator, frame, camera, poses);
@@ -127,7 +129,7 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
   for (const std::size_t i : failed) {
     const Followed& object = camera.objects[i];
     const float score = probability(object.log_odds);
-    ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true};
+    ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, {}};
     const std::optional<Eigen::Isometry3d> carried = carried_along(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
     expected.push_back(std::move(again));
@@ -161,6 +163,7 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t utime,
   if (!kept) object.speed = object.turn_rate = Eigen::Vector3d::Zero();
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
   object.T_camera_object = result.T_camera_object;
+  object.verified = result.verified;
   object.utime = utime;
   if (valid) object.valid_utime = utime;
 }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,7 @@ class ObjectFollower {
     std::int64_t found_utime = 0;                         // of its last detection
     std::int64_t doubted_utime = 0;                       // when it was last looked for as if it were not followed
     int failures = 0;
+    std::optional<Verification> verified;  // of the last rendering
   };
   /// A frame's poses, and whose they are.
   struct Shown {
