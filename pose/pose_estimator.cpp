@@ -86,6 +86,13 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
   if (it.chosen.inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
 
+/// Publishes the pose or says why not.
+void verify_one(const PoseSettings& settings, Estimation& it) {
+  const Eigen::Isometry3d& T_camera_object = it.chosen.T_camera_object;
+  const PoseEvidence evidence = gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification);
+  judge(evidence, T_camera_object, settings, it.pose);
+}
+
 }  // namespace
 
 struct PoseEstimator::State {
@@ -134,7 +141,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
   clock.mark("pose.registration");
   for_each_undecided([&](Estimation& it) { choose_one(settings, it); });
   clock.mark("pose.choice");
-  for_each_undecided([&](Estimation& it) { judge(*it.seen, it.chosen.T_camera_object, settings, it.pose); });
+  for_each_undecided([&](Estimation& it) { verify_one(settings, it); });
   clock.mark("pose.verification");
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());

@@ -60,6 +60,27 @@ RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d
   return last;
 }
 
+/// Judges the pose by points of the view and the outline of an earlier frame, where there is one and that suffices;
+/// else the model is rendered.
+void judge_followed(const SeenObject& seen, const ExpectedObject& expected, const PoseSettings& settings,
+                    FollowedPose& followed) {
+  const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
+  const Eigen::Isometry3d& T = followed.T_camera_object;
+  const ViewLook look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
+  PoseEvidence evidence{expected.score, {}, compare_colours(seen.colours, look, tolerance)};
+  if (expected.verified) {
+    evidence.depth = verify_look(look, tolerance);
+    evidence.depth.outline_ends = expected.verified->outline_ends;
+    evidence.depth.outline_continues = expected.verified->outline_continues;
+    followed.verified = expected.verified;
+    judge(evidence, T, settings, followed.pose);
+    if (followed.pose.status == PoseStatus::kValid) return;
+  }
+  evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance);
+  followed.verified = evidence.depth;
+  judge(evidence, T, settings, followed.pose);
+}
+
 FollowedPose follow_from(const RgbdFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
                          const Eigen::Isometry3d& start, const PoseSettings& settings) {
   FollowedPose followed;
@@ -83,7 +104,7 @@ FollowedPose follow_from(const RgbdFrame& frame, const ObjectModel& model, const
     return followed;
   }
   followed.T_camera_object = result.T_camera_object;
-  judge(seen, result.T_camera_object, settings, pose);
+  judge_followed(seen, expected, settings, followed);
   return followed;
 }
 

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "pipeline/types/frame_results.hpp"
+#include "pose/following/motion.hpp"
 
 namespace houghstream {
 namespace {
-
-constexpr double kSecond = 1e-6;  // in a microsecond
 
 double log_odds(double probability, double margin) {
   const double p = std::clamp(probability, margin, 1.0 - margin);
@@ -27,42 +26,6 @@ double quality_log_odds(double quality) {
 
 float probability(double odds) {
   return static_cast<float>(1.0 / (1.0 + std::exp(-odds)));
-}
-
-double seconds_between(std::int64_t from, std::int64_t to) {
-  return kSecond * static_cast<double>(to - from);
-}
-
-Eigen::Vector3d turn_of(const Eigen::Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
-
-Eigen::Isometry3d moved_on(const Eigen::Isometry3d& T_camera_object, const Eigen::Vector3d& shift,
-                           const Eigen::Vector3d& turn) {
-  Eigen::Isometry3d T = T_camera_object;
-  T.translation() += shift;
-  const double angle = turn.norm();
-  if (angle > 0.0) T.linear() = Eigen::AngleAxisd(angle, turn / angle) * T.linear();
-  return T;
-}
-
-bool is_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  constexpr double kNear = 0.008;  // metres
-  constexpr double kTurn = 0.04;   // radians
-  return (a.translation() - b.translation()).norm() < kNear &&
-         turn_of(a.linear() * b.linear().transpose()).norm() < kTurn;
-}
-
-/// The motion that two others agree on would bring it here: the camera's own, as far as it can be told.
-std::optional<Eigen::Isometry3d> carried_along(const Eigen::Isometry3d& T_camera_object,
-                                               const std::vector<Eigen::Isometry3d>& motions) {
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    for (std::size_t j = i + 1; j < motions.size(); ++j) {
-      if (is_near(motions[i] * T_camera_object, motions[j] * T_camera_object)) return motions[i] * T_camera_object;
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -93,17 +56,19 @@ ObjectPoses ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFra
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      Camera& camera) const {
   constexpr double kLongest = 0.25;    // seconds; no speed says anything about a later frame
-  constexpr std::int64_t kSettle = 4;  // one frame in so many; not all objects in the same one
+  constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so many, not all objects in the same one
   std::vector<ExpectedObject> expected;
   for (const Followed& object : camera.objects) {
     const double dt = seconds_between(object.utime, frame.id.utime);
     const double used = dt <= kLongest ? dt : 0.0;
+    const bool settle = (camera.frames + object.number) % kSettle == 0;
     expected.push_back({object.class_id,
                         object.class_name,
                         probability(object.log_odds),
                         {moved_on(object.T_camera_object, used * object.speed, used * object.turn_rate)},
-                        (camera.frames + object.number) % kSettle == 0,
-                        false});
+                        settle,
+                        false,
+                        settle ? std::nullopt : object.verified});
   }
   std::vector<FollowedPose> poses = estimator.follow(frame, expected);
   follow_again(estimator, frame, camera, poses);
@@ -127,7 +92,7 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
   for (const std::size_t i : failed) {
     const Followed& object = camera.objects[i];
     const float score = probability(object.log_odds);
-    ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true};
+    ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, {}};
     const std::optional<Eigen::Isometry3d> carried = carried_along(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
     expected.push_back(std::move(again));
@@ -161,6 +126,7 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t utime,
   if (!kept) object.speed = object.turn_rate = Eigen::Vector3d::Zero();
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
   object.T_camera_object = result.T_camera_object;
+  object.verified = result.verified;
   object.utime = utime;
   if (valid) object.valid_utime = utime;
 }
@@ -196,46 +162,46 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, Camera& camera, Sho
 
 ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFrame& frame,
                                    const Detections& detections) {
-  Matches matches(detections.detections.size(), -1);
-  int doubted = -1;
-  Shown shown;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    Camera& camera = cameras_[frame.id.channel];
-    const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
-                                   [&](const Shown& one) { return one.utime == frame.id.utime; });
-    if (then != camera.shown.rend()) {
-      shown = *then;
-      matches = match(detections, shown);
-      note_look(detections, matches, shown, camera);
-      doubted = choose_doubted(matches, shown, camera);
-    }
-  }
-  const auto is_looked_for = [&](std::size_t i) { return matches[i] < 0 || matches[i] == doubted; };
+  const Look look = begin_look(detections);
   Detections looked_for{detections.frame, {}, detections.stages};
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (is_looked_for(i)) looked_for.detections.push_back(detections.detections[i]);
+  for (std::size_t i = 0; i < detections.detections.size(); ++i) {
+    if (look.is_looked_for(i)) looked_for.detections.push_back(detections.detections[i]);
   }
   ObjectPoses found = estimator.estimate(frame, looked_for);
   ObjectPoses result{detections.frame, {}, found.stages};
   const std::lock_guard<std::mutex> lock(mutex_);
-  Camera& camera = cameras_[frame.id.channel];
+  Camera& camera = cameras_[detections.frame.channel];
   std::size_t next = 0;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    ObjectPose pose = is_looked_for(i) ? std::move(found.poses[next++]) : ObjectPose();
-    if (matches[i] >= 0) {
-      const auto place = static_cast<std::size_t>(matches[i]);
-      Followed* object = find(shown.numbers[place], camera);
-      if (pose.T_camera_object && object != nullptr) settle_doubt(pose, shown.poses[place], *object);
-      pose = shown.poses[place].pose;
+  for (std::size_t i = 0; i < detections.detections.size(); ++i) {
+    ObjectPose pose = look.is_looked_for(i) ? std::move(found.poses[next++]) : ObjectPose();
+    if (look.matches[i] >= 0) {
+      const auto place = static_cast<std::size_t>(look.matches[i]);
+      Followed* object = find(look.shown.numbers[place], camera);
+      if (pose.T_camera_object && object != nullptr) settle_doubt(pose, look.shown.poses[place], *object);
+      pose = look.shown.poses[place].pose;
     } else if (pose.T_camera_object) {
-      take_up(estimator, frame.id, pose, camera);
+      take_up(estimator, detections.frame, pose, camera);
     }
     pose.detection_index = static_cast<int>(i);
     pose.detection_score = detections.detections[i].score;
     result.poses.push_back(std::move(pose));
   }
   return result;
+}
+
+/// What was followed in the frame of the detections, and which of them are of that. Notes what the look says of it.
+ObjectFollower::Look ObjectFollower::begin_look(const Detections& detections) {
+  Look look{{}, Matches(detections.detections.size(), -1), -1};
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Camera& camera = cameras_[detections.frame.channel];
+  const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
+                                 [&](const Shown& one) { return one.utime == detections.frame.utime; });
+  if (then == camera.shown.rend()) return look;
+  look.shown = *then;
+  look.matches = match(detections, look.shown);
+  note_look(detections, look.matches, look.shown, camera);
+  look.doubted = choose_doubted(look.matches, look.shown, camera);
+  return look;
 }
 
 ObjectFollower::Followed* ObjectFollower::find(std::int64_t number, Camera& camera) {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,7 @@ class ObjectFollower {
     std::int64_t found_utime = 0;                         // of its last detection
     std::int64_t doubted_utime = 0;                       // when it was last looked for as if it were not followed
     int failures = 0;
+    std::optional<Verification> verified;  // of the last rendering
   };
   /// A frame's poses, and whose they are.
   struct Shown {
@@ -76,6 +78,14 @@ class ObjectFollower {
   };
   /// A detection's followed object: its place in Shown, or -1.
   using Matches = std::vector<int>;
+  /// A frame's detections beside what was followed in it.
+  struct Look {
+    Shown shown;
+    Matches matches;
+    int doubted = -1;  // the place in `shown` of what is looked for as if it were not followed
+
+    bool is_looked_for(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == doubted; }
+  };
 
   std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame, Camera& camera) const;
   void follow_again(const PoseEstimator& estimator, const RgbdFrame& frame, const Camera& camera,
@@ -83,6 +93,7 @@ class ObjectFollower {
   void note_result(const FollowedPose& result, std::int64_t utime, Followed& object) const;
   bool is_lost(const Followed& object, const FollowedPose& result, std::int64_t utime) const;
   void give_up(const PoseEstimator& estimator, Camera& camera, Shown& shown) const;
+  Look begin_look(const Detections& detections);
   Matches match(const Detections& detections, const Shown& shown) const;
   void note_look(const Detections& detections, const Matches& matches, const Shown& shown, Camera& camera) const;
   static Followed* find(std::int64_t number, Camera& camera);

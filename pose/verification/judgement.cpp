@@ -2,9 +2,8 @@
 
 namespace houghstream {
 
-void judge(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings,
+void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings,
            ObjectPose& pose) {
-  const PoseEvidence evidence = gather_evidence(seen, T_camera_object, pose.detection_score, settings.verification);
   const auto learnt = settings.class_quality.find(pose.class_name);
   const QualitySettings& quality = learnt != settings.class_quality.end() ? learnt->second : settings.quality;
   const QualityTerms terms = quality_terms(evidence, quality);

@@ -5,9 +5,9 @@
 
 namespace houghstream {
 
-/// Gathers the evidence for `T_camera_object` and fills in what it says of `pose`: its quality, and the pose itself or
-/// the reason why it is withheld. The class and the detection's score are read from `pose`.
-void judge(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings,
+/// Fills in what the evidence for `T_camera_object` says of `pose`: its quality, and the pose itself or the reason why
+/// it is withheld. The class is read from `pose`.
+void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings,
            ObjectPose& pose);
 
 /// Copies what registration says of itself.

@@ -66,6 +66,23 @@ float Verification::free_space_violation() const {
   return rendered == 0 ? 0.0F : static_cast<float>(violating) / static_cast<float>(rendered);
 }
 
+Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance) {
+  constexpr float kEdge = 0.3F;  // cosine between normal and line of sight
+  Verification result;
+  for (std::size_t i = 0; i < look.looks.size(); ++i) {
+    const Eigen::Vector3f point = look.T * look.view.points[i];
+    const Eigen::Vector3f normal = look.T.linear() * look.view.normals[i];
+    if (!(-normal.dot(point) > kEdge * point.norm())) continue;
+    ++result.rendered;
+    const auto limit = static_cast<float>(tolerance.at(point.z()));
+    const float beyond = look.looks[i].beyond;  // NaN where nothing was measured: no comparison holds
+    result.agreeing += std::abs(beyond) <= limit ? 1 : 0;
+    result.violating += beyond > limit ? 1 : 0;
+    result.occluded += beyond < -limit ? 1 : 0;
+  }
+  return result;
+}
+
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
                          const DepthTolerance& tolerance) {
   Verification result;

@@ -5,6 +5,7 @@
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pose/region.hpp"
+#include "pose/verification/depth_score.hpp"
 
 namespace houghstream {
 
@@ -25,6 +26,11 @@ struct Verification {
   float visible_fraction() const;  ///< agreeing of rendered, 0 if nothing is rendered
   float free_space_violation() const;  ///< violating of rendered, 0 if nothing is rendered
 };
+
+/// The same counts, without the outline's, at the points that were looked at instead of the rendered pixels: they are
+/// spread over the view as pixels are. Those that are seen from their edge are left out, since the view's direction is
+/// only near the pose's.
+Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance);
 
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
                          const DepthTolerance& tolerance);

@@ -45,6 +45,21 @@ TEST(Verification, ModelBehindWhatWasSeenIsOccludedNotContradicted) {
   EXPECT_LT(found.free_space_violation(), 0.1F);
 }
 
+TEST(Verification, PointsOfAViewTellWhatRenderedPixelsTell) {
+  const BoxOnTable scene;
+  const ObjectModel model = make_object_model("box", scene.object, ModelSettings());
+  for (const double scale : {0.9, 0.99, 1.0, 1.01, 1.1}) {
+    Eigen::Isometry3d pose = scene.truth;
+    pose.translation() *= scale;
+    const Verification pixels = verify_pose(scene.frame, scene.object, pose, kTolerance);
+    const Verification points = verify_look(look_at_view(scene.frame, model, pose, 600), kTolerance);
+    EXPECT_GT(points.rendered, 300);
+    EXPECT_NEAR(points.visible_fraction(), pixels.visible_fraction(), 0.06) << scale;
+    EXPECT_NEAR(points.free_space_violation(), pixels.free_space_violation(), 0.06) << scale;
+    EXPECT_EQ(points.outline_ends + points.outline_continues, 0);
+  }
+}
+
 TEST(Verification, FaceSunkIntoTheTableAgreesButHasNoOutline) {
   const BoxOnTable scene;
   Eigen::Isometry3d sunk =
