@@ -31,7 +31,8 @@ struct Machine {
   std::function<bool(const std::filesystem::path&)> may_use;
   /// Why the shared library cannot be loaded, "" where it can.
   std::function<std::string(const std::filesystem::path&)> load_error;
-  /// Whether a firewall of ours is in force: what other hosts send to the port is dropped (nftables, table houghstream).
+  /// Whether a firewall of ours is in force: what other hosts send to the port is dropped (nftables, table
+  /// houghstream).
   std::function<bool(const std::string& port)> refuses_others;
   /// Whether the program runs when started with the argument.
   std::function<bool(const std::filesystem::path& program, const std::string& argument)> runs;

@@ -14,7 +14,8 @@ struct BusSettings {
   std::size_t frame_bytes;    ///< taken where no frame is heard
 };
 
-/// Multicast route, receive buffers for the frames in use and for Java, who may send, and messages of that size sent and received.
+/// Multicast route, receive buffers for the frames in use and for Java, who may send, and messages of that size sent
+/// and received.
 Findings check_network(const Machine& machine, const BusSettings& settings);
 
 }  // namespace houghstream::doctor
