@@ -70,7 +70,9 @@ CameraMode parse_camera_mode(const std::string& text) {
   return mode;
 }
 
-Camera read_camera_info(const std::filesystem::path& file) {
+namespace {
+
+Camera camera_of_yaml(const std::filesystem::path& file) {
   const cv::FileStorage yaml = parse_yaml(file);
   const std::vector<double> K = numbers_of(member(yaml["camera_matrix"], "data"));
   require(K.size() == 9, "{}: camera_matrix has {} numbers in its data, expected 9", file.string(), K.size());
@@ -83,6 +85,18 @@ Camera read_camera_info(const std::filesystem::path& file) {
     break;
   }
   return camera;
+}
+
+}  // namespace
+
+Camera read_camera_info(const std::filesystem::path& file) {
+  try {
+    return camera_of_yaml(file);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception&) {  // OpenCV's own, and those of strings that it makes too long
+    fail("{}: no YAML, expected a camera calibration file", file.string());
+  }
 }
 
 Camera camera_of_option(const std::string& text) {

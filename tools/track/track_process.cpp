@@ -115,7 +115,8 @@ class TrackProcess {
     note_event(arrival);
     try {
       const FrameHeader header = read_frame_header(arrival.bytes);
-      status_.note_sequence(header.sequence, arrival.channel);
+      const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
+      if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
       inbox_.put_frame({arrival.channel, header.utime}, copy(arrival.bytes));
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));

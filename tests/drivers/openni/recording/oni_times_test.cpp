@@ -108,8 +108,7 @@ TEST_F(OniTimes, WhatIsNoWholeRecordingIsRefusedAndLeftAsItWas) {
   EXPECT_THROW(delay_oni_node(folder / "none.oni", OniNode::kFirst, 1), InputError);
 }
 
-TEST(OniTimes, ARecordingThatStatesMoreThanItHoldsIsRefused) {
-  const auto file = fresh_folder("oni_states") / "tiny.oni";
+TEST_F(OniTimes, ARecordingThatStatesMoreThanItHoldsIsRefused) {
   const TinyOni oni;
   write_text(file, oni.bytes());
   EXPECT_NO_THROW(check_oni(file));
