@@ -37,11 +37,12 @@ foreach(program IN LISTS programs)
   install(FILES "${PROJECT_SOURCE_DIR}/tools/stream/bash_completion" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
           RENAME "${program}" COMPONENT programs)
   if(HELP2MAN)
-    add_custom_command(OUTPUT "${manual}/${program}.1" DEPENDS ${program}
+    add_custom_command(OUTPUT "${manual}/${program}.1.gz" DEPENDS ${program}
       COMMAND "${CMAKE_COMMAND}" -E make_directory "${manual}"
       COMMAND "${HELP2MAN}" --no-info --no-discard-stderr --output "${manual}/${program}.1" "$<TARGET_FILE:${program}>"
+      COMMAND gzip -9nf "${manual}/${program}.1"
       VERBATIM)
-    list(APPEND pages "${manual}/${program}.1")
+    list(APPEND pages "${manual}/${program}.1.gz")
   endif()
 endforeach()
 if(pages)

@@ -99,11 +99,15 @@ for number in range(100):
         run("/usr/bin/python3", "-c", script, cls.log, env=python_of_installation())
 
     def listen(self, *words):
-        """What a program prints while the log of poses is played in a private network."""
-        start = (
-            'timeout -s INT 60 stdbuf -oL "$@" & sleep 2; lcm-logplayer "$LOG" > /dev/null 2>&1; sleep 1; kill %1; wait; true'
+        """What a program prints while the log of poses is played in a private network, again until it prints something."""
+        play = (
+            'stdbuf -oL "$@" > "$SAID" 2>&1 & '
+            'for again in $(seq 20); do sleep 1; lcm-logplayer "$LOG" > /dev/null 2>&1; grep -q mug "$SAID" && break; done; '
+            'kill %1; wait; cat "$SAID"'
         )
-        return run(*PRIVATE, "bash", "-c", start, "bash", *words, env={**python_of_installation(), "LOG": str(self.log)})
+        said = self.folder / "said.txt"
+        return run(*PRIVATE, "bash", "-c", play, "bash", *words,
+                   env={**python_of_installation(), "LOG": str(self.log), "SAID": str(said)})  # fmt: skip
 
     def test_find_in_images_says_what_is_wrong(self):
         self.assertIn("find_in_images: expected STORE COLOUR DEPTH", run(self.folder / "find_in_images", status=1))
