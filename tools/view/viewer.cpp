@@ -20,10 +20,10 @@ void step_back() {
   if (nice(kPolite) == -1) log_warning("the priority of drawing cannot be lowered");
 }
 
-// Without a window there is time after the stream: frames may wait. In a window only the newest matters.
+// For files there is time after the stream: frames may wait. In a window and on a page only the newest matters.
 std::size_t waiting_frames(const ShowSettings& settings) {
-  constexpr std::size_t kWithoutWindow = 50;
-  return settings.headless() ? kWithoutWindow : 1;
+  constexpr std::size_t kForFiles = 50;
+  return settings.writes() ? kForFiles : 1;
 }
 
 }  // namespace

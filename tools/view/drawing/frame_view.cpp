@@ -42,12 +42,18 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score) {
   return viewed;
 }
 
-cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
-                        const StreamView& stream) {
-  const ViewedFrame viewed = without_weak(all, settings.min_score);
+cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings,
+                         const StreamView& stream) {
   cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
   if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
   if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
+  return picture;
+}
+
+cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
+                        const StreamView& stream) {
+  const ViewedFrame viewed = without_weak(all, settings.min_score);
+  cv::Mat picture = draw_over_colour(viewed, models, settings, stream);
   if (settings.show_3d) {
     cv::hconcat(picture, draw_turned_view(viewed.frame, viewed.poses, models), picture);
   } else if (settings.show_depth) {
