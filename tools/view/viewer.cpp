@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <opencv2/core/utility.hpp>
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -14,8 +15,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Drawing yields to the stream: on a busy machine pictures are late, results are not. On Linux this holds for the
-// calling thread and those that it starts later (the video encoder's), not for the one that receives.
+// calling thread and those that it starts later (the video encoder's), not for the one that receives. One thread draws:
+// several that share so little work spend more time on waking than they save.
 void step_back() {
+  cv::setNumThreads(1);
   constexpr int kPolite = 15;
   if (nice(kPolite) == -1) log_warning("the priority of drawing cannot be lowered");
 }

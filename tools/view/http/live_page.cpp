@@ -1,5 +1,8 @@
 #include "tools/view/http/live_page.hpp"
 
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/codecs.hpp"
 #include "tools/view/drawing/turned_view.hpp"
@@ -11,11 +14,19 @@ namespace {
 constexpr int kJpegQuality = 75;
 constexpr std::chrono::seconds kTellEvery(1);
 
+// Depth stands small beside the colour image: of a large picture every second or third pixel is drawn, and encoded.
+cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
+  constexpr int kWidth = 320;  // pixels, about
+  const double scale = 1.0 / std::max(depth.cols / kWidth, 1);
+  cv::Mat small;
+  cv::resize(depth, small, {}, scale, scale, cv::INTER_NEAREST);
+  return colour_depth(small, settings.depth_near, settings.depth_far);
+}
+
 cv::Mat drawn(PageView view, const PageContent& content) {
   const ViewedFrame& viewed = content.viewed;
   switch (view) {
-    case PageView::kDepth:
-      return colour_depth(viewed.frame.depth, content.settings.depth_near, content.settings.depth_far);
+    case PageView::kDepth: return small_depth(viewed.frame.depth, content.settings);
     case PageView::k3d: return draw_turned_view(viewed.frame, viewed.poses, content.models);
     case PageView::kColour: break;
   }

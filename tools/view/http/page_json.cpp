@@ -23,6 +23,11 @@ json or_null(const std::optional<T>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
+// -1 is what cannot be told.
+json counted(std::int64_t lost) {
+  return lost < 0 ? json(nullptr) : json(lost);
+}
+
 const ObjectPose* pose_of(const ViewedFrame& viewed, std::size_t detection) {
   if (!viewed.poses) return nullptr;
   for (const ObjectPose& pose : viewed.poses->poses) {
@@ -123,7 +128,7 @@ std::string stream_json(const StreamView& stream, const FrameViewSettings& setti
                          {"pid", process.pid},
                          {"hz", process.rate_hz},
                          {"skipped", process.skipped},
-                         {"lost", process.lost < 0 ? json(nullptr) : json(process.lost)},
+                         {"lost", counted(process.lost)},
                          {"refused", process.refused}});
   }
   json teaching = nullptr;
@@ -135,7 +140,7 @@ std::string stream_json(const StreamView& stream, const FrameViewSettings& setti
                 {"progress", or_null(told.progress)}};
   }
   return line_of({{"frames_hz", stream.state.frames_hz},
-                  {"lost", stream.frames_lost},
+                  {"lost", counted(stream.frames_lost)},
                   {"cameras", stream.cameras},
                   {"processes", processes},
                   {"teaching", teaching},

@@ -98,6 +98,8 @@ TEST(PageJson, TheStreamTellsRatesLossesAndWhatIsShown) {
   EXPECT_EQ(told["paused"], true);
   EXPECT_EQ(told["min_score"], 0.5);
   EXPECT_TRUE(told["teaching"].is_null());
+  stream.frames_lost = -1;
+  EXPECT_TRUE(json::parse(stream_json(stream, settings))["lost"].is_null());
 }
 
 }  // namespace

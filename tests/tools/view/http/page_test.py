@@ -36,7 +36,7 @@ def check_elements(page):
     assert "mug <b>" in mug and "rejected by depth" in mug, mug
     page.wait_for(f"{text_of('#processes tbody')}.includes('hs-view')")
     assert "pose.registration" in page.value(text_of("#stages"))
-    assert page.value(text_of("#latency-title")).startswith("LATENCY: detections after")
+    assert page.value(text_of("#latency-title")).startswith("LATENCY: detections ")
     second = "document.getElementById('second')"
     page.value("{ const view = document.getElementById('second-view'); view.value = '3d'; view.dispatchEvent(new Event('change')); }")
     before = page.value(f"{second}.src")
