@@ -88,7 +88,7 @@ def check_token(page, start_view):
             page.wait_for(f"{text_of('#notice')}.includes('need the token')")
         else:
             page.wait_for(f"{WORDS} === 'paused'")
-    view.stop()
+    view.stop(10)
 
 
 def check_phone(page, out):
@@ -117,7 +117,7 @@ def check_page(program, arguments):
         page.photograph(out / "page_desktop.png")
         check_buttons(page)
         last = page.value("frame.utime")
-        view.stop()
+        view.stop(10)
         page.wait_for(f"{WORDS} === 'reconnecting'")
         view = start_view(port, "hs-view-again")
         page.wait_for(f"{WORDS} === 'live' && frame.utime > {last}", 60)
@@ -125,7 +125,7 @@ def check_page(program, arguments):
         assert not page.errors, page.errors
         elsewhere = [url for url in page.requests if not url.startswith((f"http://127.0.0.1:{port}/", "blob:http://127.0.0.1", "data:"))]
         assert not elsewhere, elsewhere
-        view.stop()
+        view.stop(10)
         check_token(page, start_view)
 
 
