@@ -43,6 +43,8 @@ std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
 FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
     : models_(load_models(settings)),
       window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
+      page_(settings.http.empty() ? nullptr : std::make_unique<LivePage>(settings.http)),
+      page_alone_(page_ && !settings.writes()),
       outputs_(settings.outputs),
       camera_(settings.camera),
       picture_settings_(settings.picture),
@@ -60,12 +62,13 @@ FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
 }
 
 void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
-  if (picture_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
+  const bool unseen = page_alone_ && !page_->is_looked_at();
+  if (unseen || picture_settings_.paused || !watcher.cameras().is_shown(matched.id.channel)) {
     watcher.note_skipped();
     return;
   }
   const std::optional<cv::Mat> picture = drawn(matched, watcher);
-  if (!picture) return;
+  if (!picture || page_alone_) return;
   if (window_) window_->show(*picture, matched.id);
   outputs_.add(*picture, matched.id.utime, matched.slot);
   if (!preview_) return;
@@ -77,6 +80,7 @@ void FrameShow::show(const MatchedFrame& matched, BusWatcher& watcher) {
 }
 
 bool FrameShow::handle_keys(BusWatcher& watcher) {
+  if (page_) serve_page(watcher);
   if (!window_) return true;
   const KeyAction action = window_->handle_keys(picture_settings_);
   if (action == KeyAction::kNextCamera) watcher.cameras().next();
@@ -84,6 +88,23 @@ bool FrameShow::handle_keys(BusWatcher& watcher) {
   starter_.runs();
   if (action == KeyAction::kRedraw && viewed_) window_->show(draw(*viewed_), viewed_->frame.id);
   return action != KeyAction::kEnd;
+}
+
+void FrameShow::look_at_stream(BusWatcher& watcher) {
+  stream_.state = watcher.stream_state();
+  stream_.frames_lost = watcher.frames_lost();
+  stream_.cameras = watcher.cameras().heard();
+}
+
+void FrameShow::serve_page(BusWatcher& watcher) {
+  const PageOrders orders = page_->take_orders();
+  if (orders.next_camera) watcher.cameras().next();
+  picture_settings_.paused = orders.paused.value_or(picture_settings_.paused);
+  picture_settings_.min_score = orders.min_score.value_or(picture_settings_.min_score);
+  if (orders.empty() && !page_->is_due()) return;
+  look_at_stream(watcher);
+  if (orders.min_score && viewed_) page_->show({*viewed_, *models(), picture_settings_, stream_});
+  page_->catch_up(viewed_, *models(), picture_settings_, stream_);
 }
 
 std::shared_ptr<const ClassModels> FrameShow::models() const {
@@ -108,10 +129,9 @@ std::optional<cv::Mat> FrameShow::drawn(const MatchedFrame& matched, BusWatcher&
   try {
     ViewedFrame viewed = decode(matched, camera_, *models());
     remember(viewed);
-    stream_.state = watcher.stream_state();
-    stream_.frames_lost = watcher.frames_lost();
-    stream_.cameras = watcher.cameras().heard();
-    cv::Mat picture = draw(viewed);
+    look_at_stream(watcher);
+    if (page_) page_->show({viewed, *models(), picture_settings_, stream_});
+    cv::Mat picture = page_alone_ ? cv::Mat() : draw(viewed);
     viewed_ = std::move(viewed);
     watcher.note_drawn(matched);
     return picture;

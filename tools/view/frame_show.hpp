@@ -7,6 +7,7 @@
 #include "drivers/store/store_watch.hpp"
 #include "tools/view/bus_watcher.hpp"
 #include "tools/view/drawing/frame_view.hpp"
+#include "tools/view/http/live_page.hpp"
 #include "tools/view/teaching_starter.hpp"
 #include "tools/view/view_outputs.hpp"
 #include "tools/view/view_window.hpp"
@@ -21,26 +22,31 @@ struct ShowSettings {
   std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
   FrameViewSettings picture;
   bool preview = false;  ///< send each picture on the preview channel
+  std::string http;      ///< where to serve a page for browsers, [ADDRESS:]PORT; "" = nowhere
   OutputSettings outputs;
 
-  /// Files or the preview are asked for: then there is no window.
-  bool headless() const {
+  /// Files or the preview are asked for.
+  bool writes() const {
     return preview || !outputs.snapshot.empty() || !outputs.video.empty() || !outputs.pictures.empty();
   }
+  /// Then there is no window.
+  bool headless() const { return writes() || !http.empty(); }
 };
 
 /// Draws frames to a window or to files, keeps the one that is shown, and how the stream went until it.
 class FrameShow {
  public:
   /// A key of the window teaches objects of the stream at `lcm_url` ("" = LCM's default) to the store, if there is one.
-  /// Throws InputError where there are no models, a store and a folder of models, no display or no folder to write to.
+  /// Throws InputError where there are no models, a store and a folder of models, no display, no folder to write
+  /// to, or no address to serve at.
   explicit FrameShow(const ShowSettings& settings, const std::string& lcm_url = "");
 
-  /// Shows a frame, unless paused or another camera is shown by now. One that cannot be understood is reported to
-  /// `watcher` and passed over. Throws InputError where a file cannot be written.
+  /// Shows a frame, unless paused, another camera is shown by now, or there is a page that nobody looks at. One that
+  /// cannot be understood is reported to `watcher` and passed over. Throws InputError where a file cannot be written.
   void show(const MatchedFrame& matched, BusWatcher& watcher);
 
-  /// Lets the window act on keys, one of which shows `watcher`'s next camera. False when it was asked to end.
+  /// Lets window and page act on keys and buttons, one of which shows `watcher`'s next camera. False when it was asked
+  /// to end.
   bool handle_keys(BusWatcher& watcher);
 
   /// As ViewOutputs.
@@ -49,6 +55,8 @@ class FrameShow {
 
  private:
   std::optional<cv::Mat> drawn(const MatchedFrame& matched, BusWatcher& watcher);
+  void look_at_stream(BusWatcher& watcher);
+  void serve_page(BusWatcher& watcher);
   cv::Mat draw(const ViewedFrame& viewed) const;
   void teach();
   std::shared_ptr<const ClassModels> models() const;
@@ -57,6 +65,8 @@ class FrameShow {
   std::shared_ptr<const ClassModels> models_;
   std::unique_ptr<store::StoreWatch<ClassModels>> store_;
   std::unique_ptr<ViewWindow> window_;
+  std::unique_ptr<LivePage> page_;
+  bool page_alone_;  // nobody but the page wants pictures
   ViewOutputs outputs_;
   std::optional<Camera> camera_;
   FrameViewSettings picture_settings_;

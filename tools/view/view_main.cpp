@@ -19,6 +19,8 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
   app.add_option("--pictures", outputs.pictures, "write every picture drawn to this folder");
   app.add_flag("--preview", show.preview,
                "send pictures as JPEG below 100 kB on HOUGHSTREAM_PREVIEW, for lcm-spy and others with small buffers");
+  app.add_option("--http", show.http,
+                 "serve a page for browsers at [ADDRESS:]PORT; without an address for this machine only");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
       .capture_default_str()
       .range(0.1, 100.0);
@@ -42,7 +44,7 @@ int main(int argc, char** argv) {
   houghstream::CommandLine app(
       "Shows the stream: boxes, names, scores, pose axes and model outlines over each frame, depth, stage times and "
       "latency. Of several cameras one is shown at a time: the first that is heard, the next one after key c. With "
-      "--snapshot, --video, --pictures or --preview it needs no display.",
+      "--snapshot, --video, --pictures, --preview or --http it needs no display.",
       "hs-view");
   houghstream::view::ViewerSettings settings;
   std::string camera;

@@ -50,7 +50,8 @@ bool window_opens() {
 }  // namespace
 
 ViewWindow::ViewWindow() {
-  const std::string advice = "without one use --snapshot FILE.png, --video FILE.mp4, --pictures FOLDER or --preview";
+  const std::string advice =
+      "without one use --snapshot FILE.png, --video FILE.mp4, --pictures FOLDER, --preview or --http PORT";
   require(is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"), "no display for a window (DISPLAY is not set); {}", advice);
   require(window_opens(), "no display for a window (the one named by DISPLAY does not answer); {}", advice);
   cv::namedWindow(kTitle, cv::WINDOW_AUTOSIZE | cv::WINDOW_GUI_NORMAL);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <opencv2/core/utility.hpp>
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -14,16 +15,18 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Drawing yields to the stream: on a busy machine pictures are late, results are not. On Linux this holds for the
-// calling thread and those that it starts later (the video encoder's), not for the one that receives.
+// calling thread and those that it starts later (the video encoder's), not for the one that receives. One thread draws:
+// several that share so little work spend more time on waking than they save.
 void step_back() {
+  cv::setNumThreads(1);
   constexpr int kPolite = 15;
   if (nice(kPolite) == -1) log_warning("the priority of drawing cannot be lowered");
 }
 
-// Without a window there is time after the stream: frames may wait. In a window only the newest matters.
+// For files there is time after the stream: frames may wait. In a window and on a page only the newest matters.
 std::size_t waiting_frames(const ShowSettings& settings) {
-  constexpr std::size_t kWithoutWindow = 50;
-  return settings.headless() ? kWithoutWindow : 1;
+  constexpr std::size_t kForFiles = 50;
+  return settings.writes() ? kForFiles : 1;
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(ViewWindow, WithoutADisplayTheWaysToGoOnAreNamed) {
   for (const char* display : {"", ":9999"}) {
     const std::string words = refusal(display);
     EXPECT_NE(words.find("no display"), std::string::npos) << words;
-    for (const char* way : {"--snapshot", "--video", "--pictures", "--preview"}) {
+    for (const char* way : {"--snapshot", "--video", "--pictures", "--preview", "--http"}) {
       EXPECT_NE(words.find(way), std::string::npos) << words;
     }
   }

@@ -43,13 +43,19 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score) {
   return viewed;
 }
 
-cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
-                        const StreamView& stream) {
-  const ViewedFrame viewed = without_weak(all, settings.min_score);
+cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings,
+                         const StreamView& stream) {
   cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
   if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
   if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
   if (stream.state.world) draw_tracks(picture, *stream.state.world, viewed.frame);
+  return picture;
+}
+
+cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,
+                        const StreamView& stream) {
+  const ViewedFrame viewed = without_weak(all, settings.min_score);
+  cv::Mat picture = draw_over_colour(viewed, models, settings, stream);
   if (settings.show_world) {
     const WorldState world = stream.state.world.value_or(WorldState{});
     cv::hconcat(picture, draw_world_from_above(world, viewed.frame.colour.size()), picture);

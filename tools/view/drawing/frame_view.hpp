@@ -47,6 +47,10 @@ cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
 /// The frame without detections weaker than `min_score`, which are counted, and without their poses.
 ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 
+/// The colour image with all that is drawn over it. Throws InputError as draw_overlay does.
+cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, const FrameViewSettings& settings,
+                         const StreamView& stream);
+
 /// The whole picture, CV_8UC3: overlay, depth or 3-D beside it, and below them the panel (view_panel.hpp). Its size is
 /// even in both directions, as video encoders want. Throws InputError as draw_overlay does.
 cv::Mat draw_frame_view(const ViewedFrame& all, const ClassModels& models, const FrameViewSettings& settings,

@@ -67,7 +67,7 @@ void draw_outline(cv::Mat& image, const Mesh& mesh, const ObjectPose& pose, cons
   const cv::Mat depth = render_depth(mesh, *pose.T_camera_object, camera, region);
   const cv::Mat seen = depth == depth;  // false where nothing was rendered (NaN)
   std::vector<std::vector<cv::Point>> contours;
-  cv::findContours(seen, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE, region.tl());
+  cv::findContours(seen, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE, region.tl());
   cv::drawContours(image, contours, -1, kDark, 4, cv::LINE_AA);
   cv::drawContours(image, contours, -1, class_colour(pose.class_id), 2, cv::LINE_AA);
 }

@@ -1,0 +1,95 @@
+#include "tools/view/http/live_page.hpp"
+
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <opencv2/imgcodecs.hpp>
+#include <thread>
+
+#include "pipeline/base/checks.hpp"
+#include "tests/tools/view/watched_bus.hpp"
+#include "tools/view/frame_show.hpp"
+
+namespace houghstream::view {
+namespace {
+
+ViewedFrame viewed_frame(std::int64_t utime) {
+  ViewedFrame viewed;
+  viewed.frame = make_test_frame(utime);
+  viewed.detections.frame = viewed.frame.id;
+  return viewed;
+}
+
+// A page with a browser that may look at it.
+struct Looked {
+  Looked() : client("127.0.0.1", page.server().port()) {}
+
+  void show(const ViewedFrame& viewed) { page.show({viewed, models, settings, stream}); }
+
+  /// The picture, while the page's own thread goes on as hs-view's loop does.
+  cv::Mat fetched(const std::string& view, const ViewedFrame& viewed) {
+    std::optional<httplib::Result> answer;
+    std::atomic<bool> answered{false};
+    std::thread browser([&] {
+      answer = client.Get("/picture/" + view + ".jpg");
+      answered = true;
+    });
+    while (!answered) {
+      if (page.is_due()) page.catch_up(viewed, models, settings, stream);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    browser.join();
+    const std::string bytes = (*answer)->body;
+    return cv::imdecode(std::vector<char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
+  }
+
+  LivePage page{"127.0.0.1:0"};
+  httplib::Client client;
+  ClassModels models;
+  FrameViewSettings settings;
+  StreamView stream;
+};
+
+TEST(LivePage, ShowsEachViewThatIsAskedFor) {
+  Looked looked;
+  const ViewedFrame viewed = viewed_frame(5);
+  looked.show(viewed);
+  for (const char* view : {"colour", "depth", "3d"}) {
+    const cv::Mat picture = looked.fetched(view, viewed);
+    EXPECT_EQ(picture.size(), viewed.frame.colour.size()) << view;
+  }
+}
+
+TEST(LivePage, WithoutViewersNothingIsDue) {
+  Looked looked;
+  looked.show(viewed_frame(5));
+  EXPECT_FALSE(looked.page.is_looked_at());
+  EXPECT_FALSE(looked.page.is_due());
+}
+
+TEST(LivePage, AFrameThatNobodyLooksAtIsSkippedUndrawn) {
+  WatchedBus watched;
+  ShowSettings settings;
+  settings.http = "127.0.0.1:0";
+  FrameShow frame_show(settings);
+  MatchedFrame cut = matched_frame(5);
+  cut.frame_bytes.resize(cut.frame_bytes.size() / 2);  // would be refused if anybody decoded it
+  frame_show.show(cut, watched.watcher);
+  EXPECT_TRUE(frame_show.handle_keys(watched.watcher));
+  const status_t status = watched.last_words();
+  EXPECT_EQ(status.frames_skipped, 1);
+  EXPECT_EQ(status.frames_refused, 0);
+}
+
+TEST(LivePage, TakesThePlaceOfAWindowAndABadAddressIsNamed) {
+  ShowSettings settings;
+  settings.http = "8080";
+  EXPECT_TRUE(settings.headless());
+  EXPECT_FALSE(settings.writes());
+  settings.http = "eighty";
+  EXPECT_THROW(FrameShow{settings}, InputError);
+}
+
+}  // namespace
+}  // namespace houghstream::view

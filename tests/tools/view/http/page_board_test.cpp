@@ -1,0 +1,92 @@
+#include "tools/view/http/page_board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace houghstream::view {
+namespace {
+
+constexpr std::chrono::milliseconds kNow(0);
+constexpr std::chrono::milliseconds kLong(10'000);
+
+TEST(PageBoard, WithoutViewersNothingIsWanted) {
+  PageBoard board;
+  EXPECT_FALSE(board.is_looked_at());
+  EXPECT_TRUE(board.join());
+  EXPECT_TRUE(board.is_looked_at());
+  EXPECT_TRUE(board.wanted().empty());
+  board.leave();
+  EXPECT_FALSE(board.is_looked_at());
+  EXPECT_EQ(board.picture(PageView::kDepth, kNow), nullptr);
+  EXPECT_TRUE(board.is_looked_at());
+  EXPECT_EQ(board.wanted(), std::vector<PageView>{PageView::kDepth});
+}
+
+TEST(PageBoard, EachSeesTheNewestOnce) {
+  PageBoard board;
+  board.put_frame("a");
+  board.put_frame("b");
+  board.put_stream("s");
+  const std::optional<PageNews> first = board.news_after({}, kNow);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->frame, "b");
+  EXPECT_EQ(first->stream, "s");
+  board.put_stream("t");
+  const std::optional<PageNews> second = board.news_after(*first, kNow);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->frame, "");
+  EXPECT_EQ(second->stream, "t");
+  EXPECT_EQ(board.news_after(*second, kNow)->stream, "");
+}
+
+TEST(PageBoard, APictureThatIsWaitedForIsMissing) {
+  PageBoard board;
+  board.put_frame("a");
+  EXPECT_TRUE(board.missing().empty());
+  Jpeg seen;
+  std::thread viewer([&] { seen = board.picture(PageView::k3d, kLong); });
+  while (board.missing().empty()) std::this_thread::yield();
+  EXPECT_EQ(board.missing(), std::vector<PageView>{PageView::k3d});
+  board.put_picture(PageView::k3d, {1, 2, 3});
+  viewer.join();
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->size(), 3U);
+  EXPECT_TRUE(board.missing().empty());
+}
+
+TEST(PageBoard, OrdersAreTakenOnceAndTheLastCounts) {
+  PageBoard board;
+  EXPECT_TRUE(board.take_orders().empty());
+  PageOrders orders;
+  orders.paused = true;
+  orders.next_camera = true;
+  board.order(orders);
+  orders = {};
+  orders.paused = false;
+  orders.min_score = 0.25F;
+  board.order(orders);
+  const PageOrders taken = board.take_orders();
+  EXPECT_EQ(taken.paused, false);
+  EXPECT_EQ(taken.min_score, 0.25F);
+  EXPECT_TRUE(taken.next_camera);
+  EXPECT_TRUE(board.take_orders().empty());
+}
+
+TEST(PageBoard, NotMoreThanSoManyListen) {
+  PageBoard board;
+  for (int i = 0; i < PageBoard::kMostViewers; ++i) EXPECT_TRUE(board.join());
+  EXPECT_FALSE(board.join());
+  board.leave();
+  EXPECT_TRUE(board.join());
+}
+
+TEST(PageBoard, ClosingLetsAllGo) {
+  PageBoard board;
+  std::thread viewer([&] { EXPECT_FALSE(board.news_after({}, kLong)); });
+  board.close();
+  viewer.join();
+}
+
+}  // namespace
+}  // namespace houghstream::view

@@ -1,0 +1,106 @@
+#include "tools/view/http/page_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/pipeline/test_frame.hpp"
+
+namespace houghstream::view {
+namespace {
+
+using nlohmann::json;
+
+ViewedFrame viewed_frame() {
+  ViewedFrame viewed;
+  viewed.frame = make_test_frame(42);
+  viewed.frame.id.channel = "LEFT";
+  viewed.detections.frame = viewed.frame.id;
+  viewed.detections.stages = {{"detect.leaves", 1500}};
+  viewed.detections.detections.resize(2);
+  viewed.detections.detections[0].class_name = "bowl";
+  viewed.detections.detections[0].class_id = 1;
+  viewed.detections.detections[0].score = 0.75F;
+  viewed.detections.detections[0].centre_camera = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  viewed.detections.detections[1].class_name = "mug \xff<b>";
+  viewed.detect_latency_ms = 12.0;
+  return viewed;
+}
+
+void add_poses(ViewedFrame& viewed) {
+  viewed.poses = ObjectPoses{viewed.frame.id, {}, {{"pose.icp", 2500}}};
+  viewed.poses->poses.resize(2);
+  viewed.poses->poses[0].detection_index = 0;
+  viewed.poses->poses[0].status = PoseStatus::kValid;
+  viewed.poses->poses[0].T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.2, 0.9));
+  viewed.poses->poses[1].detection_index = 1;
+  viewed.poses->poses[1].status = PoseStatus::kRejectedByDepth;
+  viewed.poses->poses[1].residual = std::numeric_limits<float>::quiet_NaN();
+}
+
+TEST(PageJson, AFrameTellsItsObjectsWithTheirPoses) {
+  ViewedFrame viewed = viewed_frame();
+  add_poses(viewed);
+  const json told = json::parse(frame_json(viewed, 17.0));
+  EXPECT_EQ(told["channel"], "LEFT");
+  EXPECT_EQ(told["utime"], 42);
+  EXPECT_EQ(told["age_ms"], 17.0);
+  EXPECT_EQ(told["detect_ms"], 12.0);
+  EXPECT_TRUE(told["pose_ms"].is_null());
+  EXPECT_EQ(told["stages"][0]["name"], "pose.icp");
+  EXPECT_EQ(told["stages"][0]["ms"], 2.5);
+  const json& bowl = told["objects"][0];
+  EXPECT_EQ(bowl["score"], 0.75);
+  EXPECT_TRUE(bowl["centre"][0].is_null());
+  EXPECT_EQ(bowl["pose"]["position"], json({0.1, 0.2, 0.9}));
+  EXPECT_EQ(bowl["pose"]["quaternion"], json({1.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(bowl["why"], "");
+}
+
+TEST(PageJson, AWithheldPoseSaysWhyAndAnOddNameIsStillText) {
+  ViewedFrame viewed = viewed_frame();
+  add_poses(viewed);
+  const json mug = json::parse(frame_json(viewed, 0.0))["objects"][1];
+  EXPECT_TRUE(mug["pose"]["position"].is_null());
+  EXPECT_TRUE(mug["pose"]["residual"].is_null());
+  EXPECT_NE(mug["why"].get<std::string>().find("contradicts the measured depth"), std::string::npos);
+  EXPECT_NE(mug["name"].get<std::string>().find("<b>"), std::string::npos);
+  EXPECT_NE(json::parse(frame_json(viewed_frame(), 0.0))["objects"][0]["why"], "");  // hs-pose is silent
+}
+
+TEST(PageJson, EveryReasonHasWordsOfItsOwn) {
+  std::set<std::string> words;
+  for (int status = 2; status <= 10; ++status) {
+    ObjectPose pose;
+    pose.status = static_cast<PoseStatus>(status);
+    EXPECT_GT(why_no_pose(&pose).size(), 20U) << status;
+    words.insert(why_no_pose(&pose));
+  }
+  EXPECT_EQ(words.size(), 9U);
+}
+
+TEST(PageJson, TheStreamTellsRatesLossesAndWhatIsShown) {
+  StreamView stream;
+  stream.state.frames_hz = 30.0;
+  stream.state.processes = {{"hs-pose", 7, 9.5F, 3, -1, 0, 0}};
+  stream.frames_lost = 4;
+  stream.cameras = {"LEFT", "RIGHT"};
+  FrameViewSettings settings;
+  settings.paused = true;
+  settings.min_score = 0.5F;
+  const json told = json::parse(stream_json(stream, settings));
+  EXPECT_EQ(told["frames_hz"], 30.0);
+  EXPECT_EQ(told["lost"], 4);
+  EXPECT_EQ(told["cameras"].size(), 2U);
+  EXPECT_EQ(told["processes"][0]["hz"], 9.5);
+  EXPECT_TRUE(told["processes"][0]["lost"].is_null());
+  EXPECT_EQ(told["paused"], true);
+  EXPECT_EQ(told["min_score"], 0.5);
+  EXPECT_TRUE(told["teaching"].is_null());
+  stream.frames_lost = -1;
+  EXPECT_TRUE(json::parse(stream_json(stream, settings))["lost"].is_null());
+}
+
+}  // namespace
+}  // namespace houghstream::view

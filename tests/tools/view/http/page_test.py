@@ -1,0 +1,148 @@
+"""hs-view's page in a real browser: what is there, what changes while the stream goes on, what the buttons do, and that it
+comes back by itself when hs-view does. Leaves page_desktop.png and page_phone.png in OUT."""
+
+import argparse
+import pathlib
+import socket
+import sys
+import time
+
+from browser import Browser, find_chromium
+from studies.stream import Processes, enter_private_network
+from told_stream import CAMERA, ToldStream
+
+SKIPPED = 77
+ROWS = "document.querySelectorAll('#objects tr[data-key]:not(.gone)').length"
+WORDS = "document.getElementById('link').textContent"
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def text_of(selector):
+    return f"document.querySelector('{selector}').innerText"
+
+
+def check_elements(page):
+    page.wait_for(f"{WORDS} === 'live'", 60)
+    page.wait_for("document.getElementById('colour').naturalWidth === 64")
+    page.wait_for("document.getElementById('second').naturalWidth === 64")
+    page.wait_for(f"{ROWS} === 2")
+    bowl, mug = page.value("[...document.querySelectorAll('#objects tr[data-key]')].map(row => row.innerText)")
+    assert "0.100, 0.000, 0.900" in bowl, bowl
+    assert "mug <b>" in mug and "rejected by depth" in mug, mug
+    page.wait_for(f"{text_of('#processes tbody')}.includes('hs-view')")
+    assert "pose.registration" in page.value(text_of("#stages"))
+    assert page.value(text_of("#latency-title")).startswith("LATENCY: detections ")
+    second = "document.getElementById('second')"
+    page.value("{ const view = document.getElementById('second-view'); view.value = '3d'; view.dispatchEvent(new Event('change')); }")
+    before = page.value(f"{second}.src")
+    page.wait_for(f"{second}.src !== '{before}' && {second}.naturalWidth === 64")
+
+
+def check_live_change(page):
+    scores, pictures = set(), set()
+    end = time.monotonic() + 60
+    while time.monotonic() < end and min(len(scores), len(pictures)) < 3:
+        scores.add(page.value("document.querySelector('#objects td.n').innerText"))
+        pictures.add(page.value("document.getElementById('colour').src"))
+        time.sleep(0.1)
+    assert min(len(scores), len(pictures)) >= 3, (scores, pictures)
+
+
+def check_picking(page):
+    page.value("document.querySelectorAll('#objects tr[data-key]')[1].click()")
+    page.wait_for(f"{text_of('#evidence')}.includes('contradicts the measured depth')")
+    page.wait_for("document.getElementById('mark').style.display === 'block'")
+    page.value("document.querySelectorAll('#objects tr[data-key]')[0].click()")
+    page.wait_for(f"{text_of('#evidence')}.includes('wxyz 1.000, 0.000, 0.000, 0.000')")
+
+
+def check_buttons(page):
+    page.value("{ const slider = document.getElementById('threshold'); slider.value = 0.5; slider.dispatchEvent(new Event('change')); }")
+    page.wait_for(f"{ROWS} === 1")
+    page.wait_for(f"{text_of('#objects-title')} === 'OBJECTS: 1, 1 weaker'")
+    page.value("document.getElementById('pause').click()")
+    page.wait_for(f"{WORDS} === 'paused'")
+    utime = page.wait_for("frame.utime")
+    time.sleep(0.5)
+    assert page.value("frame.utime") == utime, "frames go on while paused"
+    page.value("document.getElementById('pause').click()")
+    page.wait_for(f"{WORDS} === 'live' && frame.utime > {utime}")
+
+
+def check_token(page, start_view):
+    """Where others can come from, buttons without the printed token are refused, and the page says so."""
+    port = free_port()
+    view = start_view(f"0.0.0.0:{port}", "hs-view-open")
+    address = view.log.read_text().split("page: ")[1].split()[0]
+    token = address.split("?token=")[1]
+    for words, expected in (("", True), (f"?token={token}", False)):
+        page.open(f"http://127.0.0.1:{port}/{words}")
+        page.wait_for(f"location.port === '{port}' && location.search === '{words}' && {WORDS} === 'live'", 60)
+        page.value("document.getElementById('pause').click()")
+        if expected:
+            page.wait_for(f"{text_of('#notice')}.includes('need the token')")
+        else:
+            page.wait_for(f"{WORDS} === 'paused'")
+    view.stop(10)
+
+
+def check_phone(page, out):
+    page.resize(390, 844, True)
+    page.wait_for("innerWidth === 390")
+    assert page.value("document.documentElement.scrollWidth") <= 390, "a phone has to scroll sideways"
+    assert page.value("document.getElementById('pause').getBoundingClientRect().height") >= 36, "a button too low for a thumb"
+    page.photograph(out / "page_phone.png", whole=True)
+
+
+def check_page(program, arguments):
+    out, port = arguments.out, free_port()
+    with Processes(out) as processes, ToldStream(), Browser(program) as page:
+
+        def start_view(address, name="hs-view"):
+            view = processes.start(name, arguments.tools / "hs-view", "--http", address, "--camera", CAMERA)
+            view.wait_until_ready(60)
+            return view
+
+        view = start_view(port)
+        page.resize(1280, 900, False)
+        page.open(f"http://127.0.0.1:{port}/")
+        check_elements(page)
+        check_live_change(page)
+        check_picking(page)
+        page.photograph(out / "page_desktop.png")
+        check_buttons(page)
+        last = page.value("frame.utime")
+        view.stop(10)
+        page.wait_for(f"{WORDS} === 'reconnecting'")
+        view = start_view(port, "hs-view-again")
+        page.wait_for(f"{WORDS} === 'live' && frame.utime > {last}", 60)
+        check_phone(page, out)
+        assert not page.errors, page.errors
+        elsewhere = [url for url in page.requests if not url.startswith((f"http://127.0.0.1:{port}/", "blob:http://127.0.0.1", "data:"))]
+        assert not elsewhere, elsewhere
+        view.stop(10)
+        check_token(page, start_view)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--tools", type=pathlib.Path, required=True, help="folder of hs-view")
+    parser.add_argument("--out", type=pathlib.Path, required=True, help="folder for pictures and words")
+    arguments = parser.parse_args()
+    program = find_chromium()
+    if program is None:
+        print("skipped: no Chromium here; sudo apt-get install chromium")
+        sys.exit(SKIPPED)
+    enter_private_network()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    check_page(program, arguments)
+    print("the page works in", program)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+#include "tools/view/http/live_page.hpp"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/messages/codecs.hpp"
+#include "tools/view/drawing/turned_view.hpp"
+#include "tools/view/http/page_json.hpp"
+
+namespace houghstream::view {
+namespace {
+
+constexpr int kJpegQuality = 75;
+constexpr std::chrono::seconds kTellEvery(1);
+
+// Depth stands small beside the colour image: of a large picture every second or third pixel is drawn, and encoded.
+cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
+  constexpr int kWidth = 320;  // pixels, about
+  const double scale = 1.0 / std::max(depth.cols / kWidth, 1);
+  cv::Mat small;
+  cv::resize(depth, small, {}, scale, scale, cv::INTER_NEAREST);
+  return colour_depth(small, settings.depth_near, settings.depth_far);
+}
+
+cv::Mat drawn(PageView view, const PageContent& content) {
+  const ViewedFrame& viewed = content.viewed;
+  switch (view) {
+    case PageView::kDepth: return small_depth(viewed.frame.depth, content.settings);
+    case PageView::k3d: return draw_turned_view(viewed.frame, viewed.poses, content.models);
+    case PageView::kColour: break;
+  }
+  return draw_over_colour(viewed, content.models, content.settings, content.stream);
+}
+
+}  // namespace
+
+LivePage::LivePage(const std::string& address) : server_(parse_http_address(address), board_) {
+  log_info("page: {}", server_.url());
+}
+
+void LivePage::draw(const std::vector<PageView>& views, const PageContent& content) {
+  for (const PageView view : views) board_.put_picture(view, encode_jpeg(drawn(view, content), kJpegQuality));
+}
+
+void LivePage::show(const PageContent& content) {
+  const auto now = PageBoard::Clock::now();
+  if (content.viewed.frame.id != shown_) first_shown_ = now;
+  shown_ = content.viewed.frame.id;
+  const std::chrono::duration<double, std::milli> since = now - first_shown_;
+  const ViewedFrame viewed = without_weak(content.viewed, content.settings.min_score);
+  const double latency_ms = viewed.pose_latency_ms.value_or(viewed.detect_latency_ms.value_or(0.0));
+  board_.put_frame(frame_json(viewed, latency_ms + since.count()));
+  draw(board_.wanted(), {viewed, content.models, content.settings, content.stream});
+}
+
+bool LivePage::is_due() const {
+  return is_looked_at() && (PageBoard::Clock::now() - told_ >= kTellEvery || !board_.missing().empty());
+}
+
+void LivePage::catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models,
+                        const FrameViewSettings& settings, const StreamView& stream) {
+  if (const auto missing = board_.missing(); viewed && !missing.empty())
+    draw(missing, {without_weak(*viewed, settings.min_score), models, settings, stream});
+  told_ = PageBoard::Clock::now();
+  board_.put_stream(stream_json(stream, settings));
+}
+
+}  // namespace houghstream::view

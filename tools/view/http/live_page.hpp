@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <vector>
+
+#include "tools/view/drawing/frame_view.hpp"
+#include "tools/view/http/page_server.hpp"
+
+namespace houghstream::view {
+
+/// A frame and what is drawn over and told of it.
+struct PageContent {
+  const ViewedFrame& viewed;
+  const ClassModels& models;
+  const FrameViewSettings& settings;
+  const StreamView& stream;
+};
+
+/// The stream as a page for browsers. Draws and encodes what viewers look at, in the thread that calls; without viewers
+/// nothing.
+class LivePage {
+ public:
+  /// Serves at "[ADDRESS:]PORT", and logs where. Throws InputError.
+  explicit LivePage(const std::string& address);
+
+  bool is_looked_at() const { return board_.is_looked_at(); }
+  PageOrders take_orders() { return board_.take_orders(); }
+
+  /// Tells of a frame and draws what is wanted of it. Throws InputError as draw_overlay does.
+  void show(const PageContent& content);
+  /// Whether somebody waits for a picture of the frame that was shown last, or the stream was not told of for a second.
+  bool is_due() const;
+  /// Draws that picture, and tells of the stream.
+  void catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models, const FrameViewSettings& settings,
+                const StreamView& stream);
+
+  const PageServer& server() const { return server_; }
+
+ private:
+  void draw(const std::vector<PageView>& views, const PageContent& content);
+
+  PageBoard board_;
+  PageServer server_;
+  FrameId shown_;
+  PageBoard::Clock::time_point first_shown_;
+  PageBoard::Clock::time_point told_;
+};
+
+}  // namespace houghstream::view

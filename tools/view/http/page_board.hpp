@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace houghstream::view {
+
+/// What of a frame a page can show.
+enum class PageView { kColour, kDepth, k3d };
+constexpr std::size_t kPageViews = 3;
+
+using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
+
+/// What the buttons of the page ask for.
+struct PageOrders {
+  std::optional<bool> paused;
+  std::optional<float> min_score;
+  bool next_camera = false;
+
+  bool empty() const { return !paused && !min_score && !next_camera; }
+};
+
+/// What pages are told, as numbered JSON: what somebody has not seen yet has a higher number than what he has.
+struct PageNews {
+  std::int64_t frame_number = 0;
+  std::string frame;
+  std::int64_t stream_number = 0;
+  std::string stream;
+};
+
+/// Stands between the thread that draws and those that serve pages: the newest of everything, what pages look at, and
+/// what their buttons ask for. Any function may be called from any thread.
+class PageBoard {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr int kMostViewers = 8;
+  static constexpr std::chrono::seconds kInterest{2};  ///< after a request its view is drawn for so long
+
+  /// For the thread that draws. Somebody listens, or asked for a picture of late.
+  bool is_looked_at() const;
+  /// Views that were asked for of late.
+  std::vector<PageView> wanted() const;
+  /// Views that somebody waits for, and that were not drawn of the frame that is shown.
+  std::vector<PageView> missing() const;
+  /// The next frame. Its pictures follow.
+  void put_frame(std::string json);
+  void put_picture(PageView view, std::vector<std::uint8_t> jpeg);
+  void put_stream(std::string json);
+  PageOrders take_orders();
+
+  /// For those that serve. False where kMostViewers listen already.
+  bool join();
+  void leave();
+  /// Waits until there is more than `seen`, or for `timeout`; what is not new is empty. Nothing once it is closed.
+  std::optional<PageNews> news_after(const PageNews& seen, std::chrono::milliseconds timeout);
+  /// The picture of the frame that is shown, waited for if need be; an older one, or nothing, after `timeout`.
+  Jpeg picture(PageView view, std::chrono::milliseconds timeout);
+  void order(const PageOrders& orders);
+
+  /// Nobody waits any longer.
+  void close();
+
+ private:
+  struct Picture {
+    Jpeg jpeg;
+    std::int64_t frame_number = 0;
+    Clock::time_point asked = Clock::time_point::min();
+    int waiting = 0;
+  };
+  bool is_wanted(const Picture& picture) const { return Clock::now() - kInterest < picture.asked; }
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::array<Picture, kPageViews> pictures_;
+  PageNews news_;
+  PageOrders orders_;
+  int viewers_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace houghstream::view

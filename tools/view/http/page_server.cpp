@@ -1,0 +1,218 @@
+#include "tools/view/http/page_server.hpp"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+#include <utility>
+
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/stop_signal.hpp"
+#include "tools/view/http/page.hpp"
+
+namespace houghstream::view {
+namespace {
+
+constexpr std::size_t kThreads = 4 * PageBoard::kMostViewers;  // a page has one for events, two or three for the rest
+constexpr std::chrono::milliseconds kPatience(1000);           // for an event
+constexpr std::chrono::milliseconds kPicturePatience(2000);    // for a picture of the frame that is shown
+constexpr const char* kTokenHeader = "X-Houghstream-Token";
+// Nothing from elsewhere is loaded or asked, and no other page shows this one.
+constexpr const char* kPolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src 'self' blob: data:; "
+    "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+std::string fresh_token() {
+  std::random_device dice;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", dice());
+  return token;
+}
+
+// In a time that does not tell how much of it is right.
+bool same_token(const std::string& given, const std::string& wanted) {
+  if (given.size() != wanted.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < given.size(); ++i) difference |= static_cast<unsigned>(given[i] ^ wanted[i]);
+  return difference == 0;
+}
+
+void answer(httplib::Response& response, int status, const std::string& words) {
+  response.status = status;
+  response.set_content(words + "\n", "text/plain");
+}
+
+PageOrders parse_orders(const std::string& body) {
+  const nlohmann::json value = nlohmann::json::parse(body, nullptr, false);
+  require(value.is_object(), "expected a JSON object");
+  PageOrders orders;
+  for (const auto& [key, wish] : value.items()) {
+    if (key == "paused" && wish.is_boolean()) {
+      orders.paused = wish.get<bool>();
+    } else if (key == "min_score" && wish.is_number() && wish.get<double>() >= 0.0 && wish.get<double>() <= 1.0) {
+      orders.min_score = wish.get<float>();
+    } else if (key == "next_camera" && wish.is_boolean()) {
+      orders.next_camera = wish.get<bool>();
+    } else {
+      fail("{}: {}, expected paused or next_camera (true, false) or min_score (0 to 1)", key, wish.dump());
+    }
+  }
+  return orders;
+}
+
+// Sends what is new as an event, and now and then a comment: so a viewer that has gone is noticed.
+class EventSender {
+ public:
+  explicit EventSender(PageBoard& board) : board_(board) {}
+
+  bool operator()(std::size_t /*offset*/, httplib::DataSink& sink) {
+    const std::optional<PageNews> news = board_.news_after(seen_, kPatience);
+    if (!news) {
+      sink.done();
+      return true;
+    }
+    std::string text;
+    if (!news->stream.empty()) text += fmt::format("event: stream\ndata: {}\n\n", news->stream);
+    if (!news->frame.empty()) text += fmt::format("event: frame\ndata: {}\n\n", news->frame);
+    if (text.empty()) text = ": still here\n\n";
+    seen_ = *news;
+    return sink.write(text.data(), text.size());
+  }
+
+ private:
+  PageBoard& board_;
+  PageNews seen_;
+};
+
+}  // namespace
+
+struct PageServer::State {
+  State(const HttpAddress& where, PageBoard& pages) : address(where), board(pages) {
+    if (!is_local(address.host)) token = fresh_token();
+  }
+
+  void set_limits();
+  void add_pages();
+  void serve_picture(const httplib::Request& request, httplib::Response& response);
+  void serve_events(httplib::Response& response);
+  void take_orders(const httplib::Request& request, httplib::Response& response);
+
+  HttpAddress address;
+  PageBoard& board;
+  std::string token;
+  httplib::Server server;
+  std::thread thread;
+};
+
+void PageServer::State::set_limits() {
+  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  server.set_keep_alive_max_count(1'000'000);
+  server.set_keep_alive_timeout(1);  // seconds; the program's end waits for it
+  server.set_payload_max_length(4096);
+  server.set_tcp_nodelay(true);
+  // The library's own choice lets two programs share a port, each with half of the viewers.
+  server.set_socket_options([](socket_t opened) {
+    const int yes = 1;
+    setsockopt(opened, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
+  server.set_default_headers({{"Content-Security-Policy", kPolicy},
+                              {"X-Content-Type-Options", "nosniff"},
+                              {"Referrer-Policy", "no-referrer"},
+                              {"Cache-Control", "no-store"}});
+  server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    if (!token.empty() || names_this_machine(request.get_header_value("Host")))
+      return httplib::Server::HandlerResponse::Unhandled;
+    answer(response, 403, "this page is for this machine only: localhost or 127.0.0.1");
+    return httplib::Server::HandlerResponse::Handled;
+  });
+}
+
+void PageServer::State::add_pages() {
+  server.Get("/", [](const httplib::Request&, httplib::Response& response) {
+    response.set_content(kPageHtml, "text/html; charset=utf-8");
+  });
+  server.Get("/events", [this](const httplib::Request&, httplib::Response& response) { serve_events(response); });
+  server.Get(
+      R"(/picture/(colour|depth|3d)\.jpg)",
+      [this](const httplib::Request& request, httplib::Response& response) { serve_picture(request, response); });
+  server.Post("/orders",
+              [this](const httplib::Request& request, httplib::Response& response) { take_orders(request, response); });
+}
+
+void PageServer::State::serve_picture(const httplib::Request& request, httplib::Response& response) {
+  const std::string name = request.matches[1];
+  const PageView view = name == "colour" ? PageView::kColour : name == "depth" ? PageView::kDepth : PageView::k3d;
+  const Jpeg jpeg = board.picture(view, kPicturePatience);
+  if (!jpeg) return answer(response, 503, "no frame has come yet");
+  response.set_content(reinterpret_cast<const char*>(jpeg->data()), jpeg->size(), "image/jpeg");
+}
+
+void PageServer::State::serve_events(httplib::Response& response) {
+  if (!board.join()) return answer(response, 503, fmt::format("{} viewers look already", PageBoard::kMostViewers));
+  response.set_chunked_content_provider("text/event-stream", EventSender(board), [this](bool) { board.leave(); });
+}
+
+void PageServer::State::take_orders(const httplib::Request& request, httplib::Response& response) {
+  const bool may =
+      request.has_header(kTokenHeader) && (token.empty() || same_token(request.get_header_value(kTokenHeader), token));
+  if (!may)
+    return answer(response, 403, "the buttons need the token of the address that hs-view printed when it started");
+  try {
+    board.order(parse_orders(request.body));
+    response.status = 204;
+  } catch (const InputError& error) {
+    answer(response, 400, error.what());
+  }
+}
+
+PageServer::PageServer(const HttpAddress& address, PageBoard& board) : state_(std::make_unique<State>(address, board)) {
+  const std::string problem = listening_problem(address);
+  require(problem.empty(), "--http {}:{}: {}", address.host, address.port, problem);
+  state_->set_limits();
+  state_->add_pages();
+  if (address.port == 0) state_->address.port = state_->server.bind_to_any_port(address.host.c_str());
+  const bool bound =
+      address.port == 0 ? state_->address.port > 0 : state_->server.bind_to_port(address.host.c_str(), address.port);
+  require(bound, "--http {}:{}: cannot be listened at", address.host, address.port);
+  const BlockStopSignals block;
+  state_->thread = std::thread([state = state_.get()] {
+    constexpr int kPolite =
+        15;  // pages are late on a busy machine, results are not; on Linux of this thread and its own
+    if (nice(kPolite) == -1) log_warning("the priority of serving pages cannot be lowered");
+    state->server.listen_after_bind();
+  });
+  while (!state_->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+PageServer::~PageServer() {
+  state_->board.close();
+  state_->server.stop();
+  state_->thread.join();
+}
+
+int PageServer::port() const {
+  return state_->address.port;
+}
+
+const std::string& PageServer::token() const {
+  return state_->token;
+}
+
+std::string PageServer::url() const {
+  std::string host = state_->address.host;
+  if (host == "0.0.0.0" || host == "::") {
+    std::array<char, 256> name{};
+    host = gethostname(name.data(), name.size() - 1) == 0 ? name.data() : host;
+  }
+  if (host.find(':') != std::string::npos) host = fmt::format("[{}]", host);
+  const std::string page = fmt::format("http://{}:{}/", host, port());
+  return token().empty() ? page : page + "?token=" + token();
+}
+
+}  // namespace houghstream::view

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tools/view/http/http_address.hpp"
+#include "tools/view/http/page_board.hpp"
+
+namespace houghstream::view {
+
+/// Serves the page and what it asks for, in threads of its own and of low priority:
+///   GET /                 the page
+///   GET /events           Server-Sent Events: `frame` and `stream`, page_json.hpp
+///   GET /picture/VIEW.jpg VIEW: colour, depth, 3d; of the frame that is shown
+///   POST /orders          {"paused": bool, "min_score": 0..1, "next_camera": true}, each optional
+/// Orders need the header X-Houghstream-Token, which a page from elsewhere cannot send unasked; its value, which is not
+/// empty, counts where the address is not local. A local address answers to names of this machine only.
+class PageServer {
+ public:
+  /// Listens. `board` must outlive it. Throws InputError where that address cannot be listened at.
+  PageServer(const HttpAddress& address, PageBoard& board);
+  ~PageServer();
+  PageServer(const PageServer&) = delete;
+  PageServer& operator=(const PageServer&) = delete;
+
+  int port() const;
+  /// Empty where the address is local.
+  const std::string& token() const;
+  /// What a browser takes, with the token.
+  std::string url() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace houghstream::view
