@@ -49,9 +49,13 @@ def cpu_name():
 
 @functools.cache
 def commit_name():
-    """The commit that was checked out when this was first asked for, twelve digits; with "-dirty" where files differ from it."""
+    """The commit that was checked out when this was first asked for, twelve digits; with "-dirty" where files differ from it;
+    "unknown" of an installed Houghstream."""
     words = ["git", "-C", str(REPOSITORY), "describe", "--always", "--abbrev=12", "--dirty", "--exclude", "*"]
-    told = subprocess.run(words, capture_output=True, text=True, check=False)
+    try:
+        told = subprocess.run(words, capture_output=True, text=True, check=False)
+    except FileNotFoundError:  # no git
+        return "unknown"
     return told.stdout.strip() if told.returncode == 0 else "unknown"
 
 
