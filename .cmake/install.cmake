@@ -94,6 +94,7 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/houghstreamConfigVersion
 install(FILES "${PROJECT_BINARY_DIR}/houghstreamConfig.cmake" "${PROJECT_BINARY_DIR}/houghstreamConfigVersion.cmake"
               "${PROJECT_SOURCE_DIR}/.cmake/find_lcm.cmake"
         DESTINATION "${cmake_folder}" COMPONENT development)
+file(RELATIVE_PATH pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/") # wherever it is installed
 configure_file("${PROJECT_SOURCE_DIR}/.cmake/houghstream.pc.in" "${PROJECT_BINARY_DIR}/houghstream.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/houghstream.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/examples/" DESTINATION share/doc/libhoughstream-dev/examples

@@ -57,6 +57,13 @@ class Libraries(unittest.TestCase):
                 if found:
                     self.assertIn("houghstream::", found[2], f"{library.name} defines it")
 
+    def test_pkg_config_finds_them_where_they_are(self):
+        folder = next(HOME.glob("lib/**/pkgconfig"))
+        said = run("pkg-config", "--cflags", "--libs", "houghstream", env={**os.environ, "PKG_CONFIG_PATH": str(folder)})
+        places = [pathlib.Path(place.replace("\\ ", " ")) for place in re.findall(r"-[IL]((?:[^ \\]|\\.)+)", said)]
+        self.assertIn(HOME / "include/houghstream", [place.resolve() for place in places])
+        self.assertTrue(any((place / "libhoughstream_finder.a").is_file() for place in places), said)
+
 
 class Programs(unittest.TestCase):
     def test_they_run_from_where_they_are_and_have_manual_pages(self):
