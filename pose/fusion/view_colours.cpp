@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "pipeline/base/parallel.hpp"
 #include "pose/fusion/shade.hpp"
@@ -119,6 +120,18 @@ void Lighting::take_out_shade(const Mesh& mesh, int light) {
   shades_[static_cast<std::size_t>(light)] = fit_shade(colours, normals);
 }
 
+/// Brightness that one vertex in twenty exceeds.
+double bright_level(const std::vector<Sum>& sums) {
+  std::vector<double> levels;
+  for (const Sum& sum : sums) {
+    if (sum.weight > 0.0) levels.push_back(sum.colour.mean() / sum.weight);
+  }
+  if (levels.empty()) return 0.0;
+  const auto bright = levels.begin() + static_cast<std::ptrdiff_t>(19 * levels.size() / 20);
+  std::nth_element(levels.begin(), bright, levels.end());
+  return *bright;
+}
+
 /// From the seen to the unseen, ring by ring.
 void spread(const Mesh& mesh, std::vector<Sum>& sums) {
   for (bool grew = true; grew;) {
@@ -147,6 +160,7 @@ void spread(const Mesh& mesh, std::vector<Sum>& sums) {
 std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolerance_m, int threads, Mesh& mesh) {
   const Lighting lighting(views, tolerance_m, mesh);
   std::vector<Sum> sums(mesh.vertices.size());
+  std::vector<Sum> as_seen(mesh.vertices.size());
   parallel_for(threads, static_cast<int>(sums.size()), [&](int i) {
     const Eigen::Vector3d normal = mesh.normals[i].cast<double>();
     for (std::size_t k = 0; k < views.size(); ++k) {
@@ -156,8 +170,14 @@ std::vector<bool> colour_mesh(const std::vector<DepthView>& views, double tolera
       const double weight = std::pow(seen.facing, 8);
       sums[i].colour += weight * std::exp(-lighting(static_cast<int>(k), normal)) * linear_colour(seen.colour);
       sums[i].weight += weight;
+      as_seen[i].colour += weight * linear_colour(seen.colour);
+      as_seen[i].weight += weight;
     }
   });
+  // What is paint and what is light is known but for a factor: what is bright stays as bright as it was seen.
+  const double level = bright_level(sums);
+  const double factor = level > 0.0 ? bright_level(as_seen) / level : 1.0;
+  for (Sum& sum : sums) sum.colour *= factor;
   std::vector<bool> seen;
   seen.reserve(sums.size());
   for (const Sum& sum : sums) seen.push_back(sum.weight > 0.0);

@@ -124,6 +124,9 @@ TEST(ViewColours, StandingLightAndExposureAreTakenOut) {
     side.vertices.emplace_back(0.0419F * side.normals.back() + Eigen::Vector3f(0.0F, 0.0F, 0.04F));
   }
   EXPECT_LT(unevenness(views, side), 0.25);
+  Mesh coloured = side;
+  colour_mesh(views, 0.004, 1, coloured);
+  EXPECT_NEAR(linear_colour(coloured.colours[3])[0], 0.3, 0.05) << "as bright as where the lamp shone on it";
   for (DepthView& one : views) one.light = -1;
   EXPECT_GT(unevenness(views, side), 0.5) << "who knows where the light was: it stays";
 }
