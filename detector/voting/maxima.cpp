@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "detector/voting/weighted_median.hpp"
+#include "pipeline/base/weighted_median.hpp"
 
 namespace houghstream {
 namespace {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/base/weighted_median.hpp"
+
 namespace houghstream::fusion {
 namespace {
 
@@ -16,19 +18,6 @@ Harmonics harmonics(const Eigen::Vector3d& n) {
   y << n.x(), n.y(), n.z(), n.x() * n.y(), n.y() * n.z(), n.x() * n.z(), n.x() * n.x() - n.y() * n.y(),
       3.0 * n.z() * n.z() - 1.0;
   return y;
-}
-
-double weighted_median(std::vector<std::pair<double, double>>& values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  double all = 0.0;
-  for (const auto& [value, weight] : values) all += weight;
-  double below = 0.0;
-  for (const auto& [value, weight] : values) {
-    below += weight;
-    if (below >= 0.5 * all) return value;
-  }
-  return values.back().first;
 }
 
 /// A point of the surface as the fit needs it.
@@ -159,7 +148,7 @@ std::vector<double> exposures(const std::vector<ColourSample>& samples, int vert
 }
 
 double Shade::operator()(const Eigen::Vector3d& normal) const {
-  return weights_.dot(harmonics(normal)) - best_;
+  return weights_.dot(harmonics(normal));
 }
 
 Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals) {
@@ -177,11 +166,6 @@ Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<E
       weights[i] = points[i].weight * kExact / std::max(std::abs(rest[i]), kExact);
     }
   }
-  std::vector<double> light(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) light[i] = shade.weights_.dot(points[i].y);
-  const auto best = light.begin() + static_cast<std::ptrdiff_t>(4 * light.size() / 5);
-  std::nth_element(light.begin(), best, light.end());
-  shade.best_ = *best;
   return shade;
 }
 

@@ -28,13 +28,12 @@ std::vector<double> exposures(const std::vector<ColourSample>& samples, int vert
 /// to the second order (Ramamoorthi and Hanrahan 2001 show that these hold diffuse light).
 class Shade {
  public:
-  /// Log of the light on a surface of this normal, relative to the best lit fifth of the object.
+  /// Log of the light on a surface of this normal, but for a constant.
   double operator()(const Eigen::Vector3d& normal) const;
 
  private:
   friend Shade fit_shade(const std::vector<Eigen::Vector3d>& colours, const std::vector<Eigen::Vector3d>& normals);
   Eigen::Matrix<double, 8, 1> weights_ = Eigen::Matrix<double, 8, 1>::Zero();
-  double best_ = 0.0;
 };
 
 /// Parts light from paint. Neither is seen alone: what has the same hue and saturation on sides that face differently

@@ -39,12 +39,16 @@ double outline_overlap(const Mesh& mesh, const std::vector<TrainingView>& views)
   return *middle;
 }
 
-Video fuse(const std::string& name, std::vector<TrainingView> views, int threads) {
+fusion::FusedModel fused_model(const std::string& name, const std::vector<TrainingView>& views, int threads) {
   fusion::FusionSettings settings;
   settings.align = false;
   settings.threads = threads;
+  return fusion::fuse_views(name, views, settings);
+}
+
+Video fuse(const std::string& name, std::vector<TrainingView> views, int threads) {
   Video video{std::move(views), {}, 0.0};
-  video.model = fusion::fuse_views(name, video.views, settings);
+  video.model = fused_model(name, video.views, threads);
   video.overlap = outline_overlap(video.model.mesh, video.views);
   return video;
 }
@@ -193,7 +197,7 @@ Shown show_turntable(const ShowOptions& options) {
   shown.takes.push_back(take_of(views, shown.views.front()));
   shown.mesh = std::move(model.mesh);
   shown.seen = std::move(model.seen);
-  shown.agreement_m = fuse(options.name, views, options.threads).model.after.median_m;
+  shown.agreement_m = fused_model(options.name, views, options.threads).after.median_m;
   shown.outline_overlap = merging.overlap();
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return shown;

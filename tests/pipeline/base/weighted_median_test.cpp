@@ -1,4 +1,4 @@
-#include "detector/voting/weighted_median.hpp"
+#include "pipeline/base/weighted_median.hpp"
 
 #include <gtest/gtest.h>
 
