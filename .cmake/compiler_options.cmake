@@ -47,6 +47,9 @@ function(houghstream_compile_options target)
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     target_compile_definitions(${target} PRIVATE EIGEN_MALLOC_ALREADY_ALIGNED=1)
+  elseif(HOUGHSTREAM_SANITIZE STREQUAL thread)
+    target_compile_options(${target} PRIVATE -fsanitize=thread -fno-omit-frame-pointer -g)
+    target_link_options(${target} PUBLIC -fsanitize=thread)
   elseif(HOUGHSTREAM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer -g)
@@ -65,11 +68,11 @@ endfunction()
 # houghstream_share_headers(NAME [QUICKLY] HEADERS x ... LINK y ...): what nearly every source includes is
 # read once, into the target NAME, and not again by each: a third of the build time. g++ takes the optimisation options of
 # the precompiled headers for all that follows: they must be those of the targets that use them. Where
-# HOUGHSTREAM_SHARED_HEADERS is off, as for clang-tidy, or with sanitizers, a source that lives on headers which it does not
-# include itself is noticed.
+# HOUGHSTREAM_SHARED_HEADERS is off, as for clang-tidy, a source that lives on headers which it does not include itself is
+# noticed.
 function(houghstream_share_headers name)
   cmake_parse_arguments(ARG "QUICKLY" "" "HEADERS;LINK" ${ARGN})
-  if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_SANITIZE OR HOUGHSTREAM_FUZZ)
+  if(NOT HOUGHSTREAM_SHARED_HEADERS OR HOUGHSTREAM_FUZZ)
     return()
   endif()
   set(source "${PROJECT_BINARY_DIR}/${name}.cpp")
@@ -108,9 +111,18 @@ function(houghstream_executable name)
   houghstream_use_shared_headers(${name} library_headers)
 endfunction()
 
-# For the environment of tests: what libraries never free is not looked for.
-set(HOUGHSTREAM_KNOWN_LEAKS
-    "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/.cmake/leak_suppressions.txt:print_suppressions=0")
+if(NOT "${HOUGHSTREAM_SANITIZE}" MATCHES "^(|address|thread|OFF)$")
+  message(FATAL_ERROR "HOUGHSTREAM_SANITIZE is '${HOUGHSTREAM_SANITIZE}', expected address or thread")
+endif()
+
+# For the environment of tests: what libraries never free is not looked for, nor what threads of theirs do.
+if(HOUGHSTREAM_SANITIZE STREQUAL thread)
+  set(HOUGHSTREAM_SANITIZER_OPTIONS
+      "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/.cmake/thread_suppressions.txt:print_suppressions=0")
+else()
+  set(HOUGHSTREAM_SANITIZER_OPTIONS
+      "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/.cmake/leak_suppressions.txt:print_suppressions=0")
+endif()
 
 # houghstream_tests(NAME FOLDERS x ... LINK y ... [EXCEPT z_test ...]): one GoogleTest program in build/tests of all *_test.cpp
 # in the folders below this one, linked once. Each source is a CTest entry, whose suites run in a process of their own.
@@ -146,5 +158,5 @@ function(houghstream_test_entry program source)
   list(TRANSFORM suites REPLACE "(.+)" "\\1.*:*/\\1.*")
   list(JOIN suites ":" filter)
   add_test(NAME ${entry} COMMAND ${program} "--gtest_filter=${filter}")
-  set_tests_properties(${entry} PROPERTIES TIMEOUT 300 ENVIRONMENT "${HOUGHSTREAM_KNOWN_LEAKS}")
+  set_tests_properties(${entry} PROPERTIES TIMEOUT 300 ENVIRONMENT "${HOUGHSTREAM_SANITIZER_OPTIONS}")
 endfunction()

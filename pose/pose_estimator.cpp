@@ -72,10 +72,11 @@ void look_at_region(const RgbdFrame& frame, const PoseSettings& settings, Estima
   if (it.seen->region.points < settings.region.min_points) it.pose.status = PoseStatus::kTooFewPoints;
 }
 
-void find_candidates(std::int64_t utime, const ObjectPoses& earlier, const PoseSettings& settings, Estimation& it) {
+void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, Estimation& it) {
   it.rotations = rotation_clusters(it.detection.rotations, settings.initial);
   it.candidates = place_candidates(*it.seen, it.rotations, settings.search);
-  const std::vector<PoseCandidate> warm = earlier_candidates(utime, it.detection, earlier, settings.warm_start);
+  const std::vector<PoseCandidate> warm =
+      earlier_candidates(*it.seen, it.detection.class_name, earlier, settings.warm_start);
   it.candidates.insert(it.candidates.end(), warm.begin(), warm.end());
   if (it.candidates.empty()) it.pose.status = PoseStatus::kNoInitialPose;
 }
@@ -134,7 +135,7 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
 
   for_each_undecided([&](Estimation& it) { look_at_region(frame, settings, it); });
   clock.mark("pose.region");
-  for_each_undecided([&](Estimation& it) { find_candidates(frame.id.utime, earlier, settings, it); });
+  for_each_undecided([&](Estimation& it) { find_candidates(earlier, settings, it); });
   clock.mark("pose.candidates");
   for_each_undecided(
       [&](Estimation& it) { it.registered = register_candidates(*it.seen, it.candidates, settings.registration); });
@@ -166,6 +167,12 @@ std::vector<FollowedPose> PoseEstimator::follow(const RgbdFrame& frame,
     }
   });
   return followed;
+}
+
+Eigen::Vector3d PoseEstimator::vote_centre(const PlacedObject& object) const {
+  const auto model = state_->models.find(object.class_name);
+  if (model == state_->models.end()) return object.T_camera_object.translation();
+  return object.T_camera_object * model->second.vote_centre.cast<double>();
 }
 
 bool PoseEstimator::are_one(const PlacedObject& a, const PlacedObject& b, double apart) const {

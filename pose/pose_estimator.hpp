@@ -48,6 +48,10 @@ class PoseEstimator {
   /// (follow_object). Of a class without a model: kNoModel. Throws InputError for a frame that is none.
   std::vector<FollowedPose> follow(const RgbdFrame& frame, const std::vector<ExpectedObject>& expected) const;
 
+  /// Where a detection of the object would have its centre, camera frame, metres; its origin where the class has no
+  /// model.
+  Eigen::Vector3d vote_centre(const PlacedObject& object) const;
+
   /// Whether the middles of two objects are closer together than `apart` of the smaller one's radius: both cannot be
   /// there. False where a class has no model.
   bool are_one(const PlacedObject& a, const PlacedObject& b, double apart) const;

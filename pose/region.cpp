@@ -27,8 +27,9 @@ DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, cons
                         const RegionSettings& settings) {
   DepthRegion region;
   region.box_px = enlarged(detection.box_px, settings.enlarge, frame.depth.size());
-  // The model's farthest point from the origin of its frame, which is what the detection locates.
-  const float reach = model.centre.norm() + model.radius + static_cast<float>(settings.gate_margin_m);
+  // The model's farthest point from where the detection is.
+  const float reach =
+      (model.centre - model.vote_centre).norm() + model.radius + static_cast<float>(settings.gate_margin_m);
   region.nearest = std::max(0.0F, detection.centre_camera.z() - reach);
   region.farthest = detection.centre_camera.z() + reach;
   for (int y = region.box_px.y; y < region.box_px.br().y; ++y) {
@@ -62,6 +63,10 @@ SeenObject see_object(const RgbdFrame& frame, const Detection& detection, const 
   SeenObject seen{frame, model, detection.centre_camera, noise, find_region(frame, detection, model, settings), {}};
   if (seen.region.points >= settings.min_points) seen.colours = lab_region(frame, seen.region.box_px);
   return seen;
+}
+
+double distance_from_detected(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object) {
+  return (T_camera_object * seen.model.vote_centre.cast<double>() - seen.centre_camera.cast<double>()).norm();
 }
 
 }  // namespace houghstream

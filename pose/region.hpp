@@ -58,12 +58,15 @@ LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px);
 struct SeenObject {
   const RgbdFrame& frame;
   const ObjectModel& model;
-  Eigen::Vector3f centre_camera;  ///< detected origin of the object frame, metres, z > 0
+  Eigen::Vector3f centre_camera;  ///< where ObjectModel::vote_centre was detected, metres, z > 0
   DepthNoise noise;               ///< of the frame's depth
   DepthRegion region;
   LabRegion colours;  ///< of the region's box; empty where the region has too few points
 };
 SeenObject see_object(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
                       const RegionSettings& settings, const DepthNoise& noise);
+
+/// Metres from where the object was detected to where it is at this pose.
+double distance_from_detected(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object);
 
 }  // namespace houghstream

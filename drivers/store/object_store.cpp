@@ -28,6 +28,22 @@ bool truth(const nlohmann::json& entry, const char* key, const std::string& wher
   return found->get<bool>();
 }
 
+/// That of a store that does not say it is the origin.
+Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& where) {
+  constexpr float kFarthest = 10.0F;  // a mesh is smaller
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+  const auto found = entry.find("vote_centre_m");
+  if (found == entry.end()) return centre;
+  bool good = found->is_array() && found->size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    good = (*found)[i].is_number();
+    if (good) centre[static_cast<Eigen::Index>(i)] = (*found)[i].get<float>();
+  }
+  require(good && centre.allFinite() && centre.norm() < kFarthest,
+          "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where, found->dump());
+  return centre;
+}
+
 StoredObject parse_object(const nlohmann::json& entry, const std::string& file) {
   require(entry.is_object(), "{}: an object is {}, expected its id, name and more", file, entry.dump());
   StoredObject object;
@@ -39,6 +55,7 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   object.coloured = truth(entry, "coloured", where);
   object.views = json_integer(entry, "views", where);
   object.attitudes = text(entry, "attitudes", where);
+  object.vote_centre = vote_centre(entry, where);
   if (entry.contains("quality")) object.quality = entry.at("quality");
   require(object.quality.is_null() || object.quality.is_object(), "{}: 'quality' is {}, expected numbers by name",
           where, object.quality.dump());
@@ -113,6 +130,12 @@ std::map<std::string, nlohmann::json> ObjectStore::quality() const {
   return by_name;
 }
 
+std::map<std::string, Eigen::Vector3f> ObjectStore::vote_centres() const {
+  std::map<std::string, Eigen::Vector3f> by_name;
+  for (const StoredObject& object : objects) by_name[object.name] = object.vote_centre;
+  return by_name;
+}
+
 ObjectStore read_store(const fs::path& folder) {
   require(fs::is_directory(folder), "{}: no such folder, expected an object store of hs-teach", folder.string());
   const fs::path file = folder / kJsonFile;
@@ -181,6 +204,7 @@ void write_store_json(const ObjectStore& store) {
     entry["coloured"] = object.coloured;
     entry["views"] = object.views;
     entry["attitudes"] = object.attitudes;
+    entry["vote_centre_m"] = {object.vote_centre.x(), object.vote_centre.y(), object.vote_centre.z()};
     if (!object.quality.is_null()) entry["quality"] = object.quality;
     json["objects"].push_back(entry);
   }

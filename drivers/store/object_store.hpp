@@ -19,12 +19,14 @@ constexpr int kStoreVersion = 1;
 
 /// A taught object, as store.json says it.
 struct StoredObject {
-  int id = 0;                ///< from 1, that of its model and of its class in the forest
-  std::string name;          ///< no two are the same
-  std::string mesh;          ///< file that it was taught from, for people
-  bool coloured = true;      ///< false: only its shape is known
-  int views = 0;             ///< that it was taught by
-  std::string attitudes;     ///< in which it was shown: "resting", "upright" or "any"
+  int id = 0;             ///< from 1, that of its model and of its class in the forest
+  std::string name;       ///< no two are the same
+  std::string mesh;       ///< file that it was taught from, for people
+  bool coloured = true;   ///< false: only its shape is known
+  int views = 0;          ///< that it was taught by
+  std::string attitudes;  ///< in which it was shown: "resting", "upright" or "any"
+  /// The point of its own frame for which it was taught to vote, metres: where detections' centres are.
+  Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
   nlohmann::json quality{};  ///< what was learnt of its poses' quality, an object; null where nothing was
 };
 
@@ -38,7 +40,8 @@ struct ObjectStore {
   std::filesystem::path models_folder() const;       ///< a BOP models folder
   std::filesystem::path view_picture(int id) const;  ///< some of its views, side by side
   std::filesystem::path contact_sheet() const;       ///< the pictures of all objects
-  std::map<std::string, nlohmann::json> quality() const;  ///< by name, of those that have any
+  std::map<std::string, nlohmann::json> quality() const;        ///< by name, of those that have any
+  std::map<std::string, Eigen::Vector3f> vote_centres() const;  ///< by name
 };
 
 /// Reads store.json and models_info.json, no mesh and no forest. Throws InputError with one line that names file, value

@@ -50,7 +50,7 @@ class Rasteriser {
   Snapped snap(const Eigen::Vector3d& point) const;
   void draw_triangle(const RenderItem& item, std::size_t index);
   void draw_clipped(const std::array<ClipVertex, 3>& corners, const Surface& surface);
-  bool covers_a_pixel(const std::array<ClipVertex, 3>& corners) const;
+  bool covers_a_pixel(const Snapped& a, const Snapped& b, const Snapped& c) const;
   void fill(const std::array<Snapped, 3>& corners, const Surface& surface);
   void fill_span(int y, int first, int last, const Surface& surface);
   Eigen::Vector3d ray(int x, int y) const { return camera_.backproject(x + region_.x, y + region_.y, 1.0); }
@@ -80,6 +80,7 @@ void Rasteriser::draw(const RenderItem& item) {
   require(item.mesh != nullptr, "render item without a mesh");
   const Mesh& mesh = *item.mesh;
   vertices_.resize(mesh.vertices.size());
+  if (!owner_.empty()) surfaces_.reserve(surfaces_.size() + mesh.triangles.size());
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     vertices_[i].position = item.T_camera_object * mesh.vertices[i].cast<double>();
     if (vertices_[i].position.z() >= kNear) vertices_[i].snapped = snap(vertices_[i].position);
@@ -87,9 +88,9 @@ void Rasteriser::draw(const RenderItem& item) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) draw_triangle(item, i);
 }
 
-bool Rasteriser::covers_a_pixel(const std::array<ClipVertex, 3>& corners) const {
-  const auto [x_low, x_high] = std::minmax({corners[0].snapped.x, corners[1].snapped.x, corners[2].snapped.x});
-  const auto [y_low, y_high] = std::minmax({corners[0].snapped.y, corners[1].snapped.y, corners[2].snapped.y});
+bool Rasteriser::covers_a_pixel(const Snapped& a, const Snapped& b, const Snapped& c) const {
+  const auto [x_low, x_high] = std::minmax({a.x, b.x, c.x});
+  const auto [y_low, y_high] = std::minmax({a.y, b.y, c.y});
   const auto holds_centre = [](std::int64_t low, std::int64_t high, int size) {
     const std::int64_t first = (low + kSubpixels - 1) >> kSubpixelBits;
     const std::int64_t last = high >> kSubpixelBits;
@@ -99,15 +100,17 @@ bool Rasteriser::covers_a_pixel(const std::array<ClipVertex, 3>& corners) const 
 }
 
 void Rasteriser::draw_triangle(const RenderItem& item, std::size_t index) {
-  const auto& [a, b, c] = item.mesh->triangles[index];
-  const std::array<ClipVertex, 3> corners{vertices_[a], vertices_[b], vertices_[c]};
-  const bool all_in_front =
-      corners[0].position.z() >= kNear && corners[1].position.z() >= kNear && corners[2].position.z() >= kNear;
-  if (all_in_front && !covers_a_pixel(corners)) return;
+  const auto& triangle = item.mesh->triangles[index];
+  const ClipVertex& a = vertices_[triangle[0]];
+  const ClipVertex& b = vertices_[triangle[1]];
+  const ClipVertex& c = vertices_[triangle[2]];
+  const bool all_in_front = a.position.z() >= kNear && b.position.z() >= kNear && c.position.z() >= kNear;
+  // Of a dense mesh most triangles end here.
+  if (all_in_front && !covers_a_pixel(a.snapped, b.snapped, c.snapped)) return;
 
-  const Eigen::Vector3d& origin = corners[0].position;
-  const Eigen::Vector3d edge_1 = corners[1].position - origin;
-  const Eigen::Vector3d edge_2 = corners[2].position - origin;
+  const Eigen::Vector3d& origin = a.position;
+  const Eigen::Vector3d edge_1 = b.position - origin;
+  const Eigen::Vector3d edge_2 = c.position - origin;
   const Eigen::Vector3d normal = edge_1.cross(edge_2);
   const double distance = normal.dot(origin);
   if (!(std::abs(distance) > std::numeric_limits<double>::min())) return;  // seen exactly edge-on, or not finite
@@ -121,12 +124,12 @@ void Rasteriser::draw_triangle(const RenderItem& item, std::size_t index) {
     surfaces_.push_back(surface);
   }
   if (all_in_front) {
-    const auto [near, far] = std::minmax({corners[0].position.z(), corners[1].position.z(), corners[2].position.z()});
+    const auto [near, far] = std::minmax({a.position.z(), b.position.z(), c.position.z()});
     lowest_ = static_cast<float>(1.0 / far);
     highest_ = static_cast<float>(1.0 / near);
-    fill({corners[0].snapped, corners[1].snapped, corners[2].snapped}, surface);
+    fill({a.snapped, b.snapped, c.snapped}, surface);
   } else {
-    draw_clipped(corners, surface);
+    draw_clipped({a, b, c}, surface);
   }
 }
 
@@ -257,11 +260,15 @@ RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Cam
   return rasteriser.geometry();
 }
 
+cv::Mat render_depth(const std::vector<RenderItem>& items, const Camera& camera, const cv::Rect& region_px) {
+  Rasteriser rasteriser(camera, region_px, false);
+  for (const RenderItem& item : items) rasteriser.draw(item);
+  return rasteriser.depth();
+}
+
 cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
                      const cv::Rect& region_px) {
-  Rasteriser rasteriser(camera, region_px, false);
-  rasteriser.draw({&mesh, T_camera_object, 1});
-  return rasteriser.depth();
+  return render_depth({{&mesh, T_camera_object, 1}}, camera, region_px);
 }
 
 }  // namespace houghstream

@@ -23,7 +23,7 @@ struct Detection {
   std::string class_name;
   float score = 0.0F;                                       ///< probability that the object is there, 0 to 1
   cv::Rect2f box_px;                                        ///< visible box, pixels of the full-size frame
-  Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< origin of the object frame, metres; NaN where unknown
+  Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< the point that votes are for, metres; NaN where unknown
   float vote_weight = 0.0F;                                 ///< sum of the supporting votes' weights
   int vote_count = 0;                                       ///< supporting votes before the list was capped
   std::vector<RotationVote> rotations;                      ///< heaviest first, capped

@@ -35,7 +35,7 @@ SeenObject see_expected(const RgbdFrame& frame, const ObjectModel& model, const 
                         const PoseSettings& settings) {
   Detection expected;
   expected.box_px = expected_box(frame, model, T_camera_object);
-  expected.centre_camera = T_camera_object.translation().cast<float>();
+  expected.centre_camera = T_camera_object.cast<float>() * model.vote_centre;
   return see_object(frame, expected, model, settings.region, settings.noise);
 }
 

@@ -162,7 +162,7 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, Camera& camera, Sho
 
 ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFrame& frame,
                                    const Detections& detections) {
-  const Look look = begin_look(detections);
+  const Look look = begin_look(estimator, detections);
   Detections looked_for{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
     if (look.is_looked_for(i)) looked_for.detections.push_back(detections.detections[i]);
@@ -190,7 +190,7 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
 }
 
 /// What was followed in the frame of the detections, and which of them are of that. Notes what the look says of it.
-ObjectFollower::Look ObjectFollower::begin_look(const Detections& detections) {
+ObjectFollower::Look ObjectFollower::begin_look(const PoseEstimator& estimator, const Detections& detections) {
   Look look{{}, Matches(detections.detections.size(), -1), -1};
   const std::lock_guard<std::mutex> lock(mutex_);
   Camera& camera = cameras_[detections.frame.channel];
@@ -198,7 +198,7 @@ ObjectFollower::Look ObjectFollower::begin_look(const Detections& detections) {
                                  [&](const Shown& one) { return one.utime == detections.frame.utime; });
   if (then == camera.shown.rend()) return look;
   look.shown = *then;
-  look.matches = match(detections, look.shown);
+  look.matches = match(estimator, detections, look.shown);
   note_look(detections, look.matches, look.shown, camera);
   look.doubted = choose_doubted(look.matches, look.shown, camera);
   return look;
@@ -234,7 +234,8 @@ void ObjectFollower::settle_doubt(const ObjectPose& pose, const FollowedPose& fo
 }
 
 /// The nearest ones first, each pose of one detection; withheld ones are nobody's.
-ObjectFollower::Matches ObjectFollower::match(const Detections& detections, const Shown& shown) const {
+ObjectFollower::Matches ObjectFollower::match(const PoseEstimator& estimator, const Detections& detections,
+                                              const Shown& shown) const {
   struct Pair {
     double distance = 0.0;
     std::size_t detection = 0;
@@ -246,7 +247,8 @@ ObjectFollower::Matches ObjectFollower::match(const Detections& detections, cons
       const ObjectPose& pose = shown.poses[p].pose;
       const Detection& detection = detections.detections[d];
       if (!pose.T_camera_object || pose.class_name != detection.class_name) continue;
-      const double distance = (pose.T_camera_object->translation() - detection.centre_camera.cast<double>()).norm();
+      const Eigen::Vector3d centre = estimator.vote_centre({pose.class_name, *pose.T_camera_object});
+      const double distance = (centre - detection.centre_camera.cast<double>()).norm();
       if (distance <= settings_.reach_m) pairs.push_back({distance, d, p});  // false for NaN
     }
   }

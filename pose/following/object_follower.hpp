@@ -93,8 +93,8 @@ class ObjectFollower {
   void note_result(const FollowedPose& result, std::int64_t utime, Followed& object) const;
   bool is_lost(const Followed& object, const FollowedPose& result, std::int64_t utime) const;
   void give_up(const PoseEstimator& estimator, Camera& camera, Shown& shown) const;
-  Look begin_look(const Detections& detections);
-  Matches match(const Detections& detections, const Shown& shown) const;
+  Look begin_look(const PoseEstimator& estimator, const Detections& detections);
+  Matches match(const PoseEstimator& estimator, const Detections& detections, const Shown& shown) const;
   void note_look(const Detections& detections, const Matches& matches, const Shown& shown, Camera& camera) const;
   static Followed* find(std::int64_t number, Camera& camera);
   int choose_doubted(const Matches& matches, const Shown& shown, Camera& camera) const;

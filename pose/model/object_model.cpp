@@ -172,6 +172,8 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
   set_bounds(model);
   require(std::isfinite(model.radius) && model.radius > 0.001F && model.radius < 10.0F,
           "model {}: radius {} m, expected 0.001 to 10 m", name, model.radius);
+  if (const auto known = settings.vote_centres.find(name); known != settings.vote_centres.end())
+    model.vote_centre = known->second;
   model.middle = surface_median(model.mesh);
   model.axes = principal_axes(model.mesh);
   const SurfaceColour colour(model.mesh, 2.0 * model.radius / settings.pixels_per_diameter);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct ModelSettings {
   double view_distance_m = 1.2;  ///< from the model's centre
   int pixels_per_diameter = 72;  ///< of the pictures from which visible points are drawn
   double least_facing = 0.15;    ///< cosine between normal and line of sight below which a point is too grazing
+  std::map<std::string, Eigen::Vector3f> vote_centres;  ///< ObjectModel::vote_centre by name; of others the origin
 };
 
 /// Surface points visible from one direction, in random order so that any first n of them cover the view evenly
@@ -32,6 +34,8 @@ struct ModelView {
 struct ObjectModel {
   Mesh mesh;
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the bounding box, object frame
+  /// The point for which its detections' votes are, and where their centre is: object frame, metres.
+  Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();
   /// Median of the surface along each axis, object frame: a handle does not move it.
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  ///< columns: principal axes of the surface, object frame

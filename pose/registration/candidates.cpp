@@ -122,7 +122,8 @@ std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::v
   for (const RotationCandidate& rotation : rotations) {
     Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
     T_camera_object.linear() = rotation.R_camera_object.cast<double>().normalized().toRotationMatrix();
-    T_camera_object.translation() = seen.centre_camera.cast<double>();
+    T_camera_object.translation() =
+        (seen.centre_camera - rotation.R_camera_object.normalized() * seen.model.vote_centre).cast<double>();
     candidates.push_back(best_place(seen, T_camera_object, settings));
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -131,15 +132,14 @@ std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::v
   return candidates;
 }
 
-std::vector<PoseCandidate> earlier_candidates(std::int64_t utime, const Detection& detection,
+std::vector<PoseCandidate> earlier_candidates(const SeenObject& seen, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<PoseCandidate> candidates;
-  const double age_s = 1e-6 * static_cast<double>(utime - earlier.frame.utime);
+  const double age_s = 1e-6 * static_cast<double>(seen.frame.id.utime - earlier.frame.utime);
   if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return candidates;
   for (const ObjectPose& pose : earlier.poses) {
-    if (!pose.T_camera_object || pose.class_name != detection.class_name) continue;
-    const Eigen::Vector3d apart = pose.T_camera_object->translation() - detection.centre_camera.cast<double>();
-    if (apart.norm() > settings.reach_m) continue;
+    if (!pose.T_camera_object || pose.class_name != class_name) continue;
+    if (distance_from_detected(seen, *pose.T_camera_object) > settings.reach_m) continue;
     candidates.push_back({*pose.T_camera_object, 0.0F});
   }
   return candidates;

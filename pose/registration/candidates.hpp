@@ -64,8 +64,8 @@ std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::v
                                             const SearchSettings& settings);
 
 /// What an earlier frame's poses add: those of the class that lie near the detected centre, as they were then. None of
-/// a frame that is later than `utime` or too long before it.
-std::vector<PoseCandidate> earlier_candidates(std::int64_t utime, const Detection& detection,
+/// a frame that is later than this one or too long before it.
+std::vector<PoseCandidate> earlier_candidates(const SeenObject& seen, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings);
 
 }  // namespace houghstream

@@ -27,7 +27,7 @@ RegistrationResult register_finely(const SeenObject& seen, const RegistrationRes
 }
 
 bool ends_near(const SeenObject& seen, const RegistrationResult& result, const RegistrationSettings& settings) {
-  return (result.T_camera_object.translation() - seen.centre_camera.cast<double>()).norm() <= settings.max_shift_m;
+  return distance_from_detected(seen, result.T_camera_object) <= settings.max_shift_m;
 }
 
 std::vector<RegistrationResult> register_candidates(const SeenObject& seen,

@@ -21,8 +21,9 @@ namespace houghstream::tracks {
 struct TrackModel {
   Mesh mesh;
   Symmetries symmetries;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the bounding box, object frame, metres
-  double radius_m = 0.0;                             ///< of the sphere about it that holds the mesh
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();       ///< of the bounding box, object frame, metres
+  double radius_m = 0.0;                                  ///< of the sphere about it that holds the mesh
+  Eigen::Vector3d vote_centre = Eigen::Vector3d::Zero();  ///< where its detections' centres are, object frame, metres
 };
 using TrackModels = std::map<std::string, TrackModel>;
 

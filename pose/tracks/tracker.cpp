@@ -259,13 +259,13 @@ void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std
            (pose.measured.T_world_object.translation() - place).norm() <
                0.5 * std::min(radius_of(pose.class_name), radius_of(track.class_name));
   });
+  const Eigen::Vector3d here = T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
   const bool detected =
       seen.detections != nullptr &&
       std::any_of(seen.detections->detections.begin(), seen.detections->detections.end(),
                   [&](const Detection& detection) {
                     return detection.class_name == track.class_name &&
-                           (detection.centre_camera.cast<double>() - T_camera_object.translation()).norm() <
-                               settings.association.reach_m;
+                           (detection.centre_camera.cast<double>() - here).norm() < settings.association.reach_m;
                   });
   double rate = 0.0;
   std::string why;

@@ -40,4 +40,9 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
   return learnt;
 }
 
+void take_from_store(const store::ObjectStore& objects, PoseSettings& settings) {
+  settings.class_quality = stored_quality(objects, settings.quality);
+  settings.model.vote_centres = objects.vote_centres();
+}
+
 }  // namespace houghstream

@@ -5,7 +5,7 @@
 
 #include "drivers/files/json_file.hpp"
 #include "drivers/store/object_store.hpp"
-#include "pose/verification/quality.hpp"
+#include "pose/pose_settings.hpp"
 
 namespace houghstream {
 
@@ -19,5 +19,8 @@ nlohmann::json quality_to_json(const QualitySettings& settings);
 /// What the store has learnt of its objects' qualities, by name; `least` of each is that of `others`. Throws InputError
 /// naming the store for a missing or unknown number.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
+
+/// What hs-pose needs to know of a store beside its meshes: qualities, and where detections' centres are.
+void take_from_store(const store::ObjectStore& objects, PoseSettings& settings);
 
 }  // namespace houghstream

@@ -29,7 +29,7 @@ struct EvaluateOptions {
   std::string channel = ".*";
   std::string objects;
   std::optional<float> operating_score;
-  std::map<std::string, QualitySettings> class_quality;  // the store's
+  PoseSettings pose;  // what the store knows
   std::string forest;
   std::string models;
   std::string latency;
@@ -181,7 +181,7 @@ void search_in_process(const EvaluateOptions& options, Forest forest, const std:
   PublishingRules rules;
   rules.score = options.rules.operating_score;
   rules.quality = options.min_quality;
-  rules.class_quality = options.class_quality;
+  rules.pose = options.pose;
   const DetectionSettings settings = options.search.settings_for(forest);
   InProcess process(std::move(forest), settings, options.search.engine(), meshes, rules);
   for (OpenScene& it : scenes) process.run(it.scene, it.frames);
@@ -292,7 +292,7 @@ static EvaluateOptions with_store(EvaluateOptions options) {
   const store::ObjectStore objects = store::read_store(options.objects);
   options.forest = objects.forest_file().string();
   options.models = objects.models_folder().string();
-  options.class_quality = stored_quality(objects, QualitySettings{});
+  take_from_store(objects, options.pose);
   return options;
 }
 

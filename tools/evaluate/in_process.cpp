@@ -12,11 +12,10 @@ namespace {
 
 PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, const PublishingRules& rules, float quality,
                              int threads) {
-  PoseSettings settings;
+  PoseSettings settings = rules.pose;
   settings.threads = threads;
   settings.min_score = rules.pose_score;
   settings.quality.least = quality;
-  settings.class_quality = rules.class_quality;
   for (auto& [name, learnt] : settings.class_quality) learnt.least = quality;
   return {models, settings};
 }

@@ -15,10 +15,10 @@ namespace houghstream {
 
 /// What would be published of what is found.
 struct PublishingRules {
-  float score = 0.0F;                                         ///< least of a detection
-  float quality = QualitySettings{}.least;                    ///< least of a pose
-  float pose_score = PoseSettings{}.min_score;                ///< least of a detection whose pose is looked for
-  std::map<std::string, QualitySettings> class_quality = {};  ///< see PoseSettings; `least` is that above
+  float score = 0.0F;                           ///< least of a detection
+  float quality = QualitySettings{}.least;      ///< least of a pose
+  float pose_score = PoseSettings{}.min_score;  ///< least of a detection whose pose is looked for
+  PoseSettings pose = {};  ///< what a store knows, see take_from_store; score and quality are those above
 };
 
 /// Detects, and estimates poses where there are models, without LCM.

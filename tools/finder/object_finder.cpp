@@ -27,7 +27,7 @@ PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOption
   PoseSettings settings;
   settings.threads = options.threads;
   settings.quality.least = options.min_quality.value_or(kStoreQuality);
-  settings.class_quality = stored_quality(store, settings.quality);
+  take_from_store(store, settings);
   return PoseEstimator(store::load_store_meshes(store), settings);
 }
 

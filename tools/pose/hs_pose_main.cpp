@@ -87,7 +87,7 @@ void run_with_store(PoseOptions options) {
   options.settings.quality.least = options.min_quality.value_or(kStoreQuality);
   const auto load = [&](const store::ObjectStore& store) {
     PoseSettings settings = options.settings;
-    settings.class_quality = stored_quality(store, settings.quality);
+    take_from_store(store, settings);
     return warmed_up(store::load_store_meshes(store), settings);
   };
   store::StoreWatch<PoseEstimator> watch(options.objects, load);

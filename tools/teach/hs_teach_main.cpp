@@ -143,6 +143,7 @@ int main(int argc, char** argv) {
   rename.add_option("new-name", new_name, "that it gets").required();
   CommandLine practise = app.add_subcommand("practise", "learns anew what detections and poses of a store are worth");
   practise.add_option("store", folder, "object store").required();
+  practise.add_option("--names", lists.names, "MUG,DRILL: these only; default: all");
   add_practice_options(practise, options);
   const int failed = run_tool(app, argc, argv, [&] {
     options.meshes.names = split(lists.names);
@@ -156,7 +157,7 @@ int main(int argc, char** argv) {
     } else if (practise.given()) {
       options.practice.seed = options.seed;
       options.practice.threads = options.threads;
-      practise_store(folder, options.practice);
+      practise_store(folder, options.practice, split(lists.names));
     } else if (list.given()) {
       list_store(folder);
     } else if (rename.given()) {

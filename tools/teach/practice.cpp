@@ -58,7 +58,7 @@ training::ValidationSource validation_source(const std::vector<world::SceneFrame
 }
 
 quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, const Forest& forest,
-                               const std::map<std::string, Mesh>& models, int threads) {
+                               const quality::PosedModels& models, int threads) {
   std::map<int, std::string> names;
   for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
   DetectionSettings detection = detection_settings(forest);
@@ -92,10 +92,11 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   profile.training.threads = settings.threads;
   training::train_score_model(validation_source(frames), new_ids, 0, profile, forest);
 
-  std::map<std::string, Mesh> models;
+  quality::PosedModels models;
   std::map<std::string, PoseModel> judged_by;
   for (const PractisedObject& object : objects) {
-    models[object.name] = object.mesh;
+    models.meshes[object.name] = object.mesh;
+    models.vote_centres[object.name] = object.vote_centre;
     judged_by[object.name] = make_pose_model(object.mesh, false);
   }
   const quality::FoundPoses found = find_poses(frames, forest, models, settings.threads);

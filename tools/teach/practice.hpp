@@ -16,8 +16,9 @@ namespace houghstream::teach {
 /// A taught object as practice needs it.
 struct PractisedObject {
   std::string name;
-  Mesh mesh;                      ///< as poses are compared with it, metres
-  world::PracticeObject in_room;  ///< its id is the class's
+  Mesh mesh;                                              ///< as poses are compared with it, metres
+  Eigen::Vector3f vote_centre = Eigen::Vector3f::Zero();  ///< see store::StoredObject
+  world::PracticeObject in_room;                          ///< its id is the class's
 };
 
 struct PracticeSettings {

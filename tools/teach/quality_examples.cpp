@@ -8,9 +8,10 @@
 namespace houghstream::quality {
 namespace {
 
-PoseSettings withholding_none(int threads) {
+PoseSettings withholding_none(const PosedModels& models, int threads) {
   PoseSettings settings;
   settings.threads = threads;
+  settings.model.vote_centres = models.vote_centres;
   settings.quality.least = 0.0F;
   return settings;
 }
@@ -38,9 +39,9 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
   return examples;
 }
 
-PoseFinder::PoseFinder(const std::map<std::string, Mesh>& models, int threads)
-    : settings_(withholding_none(threads)), estimator_(models, settings_) {
-  for (const auto& [name, mesh] : models) models_.emplace(name, make_object_model(name, mesh, settings_.model));
+PoseFinder::PoseFinder(const PosedModels& models, int threads)
+    : settings_(withholding_none(models, threads)), estimator_(models.meshes, settings_) {
+  for (const auto& [name, mesh] : models.meshes) models_.emplace(name, make_object_model(name, mesh, settings_.model));
 }
 
 FoundPoses PoseFinder::find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const {

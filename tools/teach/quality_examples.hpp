@@ -31,11 +31,17 @@ struct FoundPoses {
 /// objects whose truth has no pose, are left out.
 std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std::string, PoseModel>& models);
 
+/// Models by class name, metres, and for which point of each its detections' votes are (ObjectModel::vote_centre).
+struct PosedModels {
+  std::map<std::string, Mesh> meshes;
+  std::map<std::string, Eigen::Vector3f> vote_centres;
+};
+
 /// Finds poses and withholds none, and says what each would be judged by.
 class PoseFinder {
  public:
-  /// Models by class name, metres. `threads` as PoseSettings::threads.
-  PoseFinder(const std::map<std::string, Mesh>& models, int threads);
+  /// `threads` as PoseSettings::threads.
+  PoseFinder(const PosedModels& models, int threads);
 
   /// Detects in frames 0, N, 2N, ... of a scene and finds the detections' poses.
   FoundPoses find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const;

@@ -94,6 +94,17 @@ int views_of_each(std::size_t objects) {
   return std::clamp(kAll / static_cast<int>(objects), kFewest, kMost);
 }
 
+/// The middle of an object's box: where the origin of a mesh lies, at a corner or a metre beside it, makes no
+/// difference.
+Eigen::Vector3f vote_centre_of(const Mesh& mesh) {
+  return mesh_bounds(mesh).center();
+}
+
+/// Votes are for the origin of the frame in which a view has its pose.
+void vote_for(const Eigen::Vector3f& centre, std::vector<TrainingView>& views) {
+  for (TrainingView& view : views) view.T_camera_object.translate(centre.cast<double>());
+}
+
 /// Training views of a mesh; those that show no depth of it are left out.
 std::vector<TrainingView> render_views(const TaughtMesh& taught, const TeachOptions& options, int most) {
   world::MeshViewSettings settings = options.views;
@@ -159,6 +170,8 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
     progress(title_of(object));
     write_png(view_picture(views, title_of(object)), made.view_picture(object.id));
     if (!options.dump_views.empty()) dump_views(views, options.dump_views / fmt::format("{:06d}", object.id));
+    object.vote_centre = vote_centre_of(taught.mesh);
+    vote_for(object.vote_centre, views);
     made.objects.push_back(object);
     std::move(views.begin(), views.end(), std::back_inserter(all));
   }
@@ -177,6 +190,7 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
     PractisedObject& object = objects[static_cast<std::size_t>(i)];
     object.name = model.name;
     object.mesh = model.mesh;
+    object.vote_centre = stored.vote_centre;
     object.in_room = {model.object_id, world::make_taught_thing(model.mesh, stored.coloured),
                       world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured};
   });
@@ -252,6 +266,21 @@ void keep(const Contents& old, const std::string& except, ObjectStore& made, std
     fs::copy_file(old.list.view_picture(object.id), made.view_picture(object.id), error);
     require(!error, "{}: cannot be copied: {}", old.list.view_picture(object.id).string(), error.message());
   }
+}
+
+/// Of all where no names are given.
+std::set<int> ids_of(const std::vector<NamedModel>& models, const std::vector<std::string>& names,
+                     const fs::path& folder) {
+  std::set<int> ids;
+  for (const std::string& name : names) {
+    const bool is_known =
+        std::any_of(models.begin(), models.end(), [&](const NamedModel& model) { return model.name == name; });
+    require(is_known, "{}: no object '{}', expected one that it knows", folder.string(), name);
+  }
+  for (const NamedModel& model : models) {
+    if (names.empty() || std::find(names.begin(), names.end(), model.name) != names.end()) ids.insert(model.object_id);
+  }
+  return ids;
 }
 
 ObjectStore start_store(const fs::path& folder) {
@@ -331,7 +360,7 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   build.publish();
 }
 
-void practise_store(const fs::path& folder, const PracticeSettings& settings) {
+void practise_store(const fs::path& folder, const PracticeSettings& settings, const std::vector<std::string>& names) {
   const Progress progress;
   store::read_store(folder);  // nothing is made beside what is no store
   store::StoreBuild build(folder);
@@ -340,8 +369,7 @@ void practise_store(const fs::path& folder, const PracticeSettings& settings) {
   made.settings = old.list.settings;
   std::vector<NamedModel> models;
   keep(old, "", made, models);
-  std::set<int> ids;
-  for (const NamedModel& model : models) ids.insert(model.object_id);
+  const std::set<int> ids = ids_of(models, names, folder);
   Forest forest = *old.forest;
   practise_all(models, ids, settings, forest, made);
   write_store(made, models, forest);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "detector/profiles.hpp"
 #include "tools/render/world/mesh_views.hpp"
@@ -36,8 +37,10 @@ void teach_meshes(const TeachOptions& options);
 /// Prints what the store knows, an object a line.
 void list_store(const std::filesystem::path& folder);
 
-/// Learns scores and qualities of a store's objects anew.
-void practise_store(const std::filesystem::path& folder, const PracticeSettings& settings);
+/// Learns scores and qualities of a store's objects anew: of all, or of those of the `names`. Throws InputError for a
+/// name that is not there.
+void practise_store(const std::filesystem::path& folder, const PracticeSettings& settings,
+                    const std::vector<std::string>& names = {});
 
 /// Takes an object out of the store. Throws InputError where it is not there, or the only one.
 void remove_from_store(const std::filesystem::path& folder, const std::string& name);

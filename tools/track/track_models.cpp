@@ -16,7 +16,9 @@ tracks::TrackModels load_track_models(const std::string& folder, double unit_m) 
 tracks::TrackModels stored_track_models(const store::ObjectStore& store) {
   std::map<std::string, Symmetries> symmetries;
   for (const store::StoredObject& object : store.objects) symmetries[object.name] = store.symmetries.at(object.id);
-  return tracks::make_track_models(store::load_store_meshes(store), symmetries);
+  tracks::TrackModels models = tracks::make_track_models(store::load_store_meshes(store), symmetries);
+  for (const auto& [name, centre] : store.vote_centres()) models.at(name).vote_centre = centre.cast<double>();
+  return models;
 }
 
 }  // namespace houghstream::track

@@ -38,6 +38,8 @@ TEST(ObjectStore, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(store.quality().size(), 1U);
   EXPECT_EQ(store.quality().at("brick").at("least"), 0.5);
   EXPECT_EQ(store.settings.at("seed"), 1);
+  EXPECT_EQ(store.vote_centres().at("brick"), Eigen::Vector3f(0.0F, 0.01F, -0.5F));
+  EXPECT_EQ(store.vote_centres().at("mug"), Eigen::Vector3f::Zero());
   EXPECT_EQ(store.symmetries.at(2).discrete.size(), 1U);
   const std::map<std::string, Mesh> meshes = load_store_meshes(store);
   EXPECT_NEAR(mesh_bounds(meshes.at("brick")).sizes().x(), 0.2F, 1e-6F);
@@ -61,6 +63,17 @@ TEST(ObjectStore, AnotherVersionIsRefused) {
   const fs::path folder = whole_store("store_version");
   replace_in_file(folder / "store.json", "\"houghstream_store\": 1", "\"houghstream_store\": 7");
   expect_says(error_of_reading(folder), {"store.json", "version 7", "expected 1"});
+}
+
+TEST(ObjectStore, AVoteCentreIsThreeNumbersOrTheOrigin) {
+  const fs::path folder = whole_store("store_centre");
+  ObjectStore store = read_store(folder);
+  store.objects[1].vote_centre = {0.0F, 60.0F, 0.0F};
+  write_store_json(store);
+  expect_says(error_of_reading(folder),
+              {"store.json object 5", "'vote_centre_m' is [0.0,60.0,0.0]", "expected x, y, z"});
+  replace_in_file(folder / "store.json", "60.0", "\"high\"");
+  expect_says(error_of_reading(folder), {"'vote_centre_m'", "expected x, y, z"});
 }
 
 TEST(ObjectStore, PartsThatContradictOneAnotherAreRefused) {

@@ -21,8 +21,8 @@ inline Mesh tetrahedron(float side_m) {
 inline void fill_store(const std::filesystem::path& folder, const std::string& second_name) {
   ObjectStore store;
   store.folder = folder;
-  store.objects = {{2, "mug", "cad/mug.ply", true, 12, "resting", nullptr},
-                   {5, second_name, "cad/b.ply", false, 34, "any", {{"least", 0.5}}}};
+  store.objects = {{2, "mug", "cad/mug.ply", true, 12, "resting", {0.0F, 0.0F, 0.0F}, nullptr},
+                   {5, second_name, "cad/b.ply", false, 34, "any", {0.0F, 0.01F, -0.5F}, {{"least", 0.5}}}};
   store.settings = {{"seed", 1}};
   Symmetries half_turn;
   half_turn.discrete.emplace_back(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));

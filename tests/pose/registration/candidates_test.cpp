@@ -90,17 +90,20 @@ TEST(RotationClusters, VotesSupportWhatTheyAgreeOn) {
   EXPECT_EQ(vote_support({}, Eigen::Isometry3d::Identity(), {}), 0.0F);
 }
 
-TEST(Candidates, BestPlacedRotationComesFirst) {
+/// Of a box, from votes for this point of it.
+void expect_best_placed_first(const Eigen::Vector3f& vote_centre) {
   const Mesh object = cereal_box();
   const Mesh ground = table();
   const Eigen::Isometry3d truth = standing(60.0, 30.0, 0.9);
   const RgbdFrame frame =
       noisy_frame({{&object, truth, 1}, {&ground, truth * Eigen::Translation3d(0, 0, -0.13), 2}}, 1);
-  const ObjectModel model = make_object_model("box", object, ModelSettings());
+  ModelSettings of_model;
+  of_model.vote_centres["box"] = vote_centre;
+  const ObjectModel model = make_object_model("box", object, of_model);
   const auto rotation = [](double azimuth) {
     return Eigen::Quaternionf(standing(azimuth, 30.0, 1.0).linear().cast<float>());
   };
-  const Eigen::Vector3f centre = (truth.translation() + Eigen::Vector3d(0.01, -0.01, 0.02)).cast<float>();
+  const Eigen::Vector3f centre = truth.cast<float>() * vote_centre + Eigen::Vector3f(0.01F, -0.01F, 0.02F);
   const SeenObject seen{frame, model, centre, {}, {}, {}};
   const SearchSettings settings;
   const std::vector<PoseCandidate> found = place_candidates(
@@ -114,11 +117,21 @@ TEST(Candidates, BestPlacedRotationComesFirst) {
   EXPECT_LT(R_camera_object.angularDistance(Eigen::Quaterniond(truth.linear())), 0.01);
 }
 
+TEST(Candidates, BestPlacedRotationComesFirst) {
+  expect_best_placed_first(Eigen::Vector3f::Zero());
+}
+
+TEST(Candidates, VotesMayBeForAPointThatIsNotTheOrigin) {
+  expect_best_placed_first({0.3F, -0.2F, 0.1F});
+}
+
 TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
   const Eigen::Isometry3d truth = standing(60.0, 30.0, 0.9);
-  Detection detection;
-  detection.class_name = "box";
-  detection.centre_camera = truth.translation().cast<float>();
+  RgbdFrame frame;
+  frame.id.utime = 2000000;
+  ObjectModel model;
+  model.vote_centre = {0.5F, 0.0F, 0.0F};
+  const SeenObject seen{frame, model, truth.cast<float>() * model.vote_centre, {}, {}, {}};
   ObjectPose pose;
   pose.class_name = "box";
   pose.T_camera_object = truth;
@@ -126,7 +139,7 @@ TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
     ObjectPoses poses;
     poses.frame.utime = utime;
     poses.poses = {earlier};
-    return earlier_candidates(2000000, detection, poses, {}).size();
+    return earlier_candidates(seen, "box", poses, {}).size();
   };
   EXPECT_EQ(count(1900000, pose), 1U);
   EXPECT_EQ(count(1400000, pose), 0U);  // too long ago

@@ -23,8 +23,8 @@ QualitySettings learnt() {
 store::ObjectStore store_with(const nlohmann::json& quality) {
   store::ObjectStore objects;
   objects.folder = "/some/store";
-  objects.objects = {{1, "mug", "mug.ply", true, 12, "resting", quality},
-                     {2, "bowl", "bowl.ply", true, 12, "resting", nullptr}};
+  objects.objects = {{1, "mug", "mug.ply", true, 12, "resting", Eigen::Vector3f::Zero(), quality},
+                     {2, "bowl", "bowl.ply", true, 12, "resting", Eigen::Vector3f::Zero(), nullptr}};
   return objects;
 }
 

@@ -150,6 +150,39 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
             std::string::npos);
 }
 
+TEST(TeachJobs, PractisingOneLeavesTheOthers) {
+  const fs::path folder = folder_of_meshes("teach_practise_one");
+  TeachOptions options = quick_options(folder, "bracket.ply");
+  options.meshes.sources.push_back((folder / "grey.ply").string());
+  teach_meshes(options);
+  const store::ObjectStore before = store::read_store(options.out);
+  PracticeSettings other = options.practice;
+  other.seed = 7;
+  practise_store(options.out, other, {"grey"});
+  const store::ObjectStore after = store::read_store(options.out);
+  ASSERT_EQ(after.objects.size(), 2U);
+  EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
+  EXPECT_NE(after.objects[1].quality, before.objects[1].quality);
+  EXPECT_EQ(error_of([&] { practise_store(options.out, other, {"drill"}); }),
+            options.out.string() + ": no object 'drill', expected one that it knows");
+}
+
+TEST(TeachJobs, WhereTheOriginLiesMakesNoDifference) {
+  const fs::path folder = folder_of_meshes("teach_far_origin");
+  const Eigen::Vector3f away(0.8F, -0.3F, 0.5F);
+  Mesh far = crooked_part();
+  for (Eigen::Vector3f& vertex : far.vertices) vertex += away;
+  save_ply(far, folder / "far.ply");
+  TeachOptions options = quick_options(folder, "far.ply");
+  options.dump_views = folder / "views";
+  teach_meshes(options);
+  const Eigen::Vector3f middle = mesh_bounds(far).center();
+  EXPECT_LT((store::read_store(options.out).vote_centres().at("far") - middle).norm(), 1e-5F);
+  EXPECT_LT(load_forest(options.out / "forest").classes.at(0).radius, 0.1F) << "votes are for its middle";
+  for (const TrainingView& view : read_bop_training_views(options.dump_views))
+    EXPECT_LT((view.T_camera_object * middle.cast<double>()).head<2>().norm(), 0.1) << "in the mesh's own frame";
+}
+
 TEST(TeachJobs, ARefusedTeachingLosesNothing) {
   const fs::path folder = folder_of_meshes("teach_refused");
   TeachOptions options = quick_options(folder, "bracket.ply");

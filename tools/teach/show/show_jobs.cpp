@@ -199,6 +199,22 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
   return shown;
 }
 
+/// Into the store twice: with scores and qualities of a little practice, so that a stream that runs finds the object
+/// soon, and again when they were learnt as thoroughly as those of any other.
+void teach_shown(const ShowOptions& options, const Shown& shown, Telling& telling) {
+  constexpr int kFirstRooms = 12;
+  TeachOptions teach = teaching_of(options, shown);
+  PracticeSettings thorough = teach.practice;
+  thorough.seed = options.seed;
+  thorough.threads = options.threads;
+  teach.practice.rooms = kFirstRooms;
+  telling.step(ShowState::kTraining, 0.5, "the model is taught");
+  teach_meshes(teach);
+  telling.step(ShowState::kTraining, 0.8,
+               fmt::format("{} is known, and what its detections are worth is learnt in more rooms", options.name));
+  practise_store(options.out, thorough, {options.name});
+}
+
 /// Judges what was shown, writes what is to be kept, and teaches it. Returns the exit status.
 int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
   constexpr int kPoor = 3;
@@ -209,10 +225,7 @@ int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
     telling.step(ShowState::kFailed, 1.0, fmt::format("poor: {}", verdict.reasons.front()));
     return kPoor;
   }
-  if (options.teach) {
-    telling.step(ShowState::kTraining, 0.5, "the model is taught");
-    teach_meshes(teaching_of(options, shown));
-  }
+  if (options.teach) teach_shown(options, shown, telling);
   telling.step(ShowState::kDone, 1.0,
                options.teach ? fmt::format("{} is known", options.name) : fmt::format("{} has a model", options.name));
   return 0;

@@ -45,7 +45,7 @@ ShadowMap make_shadow_map(const World& world, const Light& light) {
   for (const Placed& placed : world.items) {
     if (placed.casts_shadow) items.push_back({&placed.thing->mesh, map.T_light_world * placed.T_world_object, 1});
   }
-  const cv::Mat depth = render_geometry(items, map.camera).depth;
+  const cv::Mat depth = render_depth(items, map.camera, {0, 0, size, size});
   for (int y = 0; y < depth.rows; ++y) {
     for (int x = 0; x < depth.cols; ++x) {
       const float z = depth.at<float>(y, x);
