@@ -23,13 +23,22 @@ struct Edge {
   Edge(const Snapped& a, const Snapped& b)
       : x_step(-(b.y - a.y) * kSubpixels),
         y_step((b.x - a.x) * kSubpixels),
-        origin((b.y - a.y) * a.x - (b.x - a.x) * a.y),
-        inverse_x_step(x_step == 0 ? 0.0 : 1.0 / static_cast<double>(x_step)) {
+        origin((b.y - a.y) * a.x - (b.x - a.x) * a.y) {
     const bool owns_its_pixels = x_step < 0 || (x_step == 0 && y_step > 0);
     if (!owns_its_pixels) --origin;
   }
 
-  /// Narrows first..last to the pixels of row y that lie inside.
+  /// Narrows first..last to the pixels of row y that lie inside, step by step: for a few pixels.
+  void clip_few(int y, int& first, int& last) const {
+    const std::int64_t row = origin + y_step * y;
+    while (first <= last && row + x_step * first < 0) ++first;
+    while (first <= last && row + x_step * last < 0) --last;
+  }
+
+  /// What clip() needs: a division, which is spared where clip_few() does.
+  void prepare() { inverse_x_step = x_step == 0 ? 0.0 : 1.0 / static_cast<double>(x_step); }
+
+  /// The same for many.
   void clip(int y, int& first, int& last) const {
     const std::int64_t row = origin + y_step * y;
     if (x_step == 0) {
@@ -63,7 +72,7 @@ struct Edge {
   std::int64_t x_step;
   std::int64_t y_step;
   std::int64_t origin;
-  double inverse_x_step;
+  double inverse_x_step = 0.0;
 };
 
 }  // namespace houghstream

@@ -40,7 +40,10 @@ class Rasteriser {
       : camera_(camera),
         region_(region),
         inverse_depth_(region.size(), CV_32FC1, cv::Scalar(0)),
-        owner_(with_owners ? region.size() : cv::Size(), CV_32SC1, cv::Scalar(-1)) {}
+        owner_(with_owners ? region.size() : cv::Size(), CV_32SC1, cv::Scalar(-1)) {
+    for (int x = 0; x < region.width; ++x) ray_x_.push_back(camera.backproject(x + region.x, 0.0, 1.0).x());
+    for (int y = 0; y < region.height; ++y) ray_y_.push_back(camera.backproject(0.0, y + region.y, 1.0).y());
+  }
 
   void draw(const RenderItem& item);
   cv::Mat depth() const;
@@ -53,7 +56,9 @@ class Rasteriser {
   bool covers_a_pixel(const Snapped& a, const Snapped& b, const Snapped& c) const;
   void fill(const std::array<Snapped, 3>& corners, const Surface& surface);
   void fill_span(int y, int first, int last, const Surface& surface);
-  Eigen::Vector3d ray(int x, int y) const { return camera_.backproject(x + region_.x, y + region_.y, 1.0); }
+  Eigen::Vector3d ray(int x, int y) const {
+    return {ray_x_[static_cast<std::size_t>(x)], ray_y_[static_cast<std::size_t>(y)], 1.0};
+  }
 
   Camera camera_;
   cv::Rect region_;
@@ -61,8 +66,11 @@ class Rasteriser {
   cv::Mat owner_;                  // CV_32SC1, index into surfaces_, -1 = nothing
   std::vector<Surface> surfaces_;  // only with owners
   std::vector<ClipVertex> vertices_;
+  std::vector<double> ray_x_;  // of the region's columns and rows
+  std::vector<double> ray_y_;
   float lowest_ = 0.0F;  // bounds of 1/z on the triangle being drawn
   float highest_ = 0.0F;
+  float step_ = 0.0F;  // of 1/z from column to column
 };
 
 Snapped Rasteriser::snap(const Eigen::Vector3d& point) const {
@@ -166,7 +174,7 @@ void Rasteriser::fill(const std::array<Snapped, 3>& corners, const Surface& surf
   const bool clockwise = (corners[1].x - a.x) * (corners[2].y - a.y) - (corners[1].y - a.y) * (corners[2].x - a.x) > 0;
   const Snapped& b = corners[clockwise ? 1 : 2];
   const Snapped& c = corners[clockwise ? 2 : 1];
-  const std::array<Edge, 3> edges{Edge(a, b), Edge(b, c), Edge(c, a)};
+  std::array<Edge, 3> edges{Edge(a, b), Edge(b, c), Edge(c, a)};
 
   const auto [x_low, x_high] = std::minmax({a.x, b.x, c.x});
   const auto [y_low, y_high] = std::minmax({a.y, b.y, c.y});
@@ -177,11 +185,18 @@ void Rasteriser::fill(const std::array<Snapped, 3>& corners, const Surface& surf
   const int y_first = first_pixel(y_low);
   const int x_last = static_cast<int>(std::min<std::int64_t>(region_.width - 1, x_high >> kSubpixelBits));
   const int y_last = static_cast<int>(std::min<std::int64_t>(region_.height - 1, y_high >> kSubpixelBits));
+  constexpr int kFew = 8;
+  const bool few = x_last - x_first < kFew;
+  if (!few) {
+    for (Edge& edge : edges) edge.prepare();
+  }
+  step_ = static_cast<float>(surface.inverse_depth.x() / camera_.fx);
   for (int y = y_first; y <= y_last; ++y) {
     int first = x_first;
     int last = x_last;
     for (const Edge& edge : edges) {
-      if (first <= last) edge.clip(y, first, last);
+      if (first > last) break;
+      few ? edge.clip_few(y, first, last) : edge.clip(y, first, last);
     }
     if (first <= last) fill_span(y, first, last, surface);
   }
@@ -189,7 +204,7 @@ void Rasteriser::fill(const std::array<Snapped, 3>& corners, const Surface& surf
 
 void Rasteriser::fill_span(int y, int first, int last, const Surface& surface) {
   const auto start = static_cast<float>(surface.inverse_depth.dot(ray(first, y)));
-  const auto step = static_cast<float>(surface.inverse_depth.x() / camera_.fx);
+  const float step = step_;
   const float lowest = lowest_;
   const float highest = highest_;
   const int count = last - first + 1;

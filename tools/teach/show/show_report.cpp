@@ -119,9 +119,9 @@ OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
     hz = std::min(hz, take.tracking_hz);
     for (const LostSpan& span : take.lost)
       lost.push_back({{"from", second_of(take, span.from)}, {"to", second_of(take, span.to)}, {"why", span.why}});
-    if (!take.gap || !drift_mm.is_null()) continue;
-    drift_mm = 1e3 * take.gap->shift_m;
-    drift_deg = kDegrees * take.gap->turn;
+    if (!take.gap) continue;  // of several takes the worst one tells
+    drift_mm = std::max(1e3 * take.gap->shift_m, drift_mm.is_null() ? 0.0 : drift_mm.get<double>());
+    drift_deg = std::max(kDegrees * take.gap->turn, drift_deg.is_null() ? 0.0 : drift_deg.get<double>());
   }
   json["name"] = shown.name;
   json["verdict"] = verdict.good ? "good" : "poor";
