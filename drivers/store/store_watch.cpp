@@ -11,6 +11,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/parallel.hpp"
 #include "pipeline/base/stop_signal.hpp"
 
 namespace houghstream::store {
@@ -111,6 +112,7 @@ KnownObjects StoreFollower::known() const {
 
 void StoreFollower::live(std::chrono::milliseconds period) {
   lower_priority();
+  const WorkAlone alone;
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, period, [this] { return ending_; })) {
     lock.unlock();

@@ -125,6 +125,11 @@ class IdleHelpers {
   std::vector<std::unique_ptr<Helper>> helpers_;
 };
 
+int& times_alone() {
+  thread_local int times = 0;
+  return times;
+}
+
 IdleHelpers& idle_helpers() {
   static IdleHelpers helpers;
   return helpers;
@@ -153,12 +158,20 @@ void work_with_helpers(Items& items, int helpers) {
 
 }  // namespace
 
+WorkAlone::WorkAlone() {
+  ++times_alone();
+}
+
+WorkAlone::~WorkAlone() {
+  --times_alone();
+}
+
 void parallel_for(int threads, int count, const ItemWork& work) {
   parallel_for_workers(threads, count, [&](int, int item) { work(item); });
 }
 
 void parallel_for_workers(int threads, int count, const WorkerItemWork& work) {
-  if (threads <= 1 || count <= 1) {
+  if (threads <= 1 || count <= 1 || times_alone() > 0) {
     for (int i = 0; i < count; ++i) work(0, i);
     return;
   }

@@ -34,6 +34,16 @@ void parallel_for(int threads, int count, const ItemWork& work);
 /// share memory. Workers are numbered from 0; there are at most max(threads, 1). Which items a worker gets is chance.
 void parallel_for_workers(int threads, int count, const WorkerItemWork& work);
 
+/// As long as one lives, the calls above work alone on the thread that made it, whatever `threads` says: for a thread
+/// of low priority, whose new threads would be of its priority and be kept for others' calls.
+class WorkAlone {
+ public:
+  WorkAlone();
+  ~WorkAlone();
+  WorkAlone(const WorkAlone&) = delete;
+  WorkAlone& operator=(const WorkAlone&) = delete;
+};
+
 /// Memory for each worker of parallel_for_workers, kept from call to call by whoever holds this. Each worker's lies in
 /// a place of its own, which does not move.
 template <typename T>

@@ -21,12 +21,23 @@ Detector make_detector(Forest forest, const SearchOptions& search) {
   return Detector(std::move(forest), settings);
 }
 
-std::shared_ptr<const Detector> load_detector(const store::ObjectStore& store, const SearchOptions& search) {
+/// A detector and the memory of its frames, which are looked at one after another. Its first frame takes no longer than
+/// others: what it reads for the first time, and the memory that it asks for, have been there before.
+struct ReadyDetector {
+  explicit ReadyDetector(Detector of_forest) : detector(std::move(of_forest)) {
+    detector.detect(frame_to_warm_up(), workspace);
+  }
+
+  Detector detector;
+  mutable DetectorWorkspace workspace;
+};
+
+std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const SearchOptions& search) {
   Forest forest = load_forest(store.forest_file());
   std::vector<std::string> names;
   for (const ObjectClass& object : forest.classes) names.push_back(object.name);
   store::require_same_objects(store, names);
-  return std::make_shared<const Detector>(make_detector(std::move(forest), search));
+  return std::make_shared<const ReadyDetector>(make_detector(std::move(forest), search));
 }
 
 /// What a command line asks for.
@@ -48,26 +59,23 @@ void give_way() {
 
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options) {
-  const Detector detector = make_detector(load_forest(options.forest_file), options.search);
-  DetectorWorkspace workspace;
-  detector.detect(frame_to_warm_up(), workspace);
+  const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search));
   LcmBus bus(options.url, options.output_log);
-  run_detect_process(bus, options.process, [&](const RgbdFrame& frame) { return detector.detect(frame, workspace); });
+  run_detect_process(bus, options.process,
+                     [&](const RgbdFrame& frame) { return ready.detector.detect(frame, ready.workspace); });
 }
 
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options) {
   if (!options.search.threshold) options.search.threshold = kStoreThreshold;
-  store::StoreWatch<Detector> watch(
+  store::StoreWatch<ReadyDetector> watch(
       options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options.search); });
   options.process.objects = [&] { return watch.known(); };
-  DetectorWorkspace workspace;
-  if (const auto detector = watch.current()) detector->detect(frame_to_warm_up(), workspace);
   LcmBus bus(options.url, options.output_log);
   bus.is_log() ? watch.hold() : watch.follow();
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
-    const std::shared_ptr<const Detector> detector = watch.current();
-    return detector ? detector->detect(frame, workspace) : Detections{frame.id, {}, frame.stages};
+    const std::shared_ptr<const ReadyDetector> ready = watch.current();
+    return ready ? ready->detector.detect(frame, ready->workspace) : Detections{frame.id, {}, frame.stages};
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <numeric>
 #include <set>
@@ -57,6 +58,26 @@ TEST(ParallelFor, KeepsItsThreads) {
     });
   }
   EXPECT_LE(ids.size(), 2U);
+}
+
+TEST(ParallelFor, WhoWorksAloneGetsNoHelpers) {
+  const auto threads_of = [] {
+    std::mutex mutex;
+    std::set<std::thread::id> ids;
+    parallel_for(4, 64, [&](int) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      const std::lock_guard lock(mutex);
+      ids.insert(std::this_thread::get_id());
+    });
+    return ids;
+  };
+  {
+    const WorkAlone alone;
+    EXPECT_EQ(threads_of(), std::set<std::thread::id>{std::this_thread::get_id()});
+    std::thread other([&] { EXPECT_GT(threads_of().size(), 1U) << "other threads are not meant"; });
+    other.join();
+  }
+  EXPECT_GT(threads_of().size(), 1U);
 }
 
 TEST(ParallelForWorkers, AWorkerDoesOneItemAtATime) {
