@@ -101,7 +101,7 @@ def poses_of(data):
 
 
 def objects_of(data):
-    """(track_id, class name, state) of each object of an objects_t; states are numbers of tracked_object_t."""
+    """(track_id, class name, state, probability) of each object of an objects_t; states are numbers of tracked_object_t."""
     wire = Wire(data)
     wire.read("q")
     wire.text(), wire.text()
@@ -109,10 +109,10 @@ def objects_of(data):
     objects = []
     for _ in range(wire.read("i")):
         track_id, _ = wire.read("qi")
-        name, state = wire.text(), wire.read("b")
-        wire.read("fb49diqq")
+        name = wire.text()
+        state, probability, *_ = wire.read("bfb49diqq")
         wire.text(), wire.text()
-        objects.append((track_id, name, state))
+        objects.append((track_id, name, state, probability))
     return objects
 
 

@@ -23,8 +23,13 @@ class Heard:
         self.poses = [(when + 0.05, number, {"mug"}) for number, when in self.frames.items()]
         self.poses += [(when + 0.1, number, {"can"}) for number, when in self.frames.items() if number % 2 == 0]
         self.poses += [(when + 0.01, number, set()) for number, when in self.frames.items()]  # a host without the model
-        self.worlds = [(when + 0.06, number, {"mug": hosts.VISIBLE, "can": hosts.VISIBLE if number < 4 else 2 if number < 8 else hosts.GONE})
+        self.worlds = [(when + 0.06, number, {"mug": (hosts.VISIBLE, 1.0), "can": self.can(number)})
                        for number, when in self.frames.items()]  # fmt: skip
+
+    @staticmethod
+    def can(number):
+        """State and probability after a frame."""
+        return (hosts.VISIBLE, 1.0) if number < 4 else (hosts.UNRECOGNISED, 0.5) if number < 8 else (hosts.GONE, 0.1)
 
 
 class HostsTest(unittest.TestCase):
@@ -50,6 +55,7 @@ class HostsTest(unittest.TestCase):
     def test_what_becomes_of_a_lost_hosts_objects(self):
         lost = hosts.lost_host(Heard(), {"cut": 100.2, "joined": 100.75, "end": 101.0}, self.PARTS, 3.1)
         self.assertEqual((lost["said_s"], lost["unseen_s"], lost["gone_s"]), (3.1, 0.26, 0.66))
+        self.assertEqual((lost["objects"], lost["probability_in_the_end"]), (1, 0.5))
         self.assertAlmostEqual(lost["back_s"], 0.15)
         self.assertIsNone(lost["visible_again_s"])
 

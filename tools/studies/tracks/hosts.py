@@ -9,6 +9,7 @@ import argparse
 import json
 import os
 import pathlib
+import shutil
 import statistics
 import time
 
@@ -21,12 +22,13 @@ from studies.stream import Processes, UsageWatch, enter_private_network
 from studies.work import Runner, Store, Units
 
 SCENE = "objects_20_a"  # twelve of the forty stand in it
-VIEWS = ("--azimuths", 12, "--pitches", 1)  # few: enough for what it costs to look for many
+SEEN_VIEWS = ("--azimuths", 24, "--pitches", 2)
+OTHER_VIEWS = ("--azimuths", 8, "--pitches", 1)  # of what does not stand there: enough for what it costs to look for it
 RATE = 10  # Hz
 ALONE_S, TOGETHER_S, CUT_S, AGAIN_S = 20, 20, 15, 10
 WARM_UP_S = 3.0
 HOSTS = ("a", "b")
-VALID, VISIBLE, GONE = 1, 1, 5  # of object_pose_t and tracked_object_t
+VALID, VISIBLE, UNRECOGNISED, GONE = 1, 1, 2, 5  # of object_pose_t and tracked_object_t
 HOW = (
     "Forty taught objects, twenty a host, in a table's scene that holds six of each twenty: one rendered picture, shown again "
     "and again. Network namespaces at a bridge, ttl=1; each host's hs-detect and hs-pose have one core of the machine, the "
@@ -41,6 +43,19 @@ def divided(names, visible):
     return [seen[part::2] + rest[part::2] for part in range(2)]
 
 
+def copy_models(models, objects, folder):
+    """A models folder with some of the objects of another."""
+    folder.mkdir(parents=True, exist_ok=True)
+    names = {key: name for key, name in read_json(models / "names.json").items() if name in objects}
+    info = read_json(models / "models_info.json")
+    write_json(folder / "names.json", names)
+    write_json(folder / "models_info.json", {key: info[key] for key in names})
+    for key in names:
+        for file in models.glob(f"obj_{int(key):06}.*"):
+            shutil.copy(file, folder)
+    return folder
+
+
 class Taught:
     """The scene, and for each host its objects, forest and models; made once, as tools/bench tracks makes its own."""
 
@@ -50,27 +65,34 @@ class Taught:
         known = self._add("known", "hs-render", "training", "--objects", "all_40", "--azimuths", 1, "--pitches", 1, "--out",
                           "{out}")  # fmt: skip
         rooms = self._add("rooms", "hs-render", "background", "--count", 60, "--out", "{out}")
-        self.scene, self.models = self._made(scene), self._made(known) / "models"
+        self.scene, self.models = self._made(scene, known)
+        self.models = self.models / "models"
         names = read_json(self.models / "names.json")
         seen = next(iter(read_json(next(self.scene.glob("**/scene_gt.json"))).values()))
         self.visible = {names[str(one["obj_id"])] for one in seen}
         self.objects = divided([names[key] for key in sorted(names, key=int)], self.visible)
-        self.views = [self._add(f"views_{host}", "hs-render", "training", "--objects", ",".join(objects), *VIEWS, "--out", "{out}")
-                      for host, objects in zip(HOSTS, self.objects)]  # fmt: skip
-        forests = [self._add(f"forest_{host}", "hs-train", "--threads", threads(), "--composites", 2, "--views",
-                             f"bop:{{{views}}}", "--background", f"bop:{{{rooms}}}", "--out", "{out}")
-                   for host, views in zip(HOSTS, self.views)]  # fmt: skip
-        self.forests = [self._made(forest) for forest in forests]
-        self.host_models = [self._made(views) / "models" for views in self.views]
+        forests = [self._taught(host, objects, rooms) for host, objects in zip(HOSTS, self.objects)]
+        self.forests = self._made(*forests)
+        self.host_models = [copy_models(self.models, objects, out / f"models_{host}") for host, objects in zip(HOSTS, self.objects)]
+
+    def _taught(self, host, objects, rooms):
+        """The unit of a host's forest: those that stand in the scene by more views than the others."""
+        views = []
+        for kind, how, wanted in (("seen", SEEN_VIEWS, True), ("other", OTHER_VIEWS, False)):
+            some = [name for name in objects if (name in self.visible) == wanted]
+            views.append(self._add(f"{kind}_{host}", "hs-render", "training", "--objects", ",".join(some), *how, "--out", "{out}"))
+        words = [word for one in views for word in ("--views", f"bop:{{{one}}}")]
+        return self._add(f"forest_{host}", "hs-train", "--threads", threads(), "--composites", 2, *words, "--background",
+                         f"bop:{{{rooms}}}", "--out", "{out}")  # fmt: skip
 
     def _add(self, name, *command):
         return self.units.add(name, "", *command)
 
-    def _made(self, name):
+    def _made(self, *names):
         units = self.units.all()
         store = Store(self.out, self.programs, units, files="hosts")
         Runner(store, tell=lambda words: step(f"hosts: {words}")).run(units)
-        return store.file(self.units.by_name[name])
+        return [store.file(self.units.by_name[name]) for name in names]
 
 
 class Stream:
@@ -123,7 +145,8 @@ class Record:
     """What the third host heard, with times in seconds."""
 
     def __init__(self, log):
-        self.frames, self.poses, self.worlds = {}, [], []
+        self.frames, self.poses = {}, []  # times by utime; (time, utime, names of valid poses)
+        self.worlds = []  # (time, utime, {name: (state, probability)})
         for timestamp, channel, data in read_log(log):
             if channel == "OPENNI_FRAME":
                 self.frames[utime_of(data)] = timestamp * 1e-6
@@ -131,8 +154,8 @@ class Record:
                 valid = {name for name, _, status, _ in poses_of(data) if status == VALID}
                 self.poses.append((timestamp * 1e-6, utime_of(data), valid))
             elif channel == "HOUGHSTREAM_OBJECTS":
-                states = {name: state for _, name, state in objects_of(data)}
-                self.worlds.append((timestamp * 1e-6, utime_of(data), states))
+                objects = {name: (state, probability) for _, name, state, probability in objects_of(data)}
+                self.worlds.append((timestamp * 1e-6, utime_of(data), objects))
 
 
 def percentiles(values):
@@ -157,31 +180,42 @@ def figures(record, begin, end, parts):
     for host, objects in parts.items():
         out[host] = told([pose for pose in record.poses if pose[2] & set(objects)])
     out["world"] = told(record.worlds)
-    last = [states for when, _, states in record.worlds if when < end]
+    last = world_at(record, end)
     for host, objects in parts.items():
-        out[host]["objects"] = sum(state == VISIBLE for name, state in (last[-1] if last else {}).items() if name in objects)
+        out[host]["objects"] = sum(state == VISIBLE for name, (state, _) in last.items() if name in objects)
     return out
+
+
+def world_at(record, end):
+    """The last one before a time."""
+    before = [objects for when, _, objects in record.worlds if when < end]
+    return before[-1] if before else {}
 
 
 def seconds_until(record, begin, objects, reached):
     """From `begin` until a world in which that is so of the objects' states, or None."""
-    for when, _, states in record.worlds:
-        if when >= begin and reached([states[name] for name in objects if name in states]):
+    for when, _, world in record.worlds:
+        if when >= begin and reached([world[name][0] for name in objects if name in world]):
             return round(when - begin, 2)
     return None
 
 
 def lost_host(record, times, parts, said):
-    """Host b between the pulling of its cable and its end."""
-    objects = {name for _, _, states in record.worlds for name in states} & set(parts["b"])
-    back = [when for when, _, names in record.poses if when >= times["joined"] and names & set(parts["b"])]
+    """What becomes of host b's objects from the pulling of its cable on, and when they are back."""
+    cut, joined = times["cut"], times["joined"]
+    objects = {name for name in world_at(record, cut) if name in parts["b"]}
+    aged = [probability for name, (_, probability) in world_at(record, joined).items() if name in objects]
+    back = next((when for when, _, names in record.poses if when >= joined and names & set(parts["b"])), None)
+    visible = seconds_until(record, back, objects, lambda states: VISIBLE in states) if back else None
     return {
+        "objects": len(objects),
         "said_s": said,
-        "unseen_s": seconds_until(record, times["cut"], objects, lambda states: VISIBLE not in states),
-        "gone_s": seconds_until(record, times["cut"], objects, lambda states: all(state == GONE for state in states)),
-        "others": figures(record, times["cut"], times["joined"], parts)["a"],
-        "back_s": round(back[0] - times["joined"], 2) if back else None,
-        "visible_again_s": seconds_until(record, back[0] if back else times["end"], objects, lambda states: VISIBLE in states),
+        "unseen_s": seconds_until(record, cut, objects, lambda states: VISIBLE not in states),
+        "gone_s": seconds_until(record, cut, objects, lambda states: all(state == GONE for state in states)),
+        "probability_in_the_end": round(min(aged), 3) if aged else None,
+        "others": figures(record, cut, joined, parts)["a"],
+        "back_s": round(back - joined, 2) if back else None,
+        "visible_again_s": round(back - joined + visible, 2) if visible is not None else None,
     }
 
 
