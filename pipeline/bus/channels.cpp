@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-
 namespace houghstream::channel {
 namespace {
 
@@ -42,6 +40,11 @@ std::string to_world(const std::string& camera_channel) {
 
 std::string to_camera(const std::string& class_name, const std::string& camera_channel) {
   const std::string suffix = "_TO_" + (camera_channel.empty() ? "CAMERA" : camera_name(camera_channel));
+  return upper_case(class_name.substr(0, kMaxChannelLength - suffix.size())) + suffix;
+}
+
+std::string object_pose(const std::string& class_name, std::int64_t track_id) {
+  const std::string suffix = fmt::format("_{}_POSE", track_id);
   return upper_case(class_name.substr(0, kMaxChannelLength - suffix.size())) + suffix;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace houghstream::channel {
@@ -12,6 +13,9 @@ inline const std::string kStatus = "HOUGHSTREAM_STATUS";               ///< stat
 inline const std::string kKnownObjects = "HOUGHSTREAM_KNOWN_OBJECTS";  ///< known_objects_t, 1 Hz, who has a store
 inline const std::string kTeaching = "HOUGHSTREAM_TEACHING";           ///< teaching_t, while an object is shown
 inline const std::string kPreview = "HOUGHSTREAM_PREVIEW";             ///< image_t, MJPEG below 100 kB
+// Of Drake's viewers:
+inline const std::string kDrakeLoad = "DRAKE_VIEWER_LOAD_ROBOT";  ///< drake_viewer_load_robot_t
+inline const std::string kDrakeDraw = "DRAKE_VIEWER_DRAW";        ///< drake_viewer_draw_t
 
 /// The channel of an object's rigid_transform_t: "cereal_box" -> "CEREAL_BOX_TO_CAMERA" where there is one camera, and
 /// with the channel of the camera's frames, where there are several, "cereal_box", "left-cam" ->
@@ -21,6 +25,9 @@ std::string to_camera(const std::string& class_name, const std::string& camera_c
 
 /// Where a camera is, rigid_transform_t T_world_camera: "left-cam" -> "LEFT_CAM_TO_WORLD".
 std::string to_world(const std::string& camera_channel);
+
+/// The pose_t of one object of the world: "cereal_box", 3 -> "CEREAL_BOX_3_POSE"; long names are cut.
+std::string object_pose(const std::string& class_name, std::int64_t track_id);
 
 /// The camera's part of these.
 std::string camera_name(const std::string& camera_channel);

@@ -24,6 +24,12 @@ bool same_scores(const ObjectPoses& poses, const Detections& detections) {
          });
 }
 
+/// Answered by an hs-pose without models of these objects: on another host one may have them.
+bool without_models(const ObjectPoses& poses) {
+  return std::all_of(poses.poses.begin(), poses.poses.end(),
+                     [](const ObjectPose& pose) { return pose.status == PoseStatus::kNoModel; });
+}
+
 /// Appends stages to those of earlier results, without the ones that all begin with.
 void add_stages(std::vector<StageTime>& all, const std::vector<StageTime>& more, std::size_t common) {
   all.insert(all.end(), more.begin() + static_cast<std::ptrdiff_t>(std::min(common, more.size())), more.end());
@@ -108,7 +114,7 @@ bool FrameResults::place(ObjectPoses& poses) {
     best_rank = std::max(best_rank, rank);
   }
   if (best == nullptr) return false;
-  best->poses = std::move(poses);
+  if (!best->poses || !without_models(poses)) best->poses = std::move(poses);
   return true;
 }
 

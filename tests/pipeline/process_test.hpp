@@ -57,6 +57,16 @@ class ProcessOnMemq {
     return at<Message>(name, count(name) - 1);
   }
 
+  /// Of a type that this project sends and never reads.
+  template <typename Message>
+  Message only_sent(const std::string& name, std::size_t index) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::vector<std::uint8_t>& bytes = seen_[name].at(index);
+    Message message{};
+    EXPECT_EQ(message.decode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size())) << name;
+    return message;
+  }
+
   /// Waits until that many messages have come on the channel; false after two seconds.
   bool wait_for(const std::string& name, std::size_t messages) {
     for (int i = 0; i < 400 && count(name) < messages; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));

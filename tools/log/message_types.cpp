@@ -4,12 +4,15 @@
 
 #include <houghstream/detections_t.hpp>
 #include <houghstream/drake_image_array_t.hpp>
+#include <houghstream/drake_viewer_draw_t.hpp>
+#include <houghstream/drake_viewer_load_robot_t.hpp>
 #include <houghstream/image_t.hpp>
 #include <houghstream/images_t.hpp>
 #include <houghstream/kinect_frame_msg_t.hpp>
 #include <houghstream/known_objects_t.hpp>
 #include <houghstream/object_poses_t.hpp>
 #include <houghstream/objects_t.hpp>
+#include <houghstream/pose_t.hpp>
 #include <houghstream/rigid_transform_t.hpp>
 #include <houghstream/status_t.hpp>
 #include <houghstream/teaching_t.hpp>
@@ -27,8 +30,11 @@ std::string type_name(std::int64_t fingerprint) {
       {images_t::getHash(), "images_t (bot_core)"},
       {image_t::getHash(), "image_t (bot_core)"},
       {rigid_transform_t::getHash(), "rigid_transform_t (bot_core)"},
+      {pose_t::getHash(), "pose_t (bot_core)"},
       {kinect_frame_msg_t::getHash(), "frame_msg_t (kinect)"},
       {drake_image_array_t::getHash(), "lcmt_image_array (drake)"},
+      {drake_viewer_load_robot_t::getHash(), "lcmt_viewer_load_robot (drake)"},
+      {drake_viewer_draw_t::getHash(), "lcmt_viewer_draw (drake)"},
       {detections_t::getHash(), "detections_t"},
       {object_poses_t::getHash(), "object_poses_t"},
       {objects_t::getHash(), "objects_t"},

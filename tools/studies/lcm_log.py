@@ -100,6 +100,22 @@ def poses_of(data):
     return poses
 
 
+def objects_of(data):
+    """(track_id, class name, state, probability) of each object of an objects_t; states are numbers of tracked_object_t."""
+    wire = Wire(data)
+    wire.read("q")
+    wire.text(), wire.text()
+    wire.read("i7d")
+    objects = []
+    for _ in range(wire.read("i")):
+        track_id, _ = wire.read("qi")
+        name = wire.text()
+        state, probability, *_ = wire.read("bfb49diqq")
+        wire.text(), wire.text()
+        objects.append((track_id, name, state, probability))
+    return objects
+
+
 def images_of(data):
     """{image type: bytes} of an encoded images_t."""
     wire = Wire(data)

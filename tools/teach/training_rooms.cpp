@@ -4,8 +4,8 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 
+#include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/render/render_jobs.hpp"
@@ -34,7 +34,7 @@ void remove_leftovers(const fs::path& cache, const std::string& prefix) {
 
 /// The folder of the rendered rooms; renders them beside it first where it is missing, so that it is always whole.
 fs::path rendered_rooms(const RoomSettings& settings) {
-  const fs::path cache = settings.cache.empty() ? default_cache() : settings.cache;
+  const fs::path cache = settings.cache.empty() ? cache_folder("--cache FOLDER") : settings.cache;
   const fs::path rooms = cache / fmt::format("rooms-{}-{}", kRoomsVersion, settings.count);
   if (fs::exists(rooms / "scene_gt_info.json")) return rooms;
   std::error_code error;
@@ -58,14 +58,6 @@ fs::path rendered_rooms(const RoomSettings& settings) {
 }
 
 }  // namespace
-
-fs::path default_cache() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache != nullptr && *cache != '\0') return fs::path(cache) / "houghstream";
-  const char* home = std::getenv("HOME");
-  require(home != nullptr && *home != '\0', "neither XDG_CACHE_HOME nor HOME is set, expected --cache FOLDER");
-  return fs::path(home) / ".cache" / "houghstream";
-}
 
 std::vector<TrainingView> read_rooms(const RoomSettings& settings) {
   TrainingSources sources;

@@ -11,15 +11,12 @@ namespace houghstream::teach {
 
 /// Rooms without the objects, to teach what they are not.
 struct RoomSettings {
-  std::filesystem::path cache;        ///< folder in which rendered rooms are kept; empty = default_cache()
+  std::filesystem::path cache;        ///< folder in which rendered rooms are kept; empty = cache_folder()
   std::vector<std::string> further;   ///< a user's own, beside the rendered ones: "bop:DIR" or "images:DIR"
   std::optional<std::string> camera;  ///< of images:DIR, see parse_camera
   int count = 215;                    ///< rendered frames
   int threads = 2;
 };
-
-/// $XDG_CACHE_HOME/houghstream, or ~/.cache/houghstream.
-std::filesystem::path default_cache();
 
 /// The rendered rooms, which are rendered into the cache where it lacks them, and the user's. Throws InputError where a
 /// folder cannot be written or read.

@@ -1,4 +1,5 @@
 #include "drivers/store/store_watch.hpp"
+#include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -20,6 +21,7 @@ struct TrackOptions {
   std::string output_log;
   std::string cameras_file;
   std::vector<std::string> camera_poses;
+  bool drake_viewer = false;
   track::TrackProcessOptions process;
 };
 
@@ -85,6 +87,10 @@ void add_options(CommandLine& app, TrackOptions& options, std::string& camera) {
   app.add_flag("--check", options.process.check,
                "publish nothing; compare where the cameras see the same objects, and fail where they contradict each "
                "other");
+  app.add_flag("--drake-viewer", options.drake_viewer,
+               "show the objects' meshes in drake_visualizer and meldis too (DRAKE_VIEWER_LOAD_ROBOT, _DRAW)");
+  app.add_flag("--pose-channels", options.process.output.pose_channels,
+               "publish each object's pose on <OBJECT>_<NUMBER>_POSE too, as bot_core's pose_t");
   add_frame_channels_option(app, options.process.frame_channels);
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the objects to this log");
   add_lcm_url_option(app, options.url);
@@ -101,6 +107,8 @@ int main(int argc, char** argv) {
     catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    if (options.drake_viewer)
+      options.process.output.drake_meshes = cache_folder("one of them for the meshes of --drake-viewer") / "meshes";
     if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_places(options.cameras_file);
     for (const std::string& text : options.camera_poses) {
       const auto [name, T_world_camera] = tracks::parse_camera_place(text);

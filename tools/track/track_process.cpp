@@ -77,7 +77,9 @@ class TrackProcess {
         status_(options.process),
         inbox_(false),
         used_models_(models()),
-        tracker_(*used_models_, {}) {
+        tracker_(*used_models_, {}),
+        output_(bus, options.output) {
+    output_.set_models(*used_models_);
     for (const auto& [camera, T_world_camera] : options.places)
       places_.fix(channel::camera_name(camera), T_world_camera);
   }
@@ -240,6 +242,7 @@ class TrackProcess {
     if (const auto models = models_(); models != used_models_) {
       used_models_ = models;
       tracker_.set_models(*models);
+      output_.set_models(*models);
     }
     const Detections detections = detections_of(poses.frame);
     std::optional<RgbdFrame> image;
@@ -259,7 +262,7 @@ class TrackProcess {
     clock.mark("track.update");
     objects->world = world_;
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
-    bus_.publish(channel::kObjects, to_message(*objects));
+    output_.publish(*objects);
     return true;
   }
 
@@ -311,6 +314,7 @@ class TrackProcess {
   PairInbox inbox_;  // of poses and their frames
   std::shared_ptr<const tracks::TrackModels> used_models_;
   tracks::Tracker tracker_;
+  WorldOutput output_;
   tracks::ExtrinsicCheck check_;
   LimitedLines lines_;
   std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();

@@ -13,6 +13,7 @@
 #include "pipeline/types/known_objects.hpp"
 #include "pose/tracks/extrinsic_check.hpp"
 #include "pose/tracks/tracker.hpp"
+#include "tools/track/world_output.hpp"
 
 namespace houghstream::track {
 
@@ -23,6 +24,7 @@ struct TrackProcessOptions {
   std::map<std::string, Eigen::Isometry3d> places;  ///< of cameras that stand still, T_world_camera
   double wait_s = 0.1;                              ///< a frame waits so long for the transforms about its time
   bool check = false;                               ///< compares the cameras only; nothing is published
+  WorldOutputOptions output;                        ///< what is published besides
   std::function<KnownObjects()> objects;            ///< what its store holds, for the status
 };
 

@@ -11,6 +11,11 @@ TEST(Channels, ObjectsHaveTransformChannels) {
   EXPECT_EQ(channel::to_camera(std::string(100, 'x')).size(), 63U);
 }
 
+TEST(Channels, ObjectsOfTheWorldHavePoseChannels) {
+  EXPECT_EQ(channel::object_pose("cereal_box", 3), "CEREAL_BOX_3_POSE");
+  EXPECT_EQ(channel::object_pose(std::string(100, 'x'), 12).size(), 63U);
+}
+
 TEST(Channels, ATransformSaysWhichCameraWhereThereAreSeveral) {
   EXPECT_EQ(channel::to_camera("mug", "LEFT_CAMERA"), "MUG_TO_LEFT_CAMERA");
   EXPECT_EQ(channel::to_camera("mug", "left-cam.2"), "MUG_TO_LEFT_CAM_2");

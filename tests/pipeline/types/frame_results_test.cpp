@@ -117,6 +117,20 @@ TEST(FrameResults, FollowedPosesStandBesideTheAnswers) {
   EXPECT_TRUE(nothing.unmatched().empty()) << "nothing is followed, which is no answer to detections";
 }
 
+TEST(FrameResults, AnAnswerOfAnotherHostsPosesWithoutTheModelsDoesNotTakeThePlaceOfOneWithThem) {
+  ObjectPoses with = poses_of(kBowls, 10);
+  with.poses[0].status = PoseStatus::kValid;
+  ObjectPoses without = poses_of(kBowls, 30);
+  for (ObjectPose& pose : without.poses) pose.status = PoseStatus::kNoModel;
+  for (const bool first : {true, false}) {
+    FrameResults results;
+    results.add(kBowls);
+    results.add(first ? with : without);
+    results.add(first ? without : with);
+    EXPECT_EQ(results.joined()->poses->poses.at(1).inliers, 11);
+  }
+}
+
 TEST(FrameResults, OtherPosesAnswerNothing) {
   ObjectPoses other_frame = poses_of(kBowls, 0);
   other_frame.frame.channel = "RIGHT";

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <houghstream/drake_viewer_draw_t.hpp>
+#include <houghstream/drake_viewer_load_robot_t.hpp>
+#include <houghstream/pose_t.hpp>
 #include <houghstream/status_t.hpp>
 
 #include "tests/tools/log/recordings.hpp"
@@ -37,6 +40,16 @@ TEST(MessageTypes, AFingerprintIsTheFirstEightBytes) {
 TEST(MessageTypes, BotCoreHasOurFingerprints) {
   EXPECT_EQ(static_cast<std::uint64_t>(images_t::getHash()), 0x20ba4f05e8f5e33aU);
   EXPECT_EQ(static_cast<std::uint64_t>(image_t::getHash()), 0x14739ffe13d5f5f0U);
+  EXPECT_EQ(static_cast<std::uint64_t>(pose_t::getHash()), 0x2e16efb052b0105eU);
+  EXPECT_EQ(type_name(pose_t::getHash()), "pose_t (bot_core)");
+}
+
+// Those that lcm-gen makes of Drake's own lcmt_viewer_*.lcm.
+TEST(MessageTypes, DrakeHasOurFingerprints) {
+  EXPECT_EQ(static_cast<std::uint64_t>(drake_viewer_load_robot_t::getHash()), 0x8987209b10aa2d39U);
+  EXPECT_EQ(static_cast<std::uint64_t>(drake_viewer_draw_t::getHash()), 0x414f0bfe5b2f4244U);
+  EXPECT_EQ(type_name(drake_viewer_load_robot_t::getHash()), "lcmt_viewer_load_robot (drake)");
+  EXPECT_EQ(type_name(drake_viewer_draw_t::getHash()), "lcmt_viewer_draw (drake)");
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 package houghstream.spy;
 
 import houghstream.detections_t;
+import houghstream.drake_viewer_draw_t;
+import houghstream.drake_viewer_load_robot_t;
 import houghstream.image_t;
 import houghstream.images_t;
 import houghstream.known_objects_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
 import houghstream.objects_t;
+import houghstream.pose_t;
 import houghstream.rigid_transform_t;
 import houghstream.status_t;
 import houghstream.teaching_t;
@@ -45,6 +48,9 @@ final class PluginsTest {
     Check.equal(known.getClassByFingerprint(detections_t.LCM_FINGERPRINT), detections_t.class);
     Check.equal(known.getClassByFingerprint(object_poses_t.LCM_FINGERPRINT), object_poses_t.class);
     Check.equal(known.getClassByFingerprint(rigid_transform_t.LCM_FINGERPRINT), rigid_transform_t.class);
+    Check.equal(known.getClassByFingerprint(pose_t.LCM_FINGERPRINT), pose_t.class);
+    Check.equal(known.getClassByFingerprint(drake_viewer_load_robot_t.LCM_FINGERPRINT), drake_viewer_load_robot_t.class);
+    Check.equal(known.getClassByFingerprint(drake_viewer_draw_t.LCM_FINGERPRINT), drake_viewer_draw_t.class);
     Check.equal(known.getClassByFingerprint(status_t.LCM_FINGERPRINT), status_t.class);
     Check.equal(known.getClassByFingerprint(known_objects_t.LCM_FINGERPRINT), known_objects_t.class);
     Check.equal(known.getClassByFingerprint(teaching_t.LCM_FINGERPRINT), teaching_t.class);

@@ -4,6 +4,7 @@ import contextlib
 import io
 import unittest
 
+from studies.tracks import hosts
 from studies.tracks.__main__ import SEQUENCES, parse
 from studies.tracks.plan import Plan
 from studies.tracks.report import longest, pooled
@@ -12,6 +13,51 @@ from studies.tracks.report import longest, pooled
 def figures(name, required, recall, wrong, switches=0, hota=0.9):
     return {"name": name, "required": required, "recall": recall, "wrong": wrong, "id_switches": switches, "hota": hota,
             "error": {"moving": {"mm_p95": None}}}  # fmt: skip
+
+
+class Heard:
+    """A record of a second at 10 Hz: host a's poses come 50 ms after each frame, host b's 100 ms after each second one."""
+
+    def __init__(self):
+        self.frames = {number: 100.0 + 0.1 * number for number in range(10)}
+        self.poses = [(when + 0.05, number, {"mug"}) for number, when in self.frames.items()]
+        self.poses += [(when + 0.1, number, {"can"}) for number, when in self.frames.items() if number % 2 == 0]
+        self.poses += [(when + 0.01, number, set()) for number, when in self.frames.items()]  # a host without the model
+        self.worlds = [(when + 0.06, number, {"mug": (hosts.VISIBLE, 1.0), "can": self.can(number)})
+                       for number, when in self.frames.items()]  # fmt: skip
+
+    @staticmethod
+    def can(number):
+        """State and probability after a frame."""
+        return (hosts.VISIBLE, 1.0) if number < 4 else (hosts.UNRECOGNISED, 0.5) if number < 8 else (hosts.GONE, 0.1)
+
+
+class HostsTest(unittest.TestCase):
+    PARTS = {"a": ["mug", "bowl"], "b": ["can"]}
+
+    def test_both_parts_hold_as_many_of_what_is_seen(self):
+        self.assertEqual(hosts.divided(list("abcdefgh"), {"a", "b", "c", "g"}), [["a", "c", "d", "f"], ["b", "g", "e", "h"]])
+
+    def test_each_hosts_poses_are_counted_by_their_objects(self):
+        told = hosts.figures(Heard(), 100.0, 101.0, self.PARTS)
+        self.assertEqual(told["sent_hz"], 10.0)
+        self.assertEqual((told["a"]["hz"], told["a"]["p50_ms"]), (10.0, 50.0))
+        self.assertEqual((told["b"]["hz"], told["b"]["p50_ms"]), (5.0, 100.0))
+        self.assertEqual(told["world"]["p50_ms"], 60.0)
+        self.assertEqual((told["a"]["objects"], told["b"]["objects"]), (1, 0))
+        self.assertEqual(hosts.figures(Heard(), 100.0, 100.35, self.PARTS)["b"]["objects"], 1)
+
+    def test_a_host_that_says_nothing_has_no_times(self):
+        heard = Heard()
+        heard.poses = []
+        self.assertEqual(hosts.figures(heard, 100.0, 101.0, self.PARTS)["a"], {"hz": 0.0, "p50_ms": None, "p99_ms": None, "objects": 1})
+
+    def test_what_becomes_of_a_lost_hosts_objects(self):
+        lost = hosts.lost_host(Heard(), {"cut": 100.2, "joined": 100.75, "end": 101.0}, self.PARTS, 3.1)
+        self.assertEqual((lost["said_s"], lost["unseen_s"], lost["gone_s"]), (3.1, 0.26, 0.66))
+        self.assertEqual((lost["objects"], lost["probability_in_the_end"]), (1, 0.5))
+        self.assertAlmostEqual(lost["back_s"], 0.15)
+        self.assertIsNone(lost["visible_again_s"])
 
 
 class TracksTest(unittest.TestCase):

@@ -113,6 +113,49 @@ TEST(TrackProcess, ASecondCameraWithoutAPlaceIsRefused) {
   EXPECT_NE(test.last<status_t>(channel::kStatus).last_error.find("RIGHT_TO_WORLD"), std::string::npos);
 }
 
+TEST(TrackProcess, OtherToolsAreToldOfTheObjectsWhereAsked) {
+  ProcessOnMemq test({channel::kObjects, channel::kDrakeLoad, channel::kDrakeDraw, "BOWL_1_POSE"});
+  TrackProcessOptions options;
+  options.wait_s = 0.02;
+  options.output.drake_meshes = std::filesystem::temp_directory_path() / "houghstream_track_process_meshes";
+  options.output.pose_channels = true;
+  test.start(tracking(options));
+  for (int i = 0; i < 10; ++i) {
+    send_frame(test, i);
+    ASSERT_TRUE(test.wait_for(channel::kObjects, static_cast<std::size_t>(i + 1)));
+  }
+  test.stop();
+  ASSERT_EQ(last_world(test).objects.size(), 1U);
+  ASSERT_GE(test.count("BOWL_1_POSE"), 5U);
+  const auto pose = test.only_sent<pose_t>("BOWL_1_POSE", test.count("BOWL_1_POSE") - 1);
+  EXPECT_EQ(pose.utime, time_of(9));
+  EXPECT_NEAR(pose.pos[2], 1.0, 1e-6);
+  EXPECT_NEAR(pose.orientation[0], 1.0, 1e-6);
+  ASSERT_EQ(test.count(channel::kDrakeLoad), 2U) << "the empty world, and the one with a bowl";
+  EXPECT_EQ(test.only_sent<drake_viewer_load_robot_t>(channel::kDrakeLoad, 0).num_links, 0);
+  const auto load = test.only_sent<drake_viewer_load_robot_t>(channel::kDrakeLoad, 1);
+  ASSERT_EQ(load.num_links, 1);
+  EXPECT_EQ(load.link[0].name, "bowl_1");
+  ASSERT_EQ(test.count(channel::kDrakeDraw), 10U);
+  const auto draw = test.only_sent<drake_viewer_draw_t>(channel::kDrakeDraw, 9);
+  EXPECT_EQ(draw.timestamp, time_of(9) / 1000);
+  ASSERT_EQ(draw.link_name, std::vector<std::string>{"bowl_1"});
+  EXPECT_NEAR(draw.position[0][2], 1.0F, 1e-6F);
+}
+
+TEST(TrackProcess, OtherToolsAreToldNothingUnasked) {
+  ProcessOnMemq test({channel::kObjects, channel::kDrakeLoad, channel::kDrakeDraw, "BOWL_1_POSE"});
+  TrackProcessOptions options;
+  options.wait_s = 0.02;
+  test.start(tracking(options));
+  for (int i = 0; i < 5; ++i) {
+    send_frame(test, i);
+    ASSERT_TRUE(test.wait_for(channel::kObjects, static_cast<std::size_t>(i + 1)));
+  }
+  test.stop();
+  EXPECT_EQ(test.count("BOWL_1_POSE") + test.count(channel::kDrakeLoad) + test.count(channel::kDrakeDraw), 0U);
+}
+
 TEST(TrackProcess, ALogGivesTheSameObjectsEachTime) {
   catch_stop_signals();
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "houghstream_track_process";

@@ -26,7 +26,7 @@ def parse(words):
                                      "objects that are pushed, carried, taken away, brought back, swapped and hidden; two "
                                      "equal cans; a camera that is pushed; three cameras), finds and follows the objects in "
                                      "them, and compares the tracks with the truth; measures frame to pose at 30, 60 and "
-                                     "90 Hz.")  # fmt: skip
+                                     "90 Hz, and forty objects on two hosts.")  # fmt: skip
     add = parser.add_argument
     add("--sequences", type=known_sequences, default=SEQUENCES, metavar="NAMES", help=f"of {', '.join(SEQUENCES)}; default all")
     add("--forest", type=pathlib.Path, metavar="FILE", help="of the four objects, with --models; default: taught anew")
@@ -34,6 +34,7 @@ def parse(words):
     add("--follow", action="store_true", help="poses by hs-pose --follow")
     add("--development", action="store_true", help="rooms to choose settings on, instead of those that are measured with")
     add("--no-stream", dest="stream", action="store_false", help="measure no rates")
+    add("--no-hosts", dest="hosts", action="store_false", help="nothing of several hosts")
     add("--seconds", type=positive, default=60, metavar="S", help="of each replay at each rate (default 60)")
     add("--out", type=pathlib.Path, default="out/bench", metavar="DIR", help="default out/bench")
     add("--fresh", action="store_true", help="render and teach again even where nothing has changed")
@@ -47,8 +48,9 @@ def parse(words):
 def main():
     options = parse(sys.argv[1:])
     options.programs = pathlib.Path(prepare(options, TARGETS))
-    if options.stream:
-        enter_private_network()
+    network = enter_private_network() if options.stream or options.hosts else None
+    if options.hosts and network != "private":
+        die("network namespaces are refused here, and hosts are made of them; --no-hosts leaves them out")
     from studies.tracks import report  # needs what has been installed
 
     try:

@@ -7,6 +7,7 @@ from studies.command import step
 from studies.following import RATES, measure
 from studies.measured import about, read_json, write_json
 from studies.report.page import render, show
+from studies.tracks import hosts
 from studies.tracks.plan import CAMERAS, WRONG, Plan
 
 # Stoiber, Sundermeyer and Triebel 2022, "Iterative Corresponding Geometry: Fusing Region and Depth for Highly Efficient 3D
@@ -116,8 +117,11 @@ def write_page(options, summary):
                      show(longest([one["seconds_to_gone"]]), "{:.2f}"), show(one["hidden_kept"], "{:.2f}")))  # fmt: skip
     speeds = [(f"{rate} Hz", *(show(summary[f"hz{rate}"][key], "{:.2f}") for key in ("p50_ms", "p99_ms", "lost", "skipped", "cores")))
               for rate in RATES if f"hz{rate}" in summary]  # fmt: skip
+    host_rows = [(f"{words}, host {host}", *(show(one[host][key], "{:.1f}") for key in ("hz", "p50_ms", "p99_ms")), one[host]["objects"])
+                 for words, one in hosts.by_number(summary.get("hosts")) for host in hosts.HOSTS if host in one]  # fmt: skip
     template = pathlib.Path(__file__).parent.name + "/page.html"
-    (options.out / "tracks.html").write_text(render(template, summary=summary, header=header, rows=rows, speeds=speeds, icg=ICG))
+    (options.out / "tracks.html").write_text(render(template, summary=summary, header=header, rows=rows, speeds=speeds, icg=ICG,
+                                                    host_rows=host_rows))
 
 
 def run(options):
@@ -127,6 +131,8 @@ def run(options):
     summary = {**about("tools/bench tracks"), **summarise(options, plan, store), "icg": ICG}
     if options.stream and "walk" in options.sequences:
         summary.update(rates(options, plan, store))
+    if options.hosts:
+        summary["hosts"] = hosts.measure(options.programs, options.out / "tracks_hosts")
     write_json(options.out / "tracks.json", summary)
     write_page(options, summary)
     step(f"{options.out / 'tracks.json'}, {options.out / 'tracks.html'}")

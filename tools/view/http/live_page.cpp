@@ -6,6 +6,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/codecs.hpp"
 #include "tools/view/drawing/turned_view.hpp"
+#include "tools/view/drawing/world_view.hpp"
 #include "tools/view/http/page_json.hpp"
 
 namespace houghstream::view {
@@ -23,11 +24,18 @@ cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
   return colour_depth(small, settings.depth_near, settings.depth_far);
 }
 
+// Of the shape of the frame. Smaller than one: it stands small beside the colour image, and its words are to be read.
+cv::Mat world_from_above(const std::optional<WorldState>& world, const cv::Size& frame) {
+  constexpr int kWidth = 440;  // pixels
+  return draw_world_from_above(world.value_or(WorldState{}), {kWidth, kWidth * frame.height / frame.width});
+}
+
 cv::Mat drawn(PageView view, const PageContent& content) {
   const ViewedFrame& viewed = content.viewed;
   switch (view) {
     case PageView::kDepth: return small_depth(viewed.frame.depth, content.settings);
     case PageView::k3d: return draw_turned_view(viewed.frame, viewed.poses, content.models);
+    case PageView::kWorld: return world_from_above(content.stream.state.world, viewed.frame.colour.size());
     case PageView::kColour: break;
   }
   return draw_over_colour(viewed, content.models, content.settings, content.stream);

@@ -12,9 +12,9 @@
 
 namespace houghstream::view {
 
-/// What of a frame a page can show.
-enum class PageView { kColour, kDepth, k3d };
-constexpr std::size_t kPageViews = 3;
+/// What a page can show of a frame, and of the world after it.
+enum class PageView { kColour, kDepth, k3d, kWorld };
+constexpr std::size_t kPageViews = 4;
 
 using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
 

@@ -81,6 +81,22 @@ json stages_json(const std::vector<StageTime>& stages) {
   return list;
 }
 
+json world_json(const WorldState& world) {
+  json objects = json::array();
+  for (const TrackedObject& object : world.last.objects) {
+    const Eigen::Vector3d place = object.T_world_object.translation();
+    objects.push_back({{"number", object.track_id},
+                       {"name", object.class_name},
+                       {"colour", css_colour(class_colour(object.class_id))},
+                       {"state", to_string(object.state)},
+                       {"probability", object.probability},
+                       {"speed", object.moving ? json(object.velocity.head<3>().norm()) : json(nullptr)},
+                       {"position", {place.x(), place.y(), place.z()}},
+                       {"reason", object.reason}});
+  }
+  return {{"name", world.last.world}, {"cameras", world.T_world_camera.size()}, {"objects", objects}};
+}
+
 }  // namespace
 
 std::string why_no_pose(const ObjectPose* pose) {
@@ -146,6 +162,8 @@ std::string stream_json(const StreamView& stream, const FrameViewSettings& setti
                   {"cameras", stream.cameras},
                   {"processes", processes},
                   {"teaching", teaching},
+                  {"world", stream.state.world ? world_json(*stream.state.world) : json(nullptr)},
+                  {"show_world", settings.show_world},
                   {"paused", settings.paused},
                   {"min_score", settings.min_score}});
 }

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
@@ -139,16 +140,16 @@ void PageServer::State::add_pages() {
   });
   server.Get("/events", [this](const httplib::Request&, httplib::Response& response) { serve_events(response); });
   server.Get(
-      R"(/picture/(colour|depth|3d)\.jpg)",
+      R"(/picture/(colour|depth|3d|world)\.jpg)",
       [this](const httplib::Request& request, httplib::Response& response) { serve_picture(request, response); });
   server.Post("/orders",
               [this](const httplib::Request& request, httplib::Response& response) { take_orders(request, response); });
 }
 
 void PageServer::State::serve_picture(const httplib::Request& request, httplib::Response& response) {
-  const std::string name = request.matches[1];
-  const PageView view = name == "colour" ? PageView::kColour : name == "depth" ? PageView::kDepth : PageView::k3d;
-  const Jpeg jpeg = board.picture(view, kPicturePatience);
+  static const std::map<std::string, PageView> views = {
+      {"colour", PageView::kColour}, {"depth", PageView::kDepth}, {"3d", PageView::k3d}, {"world", PageView::kWorld}};
+  const Jpeg jpeg = board.picture(views.at(request.matches[1]), kPicturePatience);
   if (!jpeg) return answer(response, 503, "no frame has come yet");
   response.set_content(reinterpret_cast<const char*>(jpeg->data()), jpeg->size(), "image/jpeg");
 }

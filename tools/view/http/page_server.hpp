@@ -11,7 +11,7 @@ namespace houghstream::view {
 /// Serves the page and what it asks for, in threads of its own and of low priority:
 ///   GET /                 the page
 ///   GET /events           Server-Sent Events: `frame` and `stream`, page_json.hpp
-///   GET /picture/VIEW.jpg VIEW: colour, depth, 3d; of the frame that is shown
+///   GET /picture/VIEW.jpg VIEW: colour, depth, 3d, world; of the frame that is shown
 ///   POST /orders          {"paused": bool, "min_score": 0..1, "next_camera": true}, each optional
 /// Orders need the header X-Houghstream-Token, which a page from elsewhere cannot send unasked; its value, which is not
 /// empty, counts where the address is not local. A local address answers to names of this machine only.

@@ -51,6 +51,24 @@ struct Looked {
   StreamView stream;
 };
 
+TEST(LivePage, ShowsTheWorldFromAboveAsItGoesOn) {
+  Looked looked;
+  looked.settings.show_world = true;
+  looked.show(viewed_frame(5));
+  const cv::Mat without = looked.fetched("world", viewed_frame(5));
+  ASSERT_EQ(without.cols, 440);
+  EXPECT_EQ(without.rows * viewed_frame(5).frame.colour.cols, 440 * viewed_frame(5).frame.colour.rows);
+  TrackedObject mug;
+  mug.track_id = 3;
+  mug.state = TrackState::kVisible;
+  WorldObjects world;
+  world.frame = {"OPENNI_FRAME", 6};
+  world.objects = {mug};
+  looked.stream.state.world.emplace().add(world);
+  looked.show(viewed_frame(6));
+  EXPECT_GT(cv::norm(looked.fetched("world", viewed_frame(6)), without, cv::NORM_INF), 100.0);
+}
+
 TEST(LivePage, ShowsEachViewThatIsAskedFor) {
   Looked looked;
   const ViewedFrame viewed = viewed_frame(5);

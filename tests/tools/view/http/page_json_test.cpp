@@ -98,8 +98,41 @@ TEST(PageJson, TheStreamTellsRatesLossesAndWhatIsShown) {
   EXPECT_EQ(told["paused"], true);
   EXPECT_EQ(told["min_score"], 0.5);
   EXPECT_TRUE(told["teaching"].is_null());
+  EXPECT_TRUE(told["world"].is_null());
+  EXPECT_EQ(told["show_world"], false);
   stream.frames_lost = -1;
   EXPECT_TRUE(json::parse(stream_json(stream, settings))["lost"].is_null());
+}
+
+TEST(PageJson, TheWorldIsToldWithItsObjects) {
+  TrackedObject mug;
+  mug.track_id = 3;
+  mug.class_name = "mug";
+  mug.state = TrackState::kHidden;
+  mug.probability = 0.75F;
+  mug.T_world_object = Eigen::Translation3d(1, 2, 3);
+  mug.reason = "something stands before it";
+  TrackedObject moved = mug;
+  moved.moving = true;
+  moved.velocity << 0.3, 0.4, 0.0, 0.0, 0.0, 0.0;
+  WorldObjects world;
+  world.frame = {"LEFT", 6};
+  world.world = "WORLD";
+  world.objects = {mug, moved};
+  StreamView stream;
+  stream.state.world.emplace().add(world);
+  world.frame.channel = "RIGHT";
+  stream.state.world->add(world);
+  const json told = json::parse(stream_json(stream, {}))["world"];
+  EXPECT_EQ(told["name"], "WORLD");
+  EXPECT_EQ(told["cameras"], 2);
+  ASSERT_EQ(told["objects"].size(), 2U);
+  EXPECT_EQ(told["objects"][0]["number"], 3);
+  EXPECT_EQ(told["objects"][0]["state"], to_string(TrackState::kHidden));
+  EXPECT_EQ(told["objects"][0]["position"], json::parse("[1.0, 2.0, 3.0]"));
+  EXPECT_EQ(told["objects"][0]["reason"], "something stands before it");
+  EXPECT_TRUE(told["objects"][0]["speed"].is_null());
+  EXPECT_NEAR(told["objects"][1]["speed"].get<double>(), 0.5, 1e-9);
 }
 
 }  // namespace

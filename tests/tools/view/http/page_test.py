@@ -13,6 +13,10 @@ from told_stream import CAMERA, ToldStream
 
 SKIPPED = 77
 ROWS = "document.querySelectorAll('#objects tr[data-key]:not(.gone)').length"
+# A number made of the pixels of an image in the page.
+DRAWN = """(() => { const canvas = document.createElement('canvas'), image = PICTURE; canvas.width = 64; canvas.height = 48;
+  const pen = canvas.getContext('2d'); pen.drawImage(image, 0, 0, 64, 48);
+  return pen.getImageData(0, 0, 64, 48).data.reduce((sum, value, i) => (31 * sum + value * (i % 7 + 1)) % 1000003, 0); })()"""
 WORDS = "document.getElementById('link').textContent"
 
 
@@ -41,6 +45,23 @@ def check_elements(page):
     page.value("{ const view = document.getElementById('second-view'); view.value = '3d'; view.dispatchEvent(new Event('change')); }")
     before = page.value(f"{second}.src")
     page.wait_for(f"{second}.src !== '{before}' && {second}.naturalWidth === 64")
+
+
+def check_world(page):
+    """Beside the picture: the world from above, which changes as the objects do, and its list."""
+    page.wait_for("!document.getElementById('world-card').hidden")
+    bowl, mug = page.wait_for("[...document.querySelectorAll('#world tbody tr')].map(row => row.innerText)")
+    assert "#1 bowl" in bowl and "visible" in bowl, bowl
+    assert "#2 mug <b>" in mug and "hidden" in mug and "something stands before it" in mug, mug
+    page.value("{ const view = document.getElementById('second-view'); view.value = 'world'; view.dispatchEvent(new Event('change')); }")
+    second = "document.getElementById('second')"
+    page.wait_for(f"{second}.naturalWidth === 440 && {second}.naturalHeight === 330")
+    page.wait_for(f"{text_of('#second-words')} === 'WORLD from above, 2 cameras'")
+    sums, end = set(), time.monotonic() + 30
+    while time.monotonic() < end and len(sums) < 3:
+        sums.add(page.value(DRAWN.replace("PICTURE", second)))
+        time.sleep(0.2)
+    assert len(sums) >= 3, "the world stands still"
 
 
 def check_live_change(page):
@@ -113,6 +134,7 @@ def check_page(program, arguments):
         page.open(f"http://127.0.0.1:{port}/")
         check_elements(page)
         check_live_change(page)
+        check_world(page)
         check_picking(page)
         page.photograph(out / "page_desktop.png")
         check_buttons(page)

@@ -1,5 +1,6 @@
 """A stream as hs-view hears it, without camera, detector and poses: frames and results of our own making."""
 
+import math
 import os
 import random
 import re
@@ -14,7 +15,9 @@ from houghstream.image_t import image_t
 from houghstream.images_t import images_t
 from houghstream.object_pose_t import object_pose_t
 from houghstream.object_poses_t import object_poses_t
+from houghstream.objects_t import objects_t
 from houghstream.stage_time_t import stage_time_t
+from houghstream.tracked_object_t import tracked_object_t
 
 CAMERA = "64x48,58,58,32,24"
 WIDTH, HEIGHT = 64, 48
@@ -76,6 +79,28 @@ def poses_message(utime, channel, objects):
     return message
 
 
+def tracked(number, name, state, place, reason):
+    told = tracked_object_t()
+    told.track_id, told.class_id, told.class_name, told.state, told.reason = number, number, name, state, reason
+    told.probability, told.trans, told.quat = 0.97, place, [1.0, 0.0, 0.0, 0.0]
+    told.covariance = [[1e-5 * (row == column) for column in range(6)] for row in range(6)]
+    told.n_seen, told.seen_channel = 10, "OPENNI_FRAME"
+    return told
+
+
+def objects_message(utime, channel, turn):
+    """A bowl that goes round in a circle, and a mug that nobody sees; two cameras look on."""
+    message = objects_t()
+    message.utime, message.source_channel, message.world, message.world_number = utime, channel, "WORLD", 1
+    side = -0.6 if channel == "SIDE" else 0.0
+    message.camera_trans, message.camera_quat = [side, -0.8, 0.6], [0.707, -0.707, 0.0, 0.0]
+    place = [0.3 * math.cos(0.2 * turn), 0.3 * math.sin(0.2 * turn), 0.0]
+    message.objects = [tracked(1, "bowl", tracked_object_t.VISIBLE, place, "seen by OPENNI_FRAME"),
+                       tracked(2, "mug <b>", tracked_object_t.HIDDEN, [0.1, 0.2, 0.0], "something stands before it")]  # fmt: skip
+    message.n_objects = len(message.objects)
+    return message
+
+
 class ToldStream:
     """Sends frames and what is told of them at 10 Hz while it lasts, on the bus of LCM_DEFAULT_URL. The first object's score
     changes with each frame. Use with `with`."""
@@ -102,6 +127,8 @@ class ToldStream:
             self.send(self.channel, frame_message(utime))
             self.send("HOUGHSTREAM_DETECTIONS", detections_message(utime, self.channel, objects))
             self.send("HOUGHSTREAM_POSES", poses_message(utime, self.channel, objects))
+            for camera in (self.channel, "SIDE"):
+                self.send("HOUGHSTREAM_OBJECTS", objects_message(utime, camera, turn))
 
     def __enter__(self):
         self.thread.start()

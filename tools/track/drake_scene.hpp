@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <houghstream/drake_viewer_draw_t.hpp>
+#include <houghstream/drake_viewer_load_robot_t.hpp>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "pipeline/types/tracked_object.hpp"
+#include "pose/tracks/track.hpp"
+#include "tools/track/viewer_mesh.hpp"
+
+namespace houghstream::track {
+
+/// The objects of the world as Drake's viewers (drake_visualizer, meldis) take them: a load message with their shapes,
+/// and a draw message with their poses for each frame. Objects that are gone are in neither. A viewer puts what it has
+/// loaded, but was not told the pose of, at the origin: so both are always of the same objects. Not thread-safe.
+class DrakeScene {
+ public:
+  /// Meshes go to files in this folder, for viewers on this machine.
+  explicit DrakeScene(std::filesystem::path mesh_folder);
+
+  /// The classes' meshes from here on. Of one that cannot be written the reason is said, and a box takes its place.
+  void set_models(const tracks::TrackModels& models);
+
+  struct Messages {
+    /// To be sent first: at the beginning, when the set of objects changes, and every ten seconds for viewers that
+    /// began later. meldis passes over one that is like its last; drake_visualizer loads its files again.
+    std::optional<drake_viewer_load_robot_t> load;
+    drake_viewer_draw_t draw;
+  };
+  Messages messages(const WorldObjects& world);
+
+ private:
+  drake_viewer_geometry_data_t shape_of(const std::string& class_name);
+  drake_viewer_load_robot_t load_message(const WorldObjects& world);
+
+  std::filesystem::path folder_;
+  std::map<std::string, ViewerMesh> meshes_;  // by class
+  std::set<std::string> told_;                // classes without a mesh
+  std::optional<std::vector<std::string>> loaded_;
+  bool changed_ = false;
+  std::int64_t load_utime_ = 0;
+};
+
+}  // namespace houghstream::track
