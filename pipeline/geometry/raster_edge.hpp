@@ -23,11 +23,22 @@ struct Edge {
   Edge(const Snapped& a, const Snapped& b)
       : x_step(-(b.y - a.y) * kSubpixels),
         y_step((b.x - a.x) * kSubpixels),
-        origin((b.y - a.y) * a.x - (b.x - a.x) * a.y),
-        inverse_x_step(x_step == 0 ? 0.0 : 1.0 / static_cast<double>(x_step)) {
+        origin((b.y - a.y) * a.x - (b.x - a.x) * a.y) {
     const bool owns_its_pixels = x_step < 0 || (x_step == 0 && y_step > 0);
     if (!owns_its_pixels) --origin;
   }
+
+  std::int64_t at(int x, int y) const { return origin + x_step * x + y_step * y; }
+
+  std::int64_t x_step;
+  std::int64_t y_step;
+  std::int64_t origin;
+};
+
+/// An edge of a wide triangle, whose rows are cut at once, not pixel by pixel.
+struct ClippingEdge : Edge {
+  ClippingEdge(const Edge& edge)  // NOLINT(google-explicit-constructor): the same edge
+      : Edge(edge), inverse_x_step(x_step == 0 ? 0.0 : 1.0 / static_cast<double>(x_step)) {}
 
   /// Narrows first..last to the pixels of row y that lie inside.
   void clip(int y, int& first, int& last) const {
@@ -60,9 +71,6 @@ struct Edge {
     }
   }
 
-  std::int64_t x_step;
-  std::int64_t y_step;
-  std::int64_t origin;
   double inverse_x_step;
 };
 

@@ -48,9 +48,10 @@ void give_way() {
 
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options) {
+  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   const Detector detector = make_detector(load_forest(options.forest_file), options.search);
   DetectorWorkspace workspace;
-  detector.detect(frame_to_warm_up(), workspace);
+  detector.detect(made_up.get(), workspace);
   LcmBus bus(options.url, options.output_log);
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) { return detector.detect(frame, workspace); });
 }
@@ -58,11 +59,12 @@ void run_with_forest(const DetectOptions& options) {
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options) {
   if (!options.search.threshold) options.search.threshold = kStoreThreshold;
+  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   store::StoreWatch<Detector> watch(
       options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options.search); });
   options.process.objects = [&] { return watch.known(); };
   DetectorWorkspace workspace;
-  if (const auto detector = watch.current()) detector->detect(frame_to_warm_up(), workspace);
+  if (const auto detector = watch.current()) detector->detect(made_up.get(), workspace);
   LcmBus bus(options.url, options.output_log);
   bus.is_log() ? watch.hold() : watch.follow();
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
