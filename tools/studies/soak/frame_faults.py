@@ -50,7 +50,8 @@ class FrameFaults(Faults):
             rubbish(HEARD, "OPENNI_FRAME", payloads)
 
         seen = self.counted("forged", meanwhile=send)
-        seen["good"] = seen["refused"] >= len(payloads) and adds_up(seen["sent"] + len(payloads), seen)
+        seen["sent"] += len(payloads)
+        seen["good"] = seen["refused"] >= len(payloads) and adds_up(seen["sent"], seen)
         return seen
 
     def clock_jumps(self):
