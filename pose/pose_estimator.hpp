@@ -28,9 +28,9 @@ struct PlacedObject {
 /// own memory, and its time is what passed on the wall.
 class PoseEstimator {
  public:
-  /// Models by class name, in metres, in the object frame of the training views. Throws InputError as
-  /// make_object_model() does.
-  PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings);
+  /// Models by class name, in metres, in the object frame of the training views. What registration needs of them is
+  /// made on `threads` threads, the same for any number. Throws InputError as make_object_model() does.
+  PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings, int threads = 1);
   ~PoseEstimator();
   PoseEstimator(PoseEstimator&&) noexcept;
 

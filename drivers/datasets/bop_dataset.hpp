@@ -74,8 +74,9 @@ BopModels read_bop_models(const std::filesystem::path& models_folder);
 
 /// The meshes of a models folder by class name, metres: a BOP one, or, without models_info.json, all NAME.ply and
 /// NAME.obj in it. `unit_m` is the length of the files' unit in metres (BOP: millimetres). Throws InputError where
-/// there are none or two share a name.
-std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder, double unit_m = 1e-3);
+/// there are none or two share a name. They are read on `threads` threads.
+std::map<std::string, Mesh> load_class_models(const std::filesystem::path& models_folder, double unit_m = 1e-3,
+                                              int threads = 1);
 
 /// {"1": "bowl", ...}
 std::map<int, std::string> read_bop_names(const std::filesystem::path& names_file);

@@ -4,6 +4,7 @@
 #include "drivers/datasets/bop_symmetries.hpp"
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {
@@ -76,7 +77,7 @@ BopModels read_bop_models(const fs::path& models_folder) {
   return models;
 }
 
-std::map<std::string, Mesh> load_class_models(const fs::path& models_folder, double unit_m) {
+std::map<std::string, Mesh> load_class_models(const fs::path& models_folder, double unit_m, int threads) {
   std::vector<std::pair<std::string, fs::path>> files;  // by class name
   if (fs::exists(models_folder / "models_info.json")) {
     const BopModels models = read_bop_models(models_folder);
@@ -87,10 +88,16 @@ std::map<std::string, Mesh> load_class_models(const fs::path& models_folder, dou
     files = named_files(models_folder);
   }
   std::map<std::string, Mesh> meshes;
+  std::vector<Mesh*> places;
   for (const auto& [name, file] : files) {
-    const bool is_new = meshes.try_emplace(name, load_mesh(file, unit_m)).second;
+    const auto [place, is_new] = meshes.try_emplace(name);
     require(is_new, "{}: two models are called '{}', expected one of each name", models_folder.string(), name);
+    places.push_back(&place->second);
   }
+  parallel_for(threads, static_cast<int>(files.size()), [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    *places[index] = load_mesh(files[index].second, unit_m);
+  });
   return meshes;
 }
 

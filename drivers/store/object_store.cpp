@@ -5,6 +5,7 @@
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
 
 namespace houghstream::store {
 namespace {
@@ -171,16 +172,19 @@ void check_bounds(const Mesh& mesh, const Eigen::AlignedBox3d& stated, const std
           file, is.x(), is.y(), is.z(), off * 1e3, said.x(), said.y(), said.z());
 }
 
-std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store) {
+std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int threads) {
   const BopModels models = read_bop_models(store.models_folder());
   std::map<std::string, Mesh> meshes;
-  for (const StoredObject& object : store.objects) {
-    const fs::path file = models.mesh_file(object.id);
-    Mesh mesh = load_mesh(file);
-    const auto stated = models.bounds.find(object.id);
-    if (stated != models.bounds.end()) check_bounds(mesh, stated->second, file.string());
-    meshes.emplace(object.name, std::move(mesh));
-  }
+  std::vector<Mesh*> places;
+  for (const StoredObject& object : store.objects) places.push_back(&meshes[object.name]);
+  parallel_for(threads, static_cast<int>(places.size()), [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    const int id = store.objects[index].id;
+    const fs::path file = models.mesh_file(id);
+    *places[index] = load_mesh(file);
+    const auto stated = models.bounds.find(id);
+    if (stated != models.bounds.end()) check_bounds(*places[index], stated->second, file.string());
+  });
   return meshes;
 }
 

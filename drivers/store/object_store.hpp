@@ -49,8 +49,9 @@ struct ObjectStore {
 /// contradict one another.
 ObjectStore read_store(const std::filesystem::path& folder);
 
-/// Meshes by name, metres. Throws InputError where one cannot be read or has another size than models_info.json says.
-std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store);
+/// Meshes by name, metres, read on `threads` threads. Throws InputError where one cannot be read or has another size
+/// than models_info.json says.
+std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int threads = 1);
 
 /// Throws InputError naming the mesh's file where it has other bounds than its models_info.json states, metres, by more
 /// than 2 % of the largest side.

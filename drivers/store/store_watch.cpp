@@ -158,11 +158,11 @@ void StoreFollower::take_over(const ObjectStore& store, std::shared_ptr<const vo
                                     [&](const KnownObject& earlier) { return earlier.name == object.name; });
     objects.push_back({object.name, known == known_.objects.end() ? now : known->since_utime});
   }
-  if (current_) retired_.push_back(std::move(current_));
   if (current_ || !known_.problem.empty()) {
     log_info("{}: {} objects from here on{}{}", known_.store, objects.size(), changed("new:", objects, known_.objects),
              changed("gone:", known_.objects, objects));
   }
+  if (current_) retired_.push_back(std::move(current_));
   current_ = std::move(loaded);
   known_.objects = std::move(objects);
   known_.since_utime = now;

@@ -1,113 +1,128 @@
 #include "pipeline/bus/sequence_count.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <string_view>
 
 namespace houghstream {
 namespace {
 
-constexpr std::int64_t kBelieved = 300;        // frames that a single number may tell to be lost: ten seconds
-constexpr std::int64_t kMostLost = 100'000;    // and two that follow one another: an hour
+constexpr std::int64_t kBelieved = 16;         // frames that a single number may tell to be lost
+constexpr std::int64_t kMostLost = 100'000;    // and two beside each other: an hour
 constexpr std::int64_t kRepeatUs = 1'000'000;  // a duplicate comes within this time
 constexpr std::size_t kRuns = 4;               // senders on one channel whose numbers are kept apart
-constexpr std::int64_t kFew = 8;               // frames behind a jump that may be of who forged it
+constexpr std::int64_t kBeside = 8;            // so close are the first numbers after a jump
+constexpr std::size_t kFar = 8;
+constexpr std::size_t kJumps = 3;
 constexpr std::size_t kHeard = 256;
-
-std::size_t slot_of(std::int64_t number, std::size_t window) {
-  return static_cast<std::size_t>(number) % window;
-}
 
 }  // namespace
 
 FrameOrder SequenceCount::note(const FrameNumber& frame, std::int64_t now_us) {
   if (!frame.sequence || *frame.sequence < 0) return FrameOrder::kNext;
   has_number_ = true;
+  const Seen arrived{*frame.sequence, frame.utime, now_us};
   bool is_new = false;
-  Run& run = run_of(frame, *frame.sequence, is_new);
-  if (is_new) {
-    mark(run, *frame.sequence, frame.utime, now_us);
-    return FrameOrder::kNext;
-  }
-  return note_in(run, frame, *frame.sequence, now_us);
+  Run& run = run_of(frame.run, arrived, is_new);
+  if (is_new) return FrameOrder::kNext;
+  const auto has = [&](const Course& course) { return is_repeated(course.seen[slot(arrived.number)], arrived); };
+  if (has(run.course) || std::any_of(run.before.begin(), run.before.end(), has)) return FrameOrder::kDuplicate;
+  return has_place(run.course, arrived.number) ? place(run.course, arrived) : note_far(run, arrived);
 }
 
 std::optional<std::int64_t> SequenceCount::lost() const {
-  return has_number_ ? std::optional<std::int64_t>(lost_) : std::nullopt;
+  if (!has_number_) return std::nullopt;
+  std::int64_t lost = lost_;
+  for (const Run& run : runs_) lost += run.course.lost;
+  return lost;
 }
 
-SequenceCount::Run& SequenceCount::run_of(const FrameNumber& frame, std::int64_t number, bool& is_new) {
-  const auto known = std::find_if(runs_.begin(), runs_.end(), [&](const Run& run) { return run.id == frame.run; });
+SequenceCount::Run& SequenceCount::run_of(std::int64_t id, const Seen& frame, bool& is_new) {
+  const auto known = std::find_if(runs_.begin(), runs_.end(), [&](const Run& run) { return run.id == id; });
   is_new = known == runs_.end();
   if (!is_new) {
     runs_.splice(runs_.begin(), runs_, known);
-  } else {
-    runs_.emplace_front();
-    runs_.front().id = frame.run;
-    runs_.front().first = runs_.front().newest = number;
-    if (runs_.size() > kRuns) runs_.pop_back();
+    return runs_.front();
   }
-  return runs_.front();
+  Run& run = runs_.emplace_front();
+  run.id = id;
+  run.course.first = run.course.newest = frame.number;
+  run.course.seen[slot(frame.number)] = frame;
+  if (runs_.size() > kRuns) {
+    lost_ += runs_.back().course.lost;
+    runs_.pop_back();
+  }
+  return run;
 }
 
-void SequenceCount::mark(Run& run, std::int64_t number, std::int64_t utime, std::int64_t now_us) {
-  run.seen[slot_of(number, run.seen.size())] = {number, utime, now_us};
+std::size_t SequenceCount::slot(std::int64_t number) {
+  return static_cast<std::size_t>(number % kWindow);
 }
 
-FrameOrder SequenceCount::note_in(Run& run, const FrameNumber& frame, std::int64_t number, std::int64_t now_us) {
-  const bool is_next = number > run.newest && number - run.newest <= kBelieved;
-  const bool is_near = number <= run.newest && run.newest - number < kWindow;
-  if (!is_next && !is_near) return note_far(run, frame, number, now_us);
-  const Seen& seen = run.seen[slot_of(number, run.seen.size())];
-  if (is_near && seen.number == number) {
-    const bool is_same = seen.utime == frame.utime && now_us - seen.arrival_us <= kRepeatUs;
-    return is_same ? FrameOrder::kDuplicate : note_far(run, frame, number, now_us);
-  }
-  if (is_near && number < run.first) return note_far(run, frame, number, now_us);
-  run.candidate.reset();
-  mark(run, number, frame.utime, now_us);
-  if (is_near) {
-    --lost_;
-    if (number > run.jump_from && run.jump_lost > 0) --run.jump_lost;
+bool SequenceCount::is_repeated(const Seen& seen, const Seen& frame) {
+  return seen.number == frame.number && seen.utime == frame.utime && frame.arrival_us - seen.arrival_us <= kRepeatUs;
+}
+
+/// Whether the number lies close to the newest one, and no other frame has had it.
+bool SequenceCount::has_place(const Course& course, std::int64_t number) {
+  if (number > course.newest) return number - course.newest <= kBelieved;
+  return number >= course.first && course.newest - number < kWindow && course.seen[slot(number)].number != number;
+}
+
+FrameOrder SequenceCount::place(Course& course, const Seen& frame) {
+  course.seen[slot(frame.number)] = frame;
+  if (frame.number < course.newest) {
+    --course.lost;
     return FrameOrder::kLate;
   }
-  const std::int64_t missing = number - run.newest - 1;
-  lost_ += missing;
-  if (missing > 0) {
-    const bool goes_on = run.jump_lost > 0 && run.newest - run.jump_from < kWindow;
-    if (!goes_on) run.jump_from = run.newest;
-    run.jump_lost = missing + (goes_on ? run.jump_lost : 0);
-  }
-  run.newest = number;
+  course.lost += frame.number - course.newest - 1;
+  course.newest = frame.number;
   return FrameOrder::kNext;
 }
 
-FrameOrder SequenceCount::note_far(Run& run, const FrameNumber& frame, std::int64_t number, std::int64_t now_us) {
-  const std::int64_t before = run.candidate ? *run.candidate->sequence : number;
-  if (run.candidate && number == before && run.candidate->utime == frame.utime &&
-      now_us - run.candidate_us <= kRepeatUs)
-    return FrameOrder::kDuplicate;
-  const bool follows = number > before && number - before < kWindow;
-  if (!follows) {
-    run.candidate = frame;
-    run.candidate_us = now_us;
-    return FrameOrder::kNext;
-  }
-  const bool has_just_jumped = run.jump_lost > 0 && run.newest - run.jump_from - run.jump_lost < kFew;
-  if (has_just_jumped && before > run.jump_from && before - run.jump_from < kWindow) {
-    lost_ += before - run.jump_from - 1 - run.jump_lost;
-  } else if (before > run.newest && before - run.newest <= kMostLost) {
-    lost_ += before - run.newest - 1;
-  }
-  run.jump_lost = 0;
-  lost_ += number - before - 1;
-  run.seen = {};
-  mark(run, before, run.candidate->utime, run.candidate_us);
-  mark(run, number, frame.utime, now_us);
-  run.first = before;
-  run.newest = number;
-  run.candidate.reset();
+FrameOrder SequenceCount::note_far(Run& run, const Seen& frame) {
+  const auto is_it = [&](const Seen& other) { return is_repeated(other, frame); };
+  if (std::any_of(run.far.begin(), run.far.end(), is_it)) return FrameOrder::kDuplicate;
+  const auto beside = std::find_if(run.far.rbegin(), run.far.rend(), [&](const Seen& other) {
+    return other.number != frame.number && std::abs(other.number - frame.number) <= kBeside;
+  });
+  const std::int64_t partner = beside == run.far.rend() ? -1 : beside->number;
+  if (run.far.size() == kFar) run.far.pop_front();
+  run.far.push_back(frame);
+  if (partner >= 0) jump(run, std::min(partner, frame.number), std::max(partner, frame.number));
   return FrameOrder::kNext;
+}
+
+/// Two numbers beside each other are believed: those before a jump go on, or others begin.
+void SequenceCount::jump(Run& run, std::int64_t low, std::int64_t high) {
+  const auto earlier = std::find_if(run.before.begin(), run.before.end(), [&](const Course& course) {
+    return high > course.newest && has_place(course, low);
+  });
+  const bool goes_on = earlier != run.before.end();
+  if (goes_on) {
+    std::swap(run.course, *earlier);
+  } else {
+    run.before.push_front(run.course);
+    if (run.before.size() > kJumps) run.before.pop_back();
+    const std::int64_t missing = low - run.course.newest - 1;
+    if (low > run.course.newest && missing <= kMostLost) run.course.lost += missing;
+    run.course.first = run.course.newest = low;
+    run.course.seen = {};
+  }
+  // All of them that belong here, in their order, whatever came in between.
+  std::sort(run.far.begin(), run.far.end(), [](const Seen& a, const Seen& b) { return a.number < b.number; });
+  std::deque<Seen> still_far;
+  for (const Seen& frame : run.far) {
+    const bool is_low = !goes_on && frame.number == low;
+    if (is_low) run.course.seen[slot(low)] = frame;
+    if (!is_low && has_place(run.course, frame.number)) {
+      place(run.course, frame);
+    } else if (!is_low) {
+      still_far.push_back(frame);
+    }
+  }
+  run.far = std::move(still_far);
 }
 
 bool RepeatedMessages::is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size,

@@ -29,9 +29,10 @@ enum class FrameOrder {
 
 /// Counts the frames of a source that were sent and have not come, from their numbers, after the way in which RTP does
 /// (RFC 3550, appendix A.1). What is overtaken counts as lost until it comes. A number that lies far from those before
-/// it (forged, or of a sender that was started again) is not believed until its successor has come, and numbers a
-/// hundred thousand apart are no loss, but another beginning. A frame whose number, time and run have come within the
-/// last second is a duplicate. Not thread-safe.
+/// it (forged, or of a sender that was started again) is not believed until another one beside it has come; where the
+/// numbers go on as before it all the same, it is as if it had never been believed. Numbers a hundred thousand apart
+/// are no loss, but another beginning. A frame whose number, time and run have come within the last second is a
+/// duplicate. Not thread-safe.
 class SequenceCount {
  public:
   /// `now_us`: when it arrived, on a clock that does not jump, microseconds.
@@ -48,24 +49,30 @@ class SequenceCount {
     std::int64_t utime = 0;
     std::int64_t arrival_us = 0;
   };
-  struct Run {
-    std::int64_t id = 0;
+  /// Numbers that follow one another.
+  struct Course {
     std::int64_t first = 0;
     std::int64_t newest = 0;
-    std::int64_t jump_from = 0;  // before the last gaps: they are taken back where what follows goes on from there
-    std::int64_t jump_lost = 0;
+    std::int64_t lost = 0;           // with what was lost before it
     std::array<Seen, kWindow> seen;  // by number modulo the window
-    std::optional<FrameNumber> candidate;
-    std::int64_t candidate_us = 0;
+  };
+  struct Run {
+    std::int64_t id = 0;
+    Course course;
+    std::list<Course> before;  // what it was before the last jumps that were believed
+    std::deque<Seen> far;      // the last frames that lie far from it
   };
 
-  Run& run_of(const FrameNumber& frame, std::int64_t number, bool& is_new);
-  FrameOrder note_in(Run& run, const FrameNumber& frame, std::int64_t number, std::int64_t now_us);
-  FrameOrder note_far(Run& run, const FrameNumber& frame, std::int64_t number, std::int64_t now_us);
-  static void mark(Run& run, std::int64_t number, std::int64_t utime, std::int64_t now_us);
+  Run& run_of(std::int64_t id, const Seen& frame, bool& is_new);
+  static std::size_t slot(std::int64_t number);
+  static bool is_repeated(const Seen& seen, const Seen& frame);
+  static bool has_place(const Course& course, std::int64_t number);
+  static FrameOrder place(Course& course, const Seen& frame);
+  static FrameOrder note_far(Run& run, const Seen& frame);
+  static void jump(Run& run, std::int64_t low, std::int64_t high);
 
-  std::list<Run> runs_;  // the one heard last first
-  std::int64_t lost_ = 0;
+  std::list<Run> runs_;    // the one heard last first
+  std::int64_t lost_ = 0;  // of runs that are not kept any more
   bool has_number_ = false;
 };
 

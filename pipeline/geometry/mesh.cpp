@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -45,6 +46,49 @@ SurfacePoints random_points(const Mesh& mesh, std::size_t count, std::uint64_t s
   return out;
 }
 
+/// How far each point is from the nearest of those that were chosen, coordinate by coordinate, so that several are
+/// worked on at once.
+class FarthestPoints {
+ public:
+  explicit FarthestPoints(const std::vector<Eigen::Vector3f>& points)
+      : groups_((points.size() + kLanes - 1) / kLanes), size_(points.size()) {
+    for (std::size_t i = 0; i < groups_.size() * kLanes; ++i) {
+      Group& group = groups_[i / kLanes];
+      const auto lane = static_cast<Eigen::Index>(i % kLanes);
+      const Eigen::Vector3f& point = points[std::min(i, size_ - 1)];
+      group.x[lane] = point.x();
+      group.y[lane] = point.y();
+      group.z[lane] = point.z();
+      group.distance_sq[lane] = std::numeric_limits<float>::infinity();
+    }
+  }
+
+  /// The first of those that are farthest once this one is chosen too.
+  std::size_t farthest_with(const Eigen::Vector3f& chosen) {
+    Lanes farthest = Lanes::Zero();
+    for (Group& group : groups_) {
+      const Lanes x = group.x - chosen.x();
+      const Lanes y = group.y - chosen.y();
+      const Lanes z = group.z - chosen.z();
+      group.distance_sq = group.distance_sq.min(x * x + (y * y + z * z));
+      farthest = farthest.max(group.distance_sq);
+    }
+    const float most = farthest.maxCoeff();
+    std::size_t i = 0;
+    while (i + 1 < size_ && groups_[i / kLanes].distance_sq[static_cast<Eigen::Index>(i % kLanes)] != most) ++i;
+    return i;
+  }
+
+ private:
+  static constexpr int kLanes = 8;
+  using Lanes = Eigen::Array<float, kLanes, 1>;
+  struct Group {
+    Lanes x, y, z, distance_sq;
+  };
+  std::vector<Group> groups_;
+  std::size_t size_;
+};
+
 }  // namespace
 
 Eigen::AlignedBox3f mesh_bounds(const Mesh& mesh) {
@@ -74,16 +118,13 @@ SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed) {
   // Farthest-point choice (Eldar et al. 1997) among five times as many random points spreads them evenly.
   constexpr std::size_t kCandidatesPerPoint = 5;
   const SurfacePoints candidates = random_points(mesh, kCandidatesPerPoint * static_cast<std::size_t>(count), seed);
-  std::vector<float> distance_sq(candidates.points.size(), std::numeric_limits<float>::infinity());
+  FarthestPoints distances(candidates.points);
   SurfacePoints out;
   std::size_t chosen = 0;
   for (int n = 0; n < count; ++n) {
     out.points.push_back(candidates.points[chosen]);
     out.normals.push_back(candidates.normals[chosen]);
-    for (std::size_t i = 0; i < distance_sq.size(); ++i) {
-      distance_sq[i] = std::min(distance_sq[i], (candidates.points[i] - out.points.back()).squaredNorm());
-    }
-    chosen = std::max_element(distance_sq.begin(), distance_sq.end()) - distance_sq.begin();
+    chosen = distances.farthest_with(out.points.back());
   }
   return out;
 }

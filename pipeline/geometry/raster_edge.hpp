@@ -28,17 +28,19 @@ struct Edge {
     if (!owns_its_pixels) --origin;
   }
 
-  /// Narrows first..last to the pixels of row y that lie inside, step by step: for a few pixels.
-  void clip_few(int y, int& first, int& last) const {
-    const std::int64_t row = origin + y_step * y;
-    while (first <= last && row + x_step * first < 0) ++first;
-    while (first <= last && row + x_step * last < 0) --last;
-  }
+  std::int64_t at(int x, int y) const { return origin + x_step * x + y_step * y; }
 
-  /// What clip() needs: a division, which is spared where clip_few() does.
-  void prepare() { inverse_x_step = x_step == 0 ? 0.0 : 1.0 / static_cast<double>(x_step); }
+  std::int64_t x_step;
+  std::int64_t y_step;
+  std::int64_t origin;
+};
 
-  /// The same for many.
+/// An edge of a wide triangle, whose rows are cut at once, not pixel by pixel.
+struct ClippingEdge : Edge {
+  ClippingEdge(const Edge& edge)  // NOLINT(google-explicit-constructor): the same edge
+      : Edge(edge), inverse_x_step(x_step == 0 ? 0.0 : 1.0 / static_cast<double>(x_step)) {}
+
+  /// Narrows first..last to the pixels of row y that lie inside.
   void clip(int y, int& first, int& last) const {
     const std::int64_t row = origin + y_step * y;
     if (x_step == 0) {
@@ -69,10 +71,7 @@ struct Edge {
     }
   }
 
-  std::int64_t x_step;
-  std::int64_t y_step;
-  std::int64_t origin;
-  double inverse_x_step = 0.0;
+  double inverse_x_step;
 };
 
 }  // namespace houghstream

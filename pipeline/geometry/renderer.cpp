@@ -22,28 +22,35 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 struct ClipVertex {
   Eigen::Vector3d position;
   Snapped snapped;
+
+  bool in_front() const { return position.z() >= kNear; }
 };
 
 /// What a visible pixel needs of its triangle: dot products with the pixel's ray.
 struct Surface {
-  Eigen::Vector3d inverse_depth = Eigen::Vector3d::Zero();  // 1/z
-  Eigen::Vector3d second = Eigen::Vector3d::Zero();         // weight of the 2nd vertex, divided by z
+  Eigen::Vector3d second = Eigen::Vector3d::Zero();  // weight of the 2nd vertex, divided by z
   Eigen::Vector3d third = Eigen::Vector3d::Zero();
   std::int32_t triangle = -1;
   std::uint16_t id = 0;
 };
 
+/// The triangle that is being drawn. Most of a dense mesh cover no pixel's centre, or are hidden: what those need not
+/// have is made when the first pixel asks for it.
+struct Triangle {
+  std::array<const ClipVertex*, 3> corners{};
+  bool has_plane = false;
+  bool is_seen = false;           // nearest somewhere, so far
+  double distance = 0.0;          // of its plane, times its normal's length; 0 = seen exactly edge-on, or not finite
+  Eigen::Vector3d inverse_depth;  // 1/z: dot product with a pixel's ray
+  float step = 0.0F;              // of 1/z from a pixel to the next
+  float lowest = 0.0F;            // bounds of 1/z
+  float highest = 0.0F;
+};
+
 /// Nearest surfaces in one region of the image. Without owners only depth is kept.
 class Rasteriser {
  public:
-  Rasteriser(const Camera& camera, const cv::Rect& region, bool with_owners)
-      : camera_(camera),
-        region_(region),
-        inverse_depth_(region.size(), CV_32FC1, cv::Scalar(0)),
-        owner_(with_owners ? region.size() : cv::Size(), CV_32SC1, cv::Scalar(-1)) {
-    for (int x = 0; x < region.width; ++x) ray_x_.push_back(camera.backproject(x + region.x, 0.0, 1.0).x());
-    for (int y = 0; y < region.height; ++y) ray_y_.push_back(camera.backproject(0.0, y + region.y, 1.0).y());
-  }
+  Rasteriser(const Camera& camera, const cv::Rect& region, bool with_owners);
 
   void draw(const RenderItem& item);
   cv::Mat depth() const;
@@ -52,26 +59,33 @@ class Rasteriser {
  private:
   Snapped snap(const Eigen::Vector3d& point) const;
   void draw_triangle(const RenderItem& item, std::size_t index);
-  void draw_clipped(const std::array<ClipVertex, 3>& corners, const Surface& surface);
-  bool covers_a_pixel(const Snapped& a, const Snapped& b, const Snapped& c) const;
-  void fill(const std::array<Snapped, 3>& corners, const Surface& surface);
-  void fill_span(int y, int first, int last, const Surface& surface);
+  void draw_clipped(Triangle& triangle);
+  void fill(const std::array<Snapped, 3>& corners, Triangle& triangle);
+  void fill_rows(const std::array<Edge, 3>& edges, const cv::Rect& box, Triangle& triangle);
+  void fill_span(int y, int first, int last, Triangle& triangle);
+  bool has_plane(Triangle& triangle) const;
+  /// The ray through a pixel, where it is 1 m deep.
   Eigen::Vector3d ray(int x, int y) const {
     return {ray_x_[static_cast<std::size_t>(x)], ray_y_[static_cast<std::size_t>(y)], 1.0};
   }
 
   Camera camera_;
   cv::Rect region_;
-  cv::Mat inverse_depth_;          // CV_32FC1, 0 = nothing
-  cv::Mat owner_;                  // CV_32SC1, index into surfaces_, -1 = nothing
-  std::vector<Surface> surfaces_;  // only with owners
+  std::vector<double> ray_x_, ray_y_;  // by column, by row of the region
+  cv::Mat inverse_depth_;              // CV_32FC1, 0 = nothing
+  cv::Mat owner_;                      // CV_32SC1, index into surfaces_, -1 = nothing
+  std::vector<Surface> surfaces_;      // only with owners
   std::vector<ClipVertex> vertices_;
-  std::vector<double> ray_x_;  // of the region's columns and rows
-  std::vector<double> ray_y_;
-  float lowest_ = 0.0F;  // bounds of 1/z on the triangle being drawn
-  float highest_ = 0.0F;
-  float step_ = 0.0F;  // of 1/z from column to column
 };
+
+Rasteriser::Rasteriser(const Camera& camera, const cv::Rect& region, bool with_owners)
+    : camera_(camera),
+      region_(region),
+      inverse_depth_(region.size(), CV_32FC1, cv::Scalar(0)),
+      owner_(with_owners ? region.size() : cv::Size(), CV_32SC1, cv::Scalar(-1)) {
+  for (int x = 0; x < region.width; ++x) ray_x_.push_back(camera.backproject(x + region.x, 0.0, 1.0).x());
+  for (int y = 0; y < region.height; ++y) ray_y_.push_back(camera.backproject(0.0, y + region.y, 1.0).y());
+}
 
 Snapped Rasteriser::snap(const Eigen::Vector3d& point) const {
   constexpr double kRounding = kSnapLimit + 0.5;
@@ -88,125 +102,131 @@ void Rasteriser::draw(const RenderItem& item) {
   require(item.mesh != nullptr, "render item without a mesh");
   const Mesh& mesh = *item.mesh;
   vertices_.resize(mesh.vertices.size());
-  if (!owner_.empty()) surfaces_.reserve(surfaces_.size() + mesh.triangles.size());
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     vertices_[i].position = item.T_camera_object * mesh.vertices[i].cast<double>();
-    if (vertices_[i].position.z() >= kNear) vertices_[i].snapped = snap(vertices_[i].position);
+    if (vertices_[i].in_front()) vertices_[i].snapped = snap(vertices_[i].position);
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) draw_triangle(item, i);
 }
 
-bool Rasteriser::covers_a_pixel(const Snapped& a, const Snapped& b, const Snapped& c) const {
-  const auto [x_low, x_high] = std::minmax({a.x, b.x, c.x});
-  const auto [y_low, y_high] = std::minmax({a.y, b.y, c.y});
-  const auto holds_centre = [](std::int64_t low, std::int64_t high, int size) {
-    const std::int64_t first = (low + kSubpixels - 1) >> kSubpixelBits;
-    const std::int64_t last = high >> kSubpixelBits;
-    return first <= last && last >= 0 && first < size;
-  };
-  return holds_centre(x_low, x_high, region_.width) && holds_centre(y_low, y_high, region_.height);
-}
-
 void Rasteriser::draw_triangle(const RenderItem& item, std::size_t index) {
-  const auto& triangle = item.mesh->triangles[index];
-  const ClipVertex& a = vertices_[triangle[0]];
-  const ClipVertex& b = vertices_[triangle[1]];
-  const ClipVertex& c = vertices_[triangle[2]];
-  const bool all_in_front = a.position.z() >= kNear && b.position.z() >= kNear && c.position.z() >= kNear;
-  // Of a dense mesh most triangles end here.
-  if (all_in_front && !covers_a_pixel(a.snapped, b.snapped, c.snapped)) return;
-
-  const Eigen::Vector3d& origin = a.position;
-  const Eigen::Vector3d edge_1 = b.position - origin;
-  const Eigen::Vector3d edge_2 = c.position - origin;
-  const Eigen::Vector3d normal = edge_1.cross(edge_2);
-  const double distance = normal.dot(origin);
-  if (!(std::abs(distance) > std::numeric_limits<double>::min())) return;  // seen exactly edge-on, or not finite
-  Surface surface;
-  surface.inverse_depth = normal / distance;
-  if (!owner_.empty()) {
-    surface.second = edge_2.cross(origin) / distance;
-    surface.third = origin.cross(edge_1) / distance;
-    surface.triangle = static_cast<std::int32_t>(index);
-    surface.id = static_cast<std::uint16_t>(item.id);
-    surfaces_.push_back(surface);
-  }
-  if (all_in_front) {
-    const auto [near, far] = std::minmax({a.position.z(), b.position.z(), c.position.z()});
-    lowest_ = static_cast<float>(1.0 / far);
-    highest_ = static_cast<float>(1.0 / near);
-    fill({a.snapped, b.snapped, c.snapped}, surface);
+  const auto& [a, b, c] = item.mesh->triangles[index];
+  Triangle triangle;
+  triangle.corners = {&vertices_[a], &vertices_[b], &vertices_[c]};
+  const auto& [first, second, third] = triangle.corners;
+  if (first->in_front() && second->in_front() && third->in_front()) {
+    fill({first->snapped, second->snapped, third->snapped}, triangle);
   } else {
-    draw_clipped({a, b, c}, surface);
+    draw_clipped(triangle);
   }
+  if (!triangle.is_seen || owner_.empty()) return;
+  const Eigen::Vector3d& origin = first->position;
+  const Eigen::Vector3d edge_1 = second->position - origin;
+  const Eigen::Vector3d edge_2 = third->position - origin;
+  surfaces_.push_back({edge_2.cross(origin) / triangle.distance, origin.cross(edge_1) / triangle.distance,
+                       static_cast<std::int32_t>(index), static_cast<std::uint16_t>(item.id)});
 }
 
-void Rasteriser::draw_clipped(const std::array<ClipVertex, 3>& corners, const Surface& surface) {
+void Rasteriser::draw_clipped(Triangle& triangle) {
   std::array<Snapped, 4> polygon;
   std::size_t count = 0;
-  double far = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const ClipVertex& here = corners[i];
-    const ClipVertex& next = corners[(i + 1) % 3];
-    const bool here_in = here.position.z() >= kNear;
-    if (here_in) {
-      polygon[count++] = here.snapped;
-      far = std::max(far, here.position.z());
-    }
-    if (here_in == (next.position.z() >= kNear)) continue;
+    const ClipVertex& here = *triangle.corners[i];
+    const ClipVertex& next = *triangle.corners[(i + 1) % 3];
+    if (here.in_front()) polygon[count++] = here.snapped;
+    if (here.in_front() == next.in_front()) continue;
     // Always from the inner to the outer end, so that neighbours sharing this edge get the same point.
-    const Eigen::Vector3d& inner = here_in ? here.position : next.position;
-    const Eigen::Vector3d& outer = here_in ? next.position : here.position;
+    const Eigen::Vector3d& inner = here.in_front() ? here.position : next.position;
+    const Eigen::Vector3d& outer = here.in_front() ? next.position : here.position;
     const double along = (inner.z() - kNear) / (inner.z() - outer.z());
     Eigen::Vector3d crossing = inner + along * (outer - inner);
     crossing.z() = kNear;
     polygon[count++] = snap(crossing);
   }
   if (count < 3) return;
-  lowest_ = static_cast<float>(1.0 / far);
-  highest_ = static_cast<float>(1.0 / kNear);
-  fill({polygon[0], polygon[1], polygon[2]}, surface);
-  if (count == 4) fill({polygon[0], polygon[2], polygon[3]}, surface);
+  fill({polygon[0], polygon[1], polygon[2]}, triangle);
+  if (count == 4) fill({polygon[0], polygon[2], polygon[3]}, triangle);
 }
 
-void Rasteriser::fill(const std::array<Snapped, 3>& corners, const Surface& surface) {
+bool Rasteriser::has_plane(Triangle& triangle) const {
+  if (triangle.has_plane) return triangle.distance != 0.0;
+  triangle.has_plane = true;
+  const Eigen::Vector3d& origin = triangle.corners[0]->position;
+  const Eigen::Vector3d edge_1 = triangle.corners[1]->position - origin;
+  const Eigen::Vector3d edge_2 = triangle.corners[2]->position - origin;
+  const Eigen::Vector3d normal = edge_1.cross(edge_2);
+  const double distance = normal.dot(origin);
+  if (!(std::abs(distance) > std::numeric_limits<double>::min())) return false;
+  triangle.distance = distance;
+  triangle.inverse_depth = normal / distance;
+  triangle.step = static_cast<float>(triangle.inverse_depth.x() / camera_.fx);
+  double near = std::numeric_limits<double>::infinity();
+  double far = 0.0;
+  for (const ClipVertex* corner : triangle.corners) {
+    near = std::min(near, std::max(corner->position.z(), kNear));
+    far = std::max(far, corner->position.z());
+  }
+  triangle.lowest = static_cast<float>(1.0 / far);
+  triangle.highest = static_cast<float>(1.0 / near);
+  return true;
+}
+
+void Rasteriser::fill(const std::array<Snapped, 3>& corners, Triangle& triangle) {
   const Snapped& a = corners[0];
+  const auto first_pixel = [](std::int64_t p, std::int64_t q, std::int64_t r) {
+    return std::max<std::int64_t>(0, (std::min(std::min(p, q), r) + kSubpixels - 1) >> kSubpixelBits);
+  };
+  const auto end_pixel = [](std::int64_t p, std::int64_t q, std::int64_t r, int size) {
+    return std::min<std::int64_t>(size, (std::max(std::max(p, q), r) >> kSubpixelBits) + 1);
+  };
+  const std::int64_t x_first = first_pixel(a.x, corners[1].x, corners[2].x);
+  const std::int64_t x_end = end_pixel(a.x, corners[1].x, corners[2].x, region_.width);
+  if (x_first >= x_end) return;
+  const std::int64_t y_first = first_pixel(a.y, corners[1].y, corners[2].y);
+  const std::int64_t y_end = end_pixel(a.y, corners[1].y, corners[2].y, region_.height);
+  if (y_first >= y_end) return;
   const bool clockwise = (corners[1].x - a.x) * (corners[2].y - a.y) - (corners[1].y - a.y) * (corners[2].x - a.x) > 0;
   const Snapped& b = corners[clockwise ? 1 : 2];
   const Snapped& c = corners[clockwise ? 2 : 1];
-  std::array<Edge, 3> edges{Edge(a, b), Edge(b, c), Edge(c, a)};
+  fill_rows({Edge(a, b), Edge(b, c), Edge(c, a)},
+            cv::Rect(cv::Point(static_cast<int>(x_first), static_cast<int>(y_first)),
+                     cv::Point(static_cast<int>(x_end), static_cast<int>(y_end))),
+            triangle);
+}
 
-  const auto [x_low, x_high] = std::minmax({a.x, b.x, c.x});
-  const auto [y_low, y_high] = std::minmax({a.y, b.y, c.y});
-  const auto first_pixel = [](std::int64_t low) {
-    return static_cast<int>(std::max<std::int64_t>(0, (low + kSubpixels - 1) >> kSubpixelBits));
+void Rasteriser::fill_rows(const std::array<Edge, 3>& edges, const cv::Rect& box, Triangle& triangle) {
+  constexpr int kNarrow = 4;  // pixels: what is tried one by one sooner than divided for
+  const auto [first_edge, second_edge, third_edge] = edges;
+  const auto is_inside = [&](int x, int y) {
+    return (first_edge.at(x, y) | second_edge.at(x, y) | third_edge.at(x, y)) >= 0;
   };
-  const int x_first = first_pixel(x_low);
-  const int y_first = first_pixel(y_low);
-  const int x_last = static_cast<int>(std::min<std::int64_t>(region_.width - 1, x_high >> kSubpixelBits));
-  const int y_last = static_cast<int>(std::min<std::int64_t>(region_.height - 1, y_high >> kSubpixelBits));
-  constexpr int kFew = 8;
-  const bool few = x_last - x_first < kFew;
-  if (!few) {
-    for (Edge& edge : edges) edge.prepare();
-  }
-  step_ = static_cast<float>(surface.inverse_depth.x() / camera_.fx);
-  for (int y = y_first; y <= y_last; ++y) {
-    int first = x_first;
-    int last = x_last;
-    for (const Edge& edge : edges) {
-      if (first > last) break;
-      few ? edge.clip_few(y, first, last) : edge.clip(y, first, last);
+  if (box.width <= kNarrow) {
+    for (int y = box.y; y < box.br().y; ++y) {
+      int first = box.x;
+      int last = box.br().x - 1;
+      while (first <= last && !is_inside(first, y)) ++first;
+      while (first <= last && !is_inside(last, y)) --last;
+      if (first <= last) fill_span(y, first, last, triangle);
     }
-    if (first <= last) fill_span(y, first, last, surface);
+    return;
+  }
+  const std::array<ClippingEdge, 3> clipping{first_edge, second_edge, third_edge};
+  for (int y = box.y; y < box.br().y; ++y) {
+    int first = box.x;
+    int last = box.br().x - 1;
+    for (const ClippingEdge& edge : clipping) {
+      if (first <= last) edge.clip(y, first, last);
+    }
+    if (first <= last) fill_span(y, first, last, triangle);
   }
 }
 
-void Rasteriser::fill_span(int y, int first, int last, const Surface& surface) {
-  const auto start = static_cast<float>(surface.inverse_depth.dot(ray(first, y)));
-  const float step = step_;
-  const float lowest = lowest_;
-  const float highest = highest_;
+void Rasteriser::fill_span(int y, int first, int last, Triangle& triangle) {
+  if (!has_plane(triangle)) return;
+  const auto start = static_cast<float>(triangle.inverse_depth.dot(ray(first, y)));
+  const float step = triangle.step;
+  const float lowest = triangle.lowest;
+  const float highest = triangle.highest;
   const int count = last - first + 1;
   float* nearest = inverse_depth_.ptr<float>(y) + first;
   if (owner_.empty()) {
@@ -217,13 +237,16 @@ void Rasteriser::fill_span(int y, int first, int last, const Surface& surface) {
     return;
   }
   std::int32_t* owner = owner_.ptr<std::int32_t>(y) + first;
-  const auto index = static_cast<std::int32_t>(surfaces_.size()) - 1;
+  const auto index = static_cast<std::int32_t>(surfaces_.size());  // which it becomes where it is seen
+  bool is_seen = false;
   for (int i = 0; i < count; ++i) {
     const float here = std::min(std::max(start + step * static_cast<float>(i), lowest), highest);
     const bool closer = here > nearest[i];
     nearest[i] = closer ? here : nearest[i];
     owner[i] = closer ? index : owner[i];
+    is_seen |= closer;
   }
+  triangle.is_seen |= is_seen;
 }
 
 cv::Mat Rasteriser::depth() const {

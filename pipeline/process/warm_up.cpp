@@ -1,7 +1,11 @@
 #include "pipeline/process/warm_up.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <thread>
 
+#include "pipeline/base/stop_signal.hpp"
 #include "pipeline/messages/messages.hpp"
 
 namespace houghstream {
@@ -20,6 +24,20 @@ RgbdFrame frame_to_warm_up() {
     }
   }
   return frame_from_message(to_message(frame, WireFormat{}, 0), "", std::nullopt);
+}
+
+std::shared_future<RgbdFrame> begin_to_warm_up() {
+  const BlockStopSignals block;
+  return std::async(std::launch::async, [] {
+    cv::Mat pixel(1, 1, CV_8UC3, cv::Scalar(0, 0, 0));
+    cv::cvtColor(pixel, pixel, cv::COLOR_BGR2Lab);
+    return frame_to_warm_up();
+  });
+}
+
+int threads_to_start(int threads_of_work) {
+  constexpr int kMost = 8;
+  return std::max(threads_of_work, std::min(static_cast<int>(std::thread::hardware_concurrency()), kMost));
 }
 
 }  // namespace houghstream

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <future>
+
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream {
@@ -8,5 +10,12 @@ namespace houghstream {
 /// frames are that come off the bus. What a process works on before it subscribes, so that its memory, its threads and
 /// the codecs' are there when the first real frame comes.
 RgbdFrame frame_to_warm_up();
+
+/// Makes it in a thread of its own while the caller reads forest or models, and has OpenCV's tables for L*a*b*, which
+/// take a tenth of a second, made there too: before several threads ask for them at once.
+std::shared_future<RgbdFrame> begin_to_warm_up();
+
+/// Threads for what is done once, before the first frame: all cores, however many the work on frames is given.
+int threads_to_start(int threads_of_work);
 
 }  // namespace houghstream

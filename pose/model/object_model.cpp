@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/parallel.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/geometry/renderer.hpp"
 
@@ -69,57 +70,104 @@ Eigen::Isometry3d looking_from(const Eigen::Vector3f& direction, const Eigen::Ve
   return T_camera_object;
 }
 
-Eigen::Vector3f face_normal(const Mesh& mesh, std::size_t triangle) {
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).normalized();
-}
+/// A point of a view on its way to a place in it.
+struct SeenPoint {
+  Eigen::Vector3f point;
+  Eigen::Vector3f normal;
+  std::size_t triangle = 0;
+  cv::Vec2f bary;  // weights of the triangle's second and third vertex
+};
 
-void shuffle_and_cap(ModelView& view, std::size_t most, std::uint64_t seed) {
-  Random random(seed);
-  const std::size_t kept = std::min(most, view.points.size());
-  for (std::size_t i = 0; i < kept; ++i) {
-    const std::size_t j = i + random.below(static_cast<int>(view.points.size() - i));
-    std::swap(view.points[i], view.points[j]);
-    std::swap(view.normals[i], view.normals[j]);
-    if (!view.colours.empty()) std::swap(view.colours[i], view.colours[j]);
+std::vector<Eigen::Vector3f> face_normals(const Mesh& mesh) {
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3f& origin = mesh.vertices[a];
+    normals.emplace_back((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin).normalized());
   }
-  view.points.resize(kept);
-  view.normals.resize(kept);
-  view.colours.resize(std::min(kept, view.colours.size()));
+  return normals;
 }
 
-ModelView make_view(const ObjectModel& model, const SurfaceColour& colour, const Eigen::Vector3f& direction,
-                    const ModelSettings& settings) {
-  const double distance = std::max(settings.view_distance_m, 3.0 * model.radius);
-  const int size = settings.pixels_per_diameter + 8;
-  const double focal = settings.pixels_per_diameter * distance / (2.0 * model.radius);
-  const Camera camera{size, size, focal, focal, 0.5 * (size - 1), 0.5 * (size - 1)};
-  const Eigen::Isometry3d T_camera_object = looking_from(direction, model.centre, distance);
-  const RenderedGeometry seen = render_geometry({{&model.mesh, T_camera_object, 1}}, camera);
+/// Makes the views of a model. Several threads may use it at once.
+class ViewMaker {
+ public:
+  ViewMaker(const ObjectModel& model, const ModelSettings& settings)
+      : model_(model),
+        settings_(settings),
+        colour_(model.mesh, 2.0 * model.radius / settings.pixels_per_diameter),
+        face_normals_(face_normals(model.mesh)) {}
 
-  ModelView view;
-  view.direction = direction;
+  /// At most ModelSettings::points_per_view of the points that are seen, in random order.
+  ModelView make(const Eigen::Vector3f& direction, std::uint64_t seed) const;
+
+ private:
+  std::vector<SeenPoint> seen_from(const Eigen::Vector3f& direction, float& area_px) const;
+
+  const ObjectModel& model_;
+  const ModelSettings& settings_;
+  SurfaceColour colour_;
+  std::vector<Eigen::Vector3f> face_normals_;
+};
+
+/// All points that are seen, row by row, and their silhouette's area.
+std::vector<SeenPoint> ViewMaker::seen_from(const Eigen::Vector3f& direction, float& area_px) const {
+  const double distance = std::max(settings_.view_distance_m, 3.0 * model_.radius);
+  const int size = settings_.pixels_per_diameter + 8;
+  const double focal = settings_.pixels_per_diameter * distance / (2.0 * model_.radius);
+  const Camera camera{size, size, focal, focal, 0.5 * (size - 1), 0.5 * (size - 1)};
+  const Eigen::Isometry3d T_camera_object = looking_from(direction, model_.centre, distance);
+  const RenderedGeometry rendered = render_geometry({{&model_.mesh, T_camera_object, 1}}, camera);
+
+  std::vector<SeenPoint> seen;
   const Eigen::Isometry3d T_object_camera = T_camera_object.inverse();
   const Eigen::Vector3f eye = T_object_camera.translation().cast<float>();
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      const int triangle = seen.triangle.at<std::int32_t>(y, x);
+      const int triangle = rendered.triangle.at<std::int32_t>(y, x);
       if (triangle < 0) continue;
-      view.area += 1.0F;
-      const float z = seen.depth.at<float>(y, x);
+      area_px += 1.0F;
+      const float z = rendered.depth.at<float>(y, x);
       const Eigen::Vector3f point = (T_object_camera * camera.backproject(x, y, z)).cast<float>();
-      Eigen::Vector3f normal = face_normal(model.mesh, static_cast<std::size_t>(triangle));
+      Eigen::Vector3f normal = face_normals_[static_cast<std::size_t>(triangle)];
       const float facing = normal.dot((eye - point).normalized());
       if (facing < 0.0F) normal = -normal;  // the mesh may be open, or its triangles turned
-      if (!(std::abs(facing) >= settings.least_facing)) continue;
-      view.points.push_back(point);
-      view.normals.push_back(normal);
-      if (colour.known()) {
-        view.colours.push_back(colour.at(static_cast<std::size_t>(triangle), seen.bary.at<cv::Vec2f>(y, x)));
-      }
+      if (!(std::abs(facing) >= settings_.least_facing)) continue;
+      seen.push_back({point, normal, static_cast<std::size_t>(triangle), rendered.bary.at<cv::Vec2f>(y, x)});
     }
   }
+  return seen;
+}
+
+ModelView ViewMaker::make(const Eigen::Vector3f& direction, std::uint64_t seed) const {
+  ModelView view;
+  view.direction = direction;
+  std::vector<SeenPoint> seen = seen_from(direction, view.area);
+  Random random(seed);
+  const std::size_t kept = std::min(static_cast<std::size_t>(settings_.points_per_view), seen.size());
+  for (std::size_t i = 0; i < kept; ++i) {
+    std::swap(seen[i], seen[i + random.below(static_cast<int>(seen.size() - i))]);
+    view.points.push_back(seen[i].point);
+    view.normals.push_back(seen[i].normal);
+    if (colour_.known()) view.colours.push_back(colour_.at(seen[i].triangle, seen[i].bary));
+  }
   return view;
+}
+
+/// Of the directions from which something is seen.
+std::vector<ModelView> make_views(const ObjectModel& model, const ModelSettings& settings, int threads) {
+  const ViewMaker maker(model, settings);
+  const std::vector<Eigen::Vector3f> directions = sphere_directions(settings.views_per_edge);
+  std::vector<ModelView> made(directions.size());
+  parallel_for(threads, static_cast<int>(made.size()), [&](int i) {
+    made[static_cast<std::size_t>(i)] =
+        maker.make(directions[static_cast<std::size_t>(i)], static_cast<std::uint64_t>(i));
+  });
+  std::vector<ModelView> views;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (made[i].points.empty()) continue;  // a flat model seen from its edge: those that follow move up
+    views.push_back(views.size() == i ? std::move(made[i]) : maker.make(directions[i], views.size()));
+  }
+  return views;
 }
 
 /// Of the surface's second moments: those of a triangle are A / 12 (aa' + bb' + cc' + (a+b+c)(a+b+c)').
@@ -164,7 +212,7 @@ std::vector<Eigen::Vector3f> sphere_directions(int parts) {
   return directions;
 }
 
-ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSettings& settings) {
+ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSettings& settings, int threads) {
   require(!mesh.triangles.empty() && !mesh.vertices.empty(), "model {}: {} triangles, expected a mesh", name,
           mesh.triangles.size());
   ObjectModel model;
@@ -176,17 +224,10 @@ ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSet
     model.vote_centre = known->second;
   model.middle = surface_median(model.mesh);
   model.axes = principal_axes(model.mesh);
-  const SurfaceColour colour(model.mesh, 2.0 * model.radius / settings.pixels_per_diameter);
-  std::uint64_t seed = 0;
-  float largest = 0.0F;
-  for (const Eigen::Vector3f& direction : sphere_directions(settings.views_per_edge)) {
-    ModelView view = make_view(model, colour, direction, settings);
-    if (view.points.empty()) continue;  // a flat model seen from its edge
-    shuffle_and_cap(view, static_cast<std::size_t>(settings.points_per_view), seed++);
-    largest = std::max(largest, view.area);
-    model.views.push_back(std::move(view));
-  }
+  model.views = make_views(model, settings, threads);
   require(!model.views.empty(), "model {}: nothing visible from any side, expected a surface", name);
+  float largest = 0.0F;
+  for (const ModelView& view : model.views) largest = std::max(largest, view.area);
   for (ModelView& view : model.views) view.area /= largest;
   return model;
 }

@@ -43,8 +43,9 @@ struct ObjectModel {
   std::vector<ModelView> views;
 };
 
-/// Throws InputError naming `name` when the mesh has no triangles, is flat to a point, or shows nothing.
-ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSettings& settings);
+/// The same for any number of threads. Throws InputError naming `name` when the mesh has no triangles, is flat to a
+/// point, or shows nothing.
+ObjectModel make_object_model(const std::string& name, Mesh mesh, const ModelSettings& settings, int threads = 1);
 
 /// The stored view nearest to how the camera sees the model.
 const ModelView& nearest_view(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object);

@@ -24,20 +24,21 @@ Detector make_detector(Forest forest, const SearchOptions& search) {
 /// A detector and the memory of its frames, which are looked at one after another. Its first frame takes no longer than
 /// others: what it reads for the first time, and the memory that it asks for, have been there before.
 struct ReadyDetector {
-  explicit ReadyDetector(Detector of_forest) : detector(std::move(of_forest)) {
-    detector.detect(frame_to_warm_up(), workspace);
+  ReadyDetector(Detector of_forest, const RgbdFrame& made_up) : detector(std::move(of_forest)) {
+    detector.detect(made_up, workspace);
   }
 
   Detector detector;
   mutable DetectorWorkspace workspace;
 };
 
-std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const SearchOptions& search) {
+std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const SearchOptions& search,
+                                                   const RgbdFrame& made_up) {
   Forest forest = load_forest(store.forest_file());
   std::vector<std::string> names;
   for (const ObjectClass& object : forest.classes) names.push_back(object.name);
   store::require_same_objects(store, names);
-  return std::make_shared<const ReadyDetector>(make_detector(std::move(forest), search));
+  return std::make_shared<const ReadyDetector>(make_detector(std::move(forest), search), made_up);
 }
 
 /// What a command line asks for.
@@ -59,7 +60,8 @@ void give_way() {
 
 /// A forest stays what it is.
 void run_with_forest(const DetectOptions& options) {
-  const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search));
+  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
+  const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search), made_up.get());
   LcmBus bus(options.url, options.output_log);
   run_detect_process(bus, options.process,
                      [&](const RgbdFrame& frame) { return ready.detector.detect(frame, ready.workspace); });
@@ -68,8 +70,10 @@ void run_with_forest(const DetectOptions& options) {
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options) {
   if (!options.search.threshold) options.search.threshold = kStoreThreshold;
-  store::StoreWatch<ReadyDetector> watch(
-      options.objects, [&](const store::ObjectStore& store) { return load_detector(store, options.search); });
+  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
+  store::StoreWatch<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
+    return load_detector(store, options.search, made_up.get());
+  });
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);
   bus.is_log() ? watch.hold() : watch.follow();

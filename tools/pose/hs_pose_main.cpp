@@ -28,15 +28,22 @@ struct PoseOptions {
 };
 
 /// Without a folder every detection is answered with "no model".
-std::map<std::string, Mesh> load_models(const PoseOptions& options) {
-  if (!options.models.empty()) return load_class_models(options.models, options.model_unit_m);
+std::map<std::string, Mesh> load_models(const PoseOptions& options, int threads) {
+  if (!options.models.empty()) return load_class_models(options.models, options.model_unit_m, threads);
   log_warning("neither --objects nor --models: detections are answered without a pose");
   return {};
 }
 
+/// How an estimator is made.
+struct Making {
+  int threads = 1;
+  RgbdFrame frame;  ///< to warm up with
+};
+
 /// Poses of one detection of each class in a made-up frame: the models are in memory, and threads run, before the first
 /// real one.
-std::shared_ptr<const PoseEstimator> warmed_up(std::map<std::string, Mesh> meshes, const PoseSettings& settings) {
+std::shared_ptr<const PoseEstimator> warmed_up(std::map<std::string, Mesh> meshes, const PoseSettings& settings,
+                                               const Making& making) {
   Detections detections;
   for (const auto& [name, mesh] : meshes) {
     Detection detection;
@@ -48,8 +55,8 @@ std::shared_ptr<const PoseEstimator> warmed_up(std::map<std::string, Mesh> meshe
     detection.rotations.push_back({Eigen::Quaternionf::Identity(), 1.0F});
     detections.detections.push_back(std::move(detection));
   }
-  auto estimator = std::make_shared<const PoseEstimator>(std::move(meshes), settings);
-  estimator->estimate(frame_to_warm_up(), detections);
+  auto estimator = std::make_shared<const PoseEstimator>(std::move(meshes), settings, making.threads);
+  estimator->estimate(making.frame, detections);
   return estimator;
 }
 
@@ -74,10 +81,12 @@ void run(LcmBus& bus, const PoseOptions& options, const CurrentEstimator& curren
 
 /// Models stay what they are.
 void run_with_models(PoseOptions options) {
-  std::map<std::string, Mesh> meshes = load_models(options);
+  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
+  const int threads = threads_to_start(options.settings.threads);
+  std::map<std::string, Mesh> meshes = load_models(options, threads);
   if (options.min_quality) options.settings.quality.least = *options.min_quality;
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
-  const auto estimator = warmed_up(std::move(meshes), options.settings);
+  const auto estimator = warmed_up(std::move(meshes), options.settings, {threads, made_up.get()});
   LcmBus bus(options.url, options.output_log);
   run(bus, options, [&] { return estimator; });
 }
@@ -85,12 +94,15 @@ void run_with_models(PoseOptions options) {
 /// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
 void run_with_store(PoseOptions options) {
   options.settings.quality.least = options.min_quality.value_or(kStoreQuality);
+  const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
+  int threads = threads_to_start(options.settings.threads);
   const auto load = [&](const store::ObjectStore& store) {
     PoseSettings settings = options.settings;
     take_from_store(store, settings);
-    return warmed_up(store::load_store_meshes(store), settings);
+    return warmed_up(store::load_store_meshes(store, threads), settings, {threads, made_up.get()});
   };
   store::StoreWatch<PoseEstimator> watch(options.objects, load);
+  threads = 1;  // of later stores, which are made beside the work on frames
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);

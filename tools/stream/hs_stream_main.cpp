@@ -90,7 +90,7 @@ void run_stream(StreamOptions options, const Pace& pace) {
   const auto period = from_seconds<StateBoard::Clock::duration>(pace.every);
   auto due = StateBoard::Clock::now() + period;
   while (!stop_requested() && supervisor.step()) {
-    bus.handle(std::chrono::milliseconds(50));
+    bus.handle(std::chrono::milliseconds(20));
     if (StateBoard::Clock::now() < due) continue;
     due += period;
     board.keep(supervisor.states());

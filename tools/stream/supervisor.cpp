@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-// Steps come every 50 ms and less; a longer pause was this process's own.
+// Steps come every 20 ms and less; a longer pause was this process's own.
 constexpr milliseconds kLongestStep(500);
 
 double seconds(milliseconds time) {
@@ -53,11 +53,19 @@ void Supervisor::plan_restart(Member& member, const std::string& words) {
   member.failures = settled ? 1 : member.failures + 1;
   require(member.failures < settings_.most_failures, "{} {}, {} times in a row: it is given up; {}", member.plan.name,
           words, member.failures, last_words_of(*member.child));
-  member.wait =
-      settled || member.wait.count() == 0 ? settings_.first_wait : std::min(2 * member.wait, settings_.longest_wait);
+  member.wait = std::clamp(2 * member.wait, settings_.first_wait, settings_.longest_wait);
+  if (member.failures == 1) member.wait = milliseconds(0);
   member.since = Clock::now() + member.wait;
   member.child.reset();
-  say_(fmt::format("{} {}; starts again in {:.2f} s", member.plan.name, words, seconds(member.wait)));
+  say_(fmt::format("{} {}; starts again {}", member.plan.name, words,
+                   member.wait.count() == 0 ? "at once" : fmt::format("in {:.2f} s", seconds(member.wait))));
+  restart_if_due(member);
+}
+
+void Supervisor::restart_if_due(Member& member) {
+  if (Clock::now() < member.since) return;
+  ++member.restarts;
+  start(member);
 }
 
 void Supervisor::look_for_hang(Member& member, Clock::duration listened) {
@@ -74,9 +82,7 @@ void Supervisor::look_for_hang(Member& member, Clock::duration listened) {
 
 bool Supervisor::look_after(Member& member, Clock::duration listened) {
   if (!member.child) {
-    if (Clock::now() < member.since) return true;
-    ++member.restarts;
-    start(member);
+    restart_if_due(member);
     return true;
   }
   if (Clock::now() - member.since > settings_.start_time) member.has_run = true;

@@ -19,7 +19,7 @@ struct ChildPlan {
 };
 
 struct SupervisorSettings {
-  std::chrono::milliseconds first_wait{250};  ///< before a restart; doubled by each failure that follows
+  std::chrono::milliseconds first_wait{250};  ///< before a second restart; doubled by each failure that follows
   std::chrono::milliseconds longest_wait{10'000};
   std::chrono::milliseconds settled{10'000};        ///< after so long a run the next failure counts as the first
   int most_failures = 8;                            ///< in a row: then it is given up, and the stream ends
@@ -29,12 +29,11 @@ struct SupervisorSettings {
   std::chrono::milliseconds start_silence{60'000};  ///< the same for one that has not spoken yet: it may still read
 };
 
-/// Keeps the processes of a stream running: one that dies is started again, after a pause that grows with each failure,
-/// until it has failed `most_failures` times in a row.
-/// One that fails before it has ever run is not: it would fail again for the same reason. One that hangs, as its
-/// silence tells, is asked to end (SIGTERM), killed where it does not (SIGKILL after `patience`), and started again
-/// likewise. Only silence that was listened to counts: where this process has stood still itself, its children have
-/// not. Call it from one thread.
+/// Keeps the processes of a stream running: one that dies is started again, at once the first time, after a pause that
+/// grows with each failure that follows, until it has failed `most_failures` times in a row. One that fails before it
+/// has ever run is not: it would fail again for the same reason. One that hangs, as its silence tells, is asked to end
+/// (SIGTERM), killed where it does not (SIGKILL after `patience`), and started again likewise. Only silence that was
+/// listened to counts: where this process has stood still itself, its children have not. Call it from one thread.
 class Supervisor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -80,6 +79,7 @@ class Supervisor {
   bool look_after(Member& member, Clock::duration listened);
   void look_for_hang(Member& member, Clock::duration listened);
   void plan_restart(Member& member, const std::string& words);
+  void restart_if_due(Member& member);
 
   std::vector<Member> members_;
   SupervisorSettings settings_;

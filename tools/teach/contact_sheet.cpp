@@ -58,7 +58,12 @@ cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& 
 
 void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& sheet) {
   cv::Mat all;
-  for (const std::filesystem::path& file : pictures) all.push_back(read_colour_image(file));
+  for (const std::filesystem::path& file : pictures) {
+    const cv::Mat picture = read_colour_image(file);
+    require(all.empty() || picture.cols == all.cols, "{}: {} pixels wide, expected {} as the others are", file.string(),
+            picture.cols, all.cols);
+    all.push_back(picture);
+  }
   write_image(all, sheet);
 }
 

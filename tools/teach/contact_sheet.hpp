@@ -20,7 +20,8 @@ cv::Mat view_picture(const std::vector<TrainingView>& views, const std::string& 
 /// Another title above them.
 void write_title(const std::string& title, cv::Mat& view_picture);
 
-/// The pictures below one another. Throws InputError where one cannot be read or the sheet not be written.
+/// The pictures below one another. Throws InputError where one cannot be read or has another width, or the sheet cannot
+/// be written.
 void write_contact_sheet(const std::vector<std::filesystem::path>& pictures, const std::filesystem::path& sheet);
 
 }  // namespace houghstream::teach

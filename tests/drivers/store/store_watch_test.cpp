@@ -60,6 +60,20 @@ TEST(StoreWatch, WhatIsAddedRenamedAndRemovedIsThere) {
   EXPECT_EQ(*in_use, "brick") << "who uses the old one may finish";
 }
 
+TEST(StoreWatch, AChangeIsSaid) {
+  const fs::path folder = whole_store("watch_said");
+  start_log("drivers_tests", LogLevel::kInfo);
+  testing::internal::CaptureStderr();
+  {
+    Second watch(folder, load_second);
+    watch.follow(kPeriod);
+    exchange(folder, "bowl");
+    EXPECT_TRUE(comes_true([&] { return *watch.current() == "bowl"; }));
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("2 objects from here on; new: bowl; gone: brick"), std::string::npos) << said;
+}
+
 TEST(StoreWatch, WithoutFollowingItStays) {
   const fs::path folder = whole_store("watch_still");
   const Second watch(folder, load_second);

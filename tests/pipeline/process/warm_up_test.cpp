@@ -18,5 +18,18 @@ TEST(WarmUp, TheFrameIsAWholeOneWithDepthEverywhere) {
   EXPECT_GT(farthest - nearest, 0.05);
 }
 
+TEST(WarmUp, IsTheSameInAThreadOfItsOwn) {
+  const RgbdFrame frame = frame_to_warm_up();
+  const RgbdFrame other = begin_to_warm_up().get();
+  EXPECT_EQ(cv::norm(frame.colour, other.colour, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(frame.depth, other.depth, cv::NORM_INF), 0.0);
+}
+
+TEST(WarmUp, NoFewerThreadsThanTheWorkIsGiven) {
+  EXPECT_GE(threads_to_start(1), 1);
+  EXPECT_LE(threads_to_start(1), 8);
+  EXPECT_EQ(threads_to_start(40), 40);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -74,6 +74,30 @@ TEST(ObjectModel, NearestViewLooksFromTheCamera) {
   EXPECT_GT(nearest_view(model, T_camera_object).direction.dot(eye.normalized().cast<float>()), std::cos(0.2F));
 }
 
+/// Without thickness: from its edge there is nothing to be seen.
+Mesh sheet() {
+  Mesh mesh;
+  mesh.vertices = {{-0.1F, -0.1F, 0.0F}, {0.1F, -0.1F, 0.0F}, {0.1F, 0.1F, 0.0F}, {-0.1F, 0.1F, 0.0F}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+TEST(ObjectModel, IsTheSameForAnyNumberOfThreads) {
+  for (const Mesh& mesh : {mug(), sheet()}) {
+    const ObjectModel one = make_object_model("any", mesh, ModelSettings(), 1);
+    const ObjectModel many = make_object_model("any", mesh, ModelSettings(), 3);
+    EXPECT_LE(one.views.size(), 162U);
+    ASSERT_EQ(one.views.size(), many.views.size());
+    for (std::size_t v = 0; v < one.views.size(); ++v) {
+      ASSERT_EQ(one.views[v].direction, many.views[v].direction);
+      ASSERT_EQ(one.views[v].points, many.views[v].points);
+      ASSERT_EQ(one.views[v].normals, many.views[v].normals);
+      ASSERT_EQ(one.views[v].area, many.views[v].area);
+    }
+  }
+  EXPECT_LT(make_object_model("sheet", sheet(), ModelSettings()).views.size(), 162U);
+}
+
 TEST(ObjectModel, TurnedTrianglesGiveTheSameNormals) {
   Mesh turned = cereal_box();
   for (auto& triangle : turned.triangles) std::swap(triangle[1], triangle[2]);

@@ -63,6 +63,13 @@ class Samples(unittest.TestCase):
             complaints = [line for line in result.stderr.splitlines() if folder in line or "houghstream" in line]
             self.assertEqual(complaints, [])
 
+    @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd here")
+    def test_units_keep_to_what_a_stream_needs(self):
+        units = [str(path) for path in (SAMPLES / "systemd").glob("*.service")]
+        result = subprocess.run(["systemd-analyze", "security", "--offline=true", "--threshold=60", "--no-pager", *units],
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

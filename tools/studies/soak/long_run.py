@@ -8,7 +8,7 @@ import signal
 import time
 
 from studies.command import step
-from studies.soak.relay import bus
+from studies.soak.wire import bus
 from studies.stream import Processes, resident_mb
 
 PORT = 7668

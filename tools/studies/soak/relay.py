@@ -2,51 +2,34 @@
 to where the others listen.
 
 Whole messages are lost, swapped and doubled, not their fragments: LCM gives up a message of which a fragment is missing, so
-a lost fragment is a lost message, and what is counted stays exact. Wire format: LCM's udpm protocol, "LC02" for small
-messages and "LC03" for fragments.
+a lost fragment is a lost message, and what is counted stays exact.
 """
 
 import random
 import socket
-import struct
 import threading
-import time
 
-GROUP = "239.255.76.67"
-SHORT, LONG = 0x4C433032, 0x4C433033
-SPARED = 3  # messages at the beginning and the end of a run: what is lost there nobody can know
+from studies.soak.frames import FORGED, with_number
+from studies.soak.wire import GROUP, LONG, LONG_HEADER, SHORT, SHORT_HEADER, datagrams, receiving_socket
 
-
-def bus(port):
-    return f"udpm://{GROUP}:{port}?ttl=0"
-
-
-def receiving_socket(port):
-    listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 24)
-    listener.bind(("", port))
-    listener.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP,
-                        struct.pack("4sL", socket.inet_aton(GROUP), socket.INADDR_ANY))  # fmt: skip
-    listener.settimeout(0.1)
-    return listener
+SPARED = 3  # messages of a camera at the beginning and the end of a run: what is lost there nobody can know
 
 
 class Relay:
-    """Passes on `expected` frames of one channel from port to port, with faults, until stop()."""
+    """Passes on `expected` frames of each camera from port to port, with faults, until stop()."""
 
-    def __init__(self, from_port, to_port, expected, seed=1, lose=0.0, swap=0.0, double=0.0):
+    def __init__(self, from_port, to_port, expected, seed=1, *, lose=0.0, swap=0.0, double=0.0, forge=0.0):
         self.listener = receiving_socket(from_port)
         self.sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.to = (GROUP, to_port)
         self.expected = expected
         self.random = random.Random(seed)
-        self.lose, self.swap, self.double = lose, swap, double
+        self.lose, self.swap, self.double, self.forge = lose, swap, double, forge
         self.parts = {}  # of messages that are not whole yet, by (sender, number)
-        self.held = None  # a frame that the next one overtakes
+        self.held = {}  # by channel, a frame that the next one overtakes
         self.number = 0xF0000000  # of what it sends a second time: LCM takes a number for the same message
-        self.counts = {"passed": 0, "lost": 0, "swapped": 0, "doubled": 0}
-        self.seen = 0
+        self.counts = {"passed": 0, "lost": 0, "swapped": 0, "doubled": 0, "forged": 0}
+        self.seen = {}  # frames by channel
         self.stopped = threading.Event()
         self.thread = threading.Thread(target=self.run, daemon=True)
         self.thread.start()
@@ -68,50 +51,56 @@ class Relay:
 
     def whole(self, data, address):
         """The datagrams of a message once all have come."""
-        magic, number = struct.unpack_from(">II", data)
+        magic, number = SHORT_HEADER.unpack_from(data)
         if magic == SHORT:
             return [data]
         of_message = self.parts.setdefault((address, number), [])
         of_message.append(data)
-        count = struct.unpack_from(">H", data, 18)[0]
+        count = LONG_HEADER.unpack_from(data)[5]
         return self.parts.pop((address, number)) if len(of_message) == count else None
 
     def treat(self, message):
-        if struct.unpack_from(">I", message[0])[0] == SHORT:  # a status
+        if SHORT_HEADER.unpack_from(message[0])[0] == SHORT:  # a status
             self.send(message)
             return
-        self.seen += 1
-        spared = self.seen <= SPARED or self.seen > self.expected - SPARED
-        draw = self.random.random()
-        if not spared and draw < self.lose:
+        channel, payload = content(message)
+        self.seen[channel] = self.seen.get(channel, 0) + 1
+        spared = self.seen[channel] <= SPARED or self.seen[channel] > self.expected - SPARED
+        bounds = [self.lose, self.lose + self.swap, self.lose + self.swap + self.double]
+        bounds.append(bounds[-1] + self.forge)
+        draw = 1.0 if spared else self.random.random()
+        if draw < bounds[0]:
             self.counts["lost"] += 1
             return
-        if not spared and self.held is None and draw < self.lose + self.swap:
-            self.held = message
+        if draw < bounds[1] and channel not in self.held:
+            self.held[channel] = message
             self.counts["swapped"] += 1
             return
         self.send(message)
         self.counts["passed"] += 1
-        if not spared and self.lose + self.swap <= draw < self.lose + self.swap + self.double:
+        if bounds[1] <= draw < bounds[2]:
             self.send(self.renumbered(message))
             self.counts["doubled"] += 1
-        if self.held is not None:
-            self.send(self.held)
+        if bounds[2] <= draw < bounds[3]:
+            self.number += 1
+            for part in datagrams(self.number, channel, with_number(payload, self.random.choice(FORGED))):
+                self.sender.sendto(part, self.to)
+            self.counts["forged"] += 1
+        if channel in self.held:
+            self.send(self.held.pop(channel))
             self.counts["passed"] += 1
-            self.held = None
 
     def renumbered(self, message):
         self.number += 1
-        return [part[:4] + struct.pack(">I", self.number) + part[8:] for part in message]
+        return [part[:4] + SHORT_HEADER.pack(LONG, self.number)[4:] + part[8:] for part in message]
 
     def send(self, message):
         for part in message:
             self.sender.sendto(part, self.to)
 
 
-def rubbish(port, channel, payloads):
-    """Small messages on a channel, as anybody on the bus may send them."""
-    sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    for number, payload in enumerate(payloads):
-        sender.sendto(struct.pack(">II", SHORT, 0xE0000000 + number) + channel.encode() + b"\0" + payload, (GROUP, port))
-        time.sleep(0.01)
+def content(message):
+    """Channel and payload of a message of fragments."""
+    by_place = sorted(message, key=lambda part: LONG_HEADER.unpack_from(part)[4])
+    name, _, first = by_place[0][LONG_HEADER.size :].partition(b"\0")
+    return name.decode(errors="replace"), first + b"".join(part[LONG_HEADER.size :] for part in by_place[1:])

@@ -1,0 +1,54 @@
+"""Frames of the demo's recording, with other times and numbers than they had."""
+
+import struct
+import time
+
+from studies.lcm_log import read_log, utime_of
+from studies.soak.wire import Sender
+
+FRAME = "OPENNI_FRAME"
+SEQUENCE = b"houghstream.sequence"  # a key of the metadata, decimal text
+# Numbers that a sender may state; none that a real frame has which may be lost: which of the two came nobody could know.
+FORGED = (10**15, 2**63 - 1, -7, 0, 1, 450, 470, 700, 99_000, 10**6)
+
+
+def with_metadata(payload, key, value):
+    """An encoded images_t with another text under a key that it has."""
+    entry = struct.pack(">i", len(key) + 1) + key + b"\0"
+    at = payload.index(entry) + len(entry)
+    size = struct.unpack_from(">i", payload, at)[0]
+    text = str(value).encode()
+    return payload[:at] + struct.pack(">i", len(text)) + text + payload[at + 4 + size :]
+
+
+def with_utime(payload, utime):
+    return payload[:8] + struct.pack(">q", utime) + payload[16:]
+
+
+def with_number(payload, number):
+    """Another frame, that its sender says has this number."""
+    return with_metadata(with_utime(payload, utime_of(payload) + 1), SEQUENCE, number)
+
+
+class FrameSender:
+    """Sends frames of a recording at a rate, one camera's or several cameras' at once."""
+
+    KEPT = 60  # of the recording, in memory
+
+    def __init__(self, recording, port):
+        self.sender = Sender(port)
+        self.frames = []
+        for _, channel, data in read_log(recording):
+            if channel == FRAME:
+                self.frames.append(data)
+            if len(self.frames) == self.KEPT:
+                break
+
+    def send(self, times, channels=(FRAME,), rate=30.0):
+        """A frame for each of `times`, microseconds since the epoch, on each channel."""
+        start = time.monotonic()
+        for number, utime in enumerate(times):
+            payload = with_metadata(with_utime(self.frames[number % len(self.frames)], utime), SEQUENCE, number)
+            time.sleep(max(0.0, start + number / rate - time.monotonic()))
+            for channel in channels:
+                self.sender.send(channel, payload)

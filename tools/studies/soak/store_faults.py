@@ -1,0 +1,168 @@
+"""What may happen to the object store that a stream works on."""
+
+import json
+import re
+import shutil
+import subprocess
+import time
+
+from studies.soak.faults import HEARD, RESULTS, Faults, said
+from studies.soak.wire import Listener
+from studies.stream import ProcessFailed
+
+# After which the one who writes it is killed; of the time that it takes undisturbed.
+MOMENTS = (0.05, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.3)
+
+
+class StoreFaults(Faults):
+    """Each function is one fault; it returns what it saw, with "good"."""
+
+    def store(self, folder):
+        """A store of the demo's objects."""
+        store = folder / "objects.store"
+        store.mkdir()
+        shutil.copyfile(self.data / "forest", store / "forest")
+        shutil.copytree(self.models, store / "models")
+        (store / "views").mkdir()
+        for picture in self.models.glob("*.png"):  # of one size
+            shutil.copyfile(self.models / "obj_000001.png", store / "views" / picture.name)
+        names = {int(number): name for number, name in json.loads((self.models / "names.json").read_text()).items()}
+        objects = [{"id": number, "name": names[number], "mesh": f"obj_{number:06d}.ply", "coloured": True, "views": 1, "attitudes": "any"}
+                   for number in sorted(names)]  # fmt: skip
+        (store / "store.json").write_text(json.dumps({"houghstream_store": 1, "objects": objects, "settings": {}}))
+        return store
+
+    def teach(self, *words, kill_after=None):
+        """hs-teach's exit status and words; None for a status where it was killed."""
+        process = subprocess.Popen([self.programs / "hs-teach", *map(str, words)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True)  # fmt: skip
+        try:
+            words, _ = process.communicate(timeout=60 if kill_after is None else kill_after)
+            return process.returncode, words
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return None, process.communicate()[0]
+
+    def changed(self, *words):
+        """What nobody disturbs."""
+        status, answer = self.teach(*words)
+        if status != 0:
+            raise ProcessFailed(f"hs-teach {' '.join(map(str, words))}: {answer}")
+
+    def names(self, store):
+        """What the store holds, or None where it is none."""
+        status, _ = self.teach("list", store)
+        if status != 0:
+            return None
+        return sorted(one["name"] for one in json.loads((store / "store.json").read_text())["objects"])
+
+    def goes_on(self, listener, seconds=20.0):
+        """Whether detections and poses still come."""
+        since = time.monotonic()
+        return all(listener.wait_for(RESULTS[name], lambda one: one.time > since, seconds) for name in ("detect", "pose"))
+
+    def writer_killed(self):
+        """Who renames, and who removes, is killed at several moments while the stream runs."""
+        folder = self.folder("writer_killed")
+        store = self.store(folder)
+        stream = self.stream(folder, "--objects", store)
+        listener = Listener(HEARD, RESULTS.values())
+        outcomes = {"before": 0, "after": 0, "torn": 0}
+        try:
+            self.wait_for(stream, r"pose [1-9][\d.]* Hz", 60)
+            name = self.names(store)[0]
+            start = time.monotonic()
+            self.changed("rename", store, name, "at_first")
+            took = time.monotonic() - start
+            name = "at_first"
+            for turn, moment in enumerate(MOMENTS):
+                was, other = self.names(store), f"turn_{turn}"
+                self.teach("rename", store, name, other, kill_after=moment * took)
+                then = self.outcome(store, was, sorted([other, *(one for one in was if one != name)]))
+                name = other if then == "after" else name
+                outcomes[then] += 1
+            for moment in MOMENTS:
+                spare = shutil.copytree(store, folder / f"spare_{moment}" / "objects.store")
+                was = self.names(spare)
+                self.teach("remove", spare, name, kill_after=moment * took)
+                outcomes[self.outcome(spare, was, [one for one in was if one != name])] += 1
+            self.changed("rename", store, name, "at_last")
+            self.wait_for(stream, r"hs-detect: .*new: at_last", 60)
+            self.wait_for(stream, r"hs-pose: .*new: at_last", 60)
+            runs = self.goes_on(listener)
+            left = [one.name for one in folder.iterdir() if ".partial" in one.name]
+            restarts = said(stream, "starts again")
+            stream.stop(10.0)
+        finally:
+            stream.kill()
+            listener.stop()
+        return {"killed": len(MOMENTS) * 2, "store_then": outcomes, "left_behind": left, "restarts": restarts,
+                "reported": said(stream, "from here on|what was known stays"),
+                "good": outcomes["torn"] == 0 and runs and not left and not restarts}  # fmt: skip
+
+    def outcome(self, store, before, after):
+        names = self.names(store)
+        return "after" if names == after else "before" if names == before else "torn"
+
+    def torn(self):
+        """The forest is cut while the stream runs, hs-detect is killed meanwhile, the forest comes back."""
+        folder = self.folder("torn")
+        store = self.store(folder)
+        whole = (store / "forest").read_bytes()
+        stream = self.stream(folder, "--objects", store)
+        listener = Listener(HEARD, RESULTS.values())
+        try:
+            self.wait_for(stream, r"pose [1-9][\d.]* Hz", 60)
+            with open(store / "forest", "r+b") as forest:
+                forest.truncate(len(whole) // 2)
+            self.wait_for(stream, r"hs-detect: .*truncated.*what was known stays", 20)
+            kept = self.goes_on(listener)
+            pid = int(re.findall(r"detect started, process (\d+)", stream.log.read_text())[-1])
+            subprocess.run(["kill", "-9", str(pid)], check=True)
+            self.wait_for(stream, r"detect ended with status 1; starts again", 20)
+            start = time.monotonic()
+            earlier = listener.senders(RESULTS["detect"])
+            (store / "forest").write_bytes(whole)
+            first = listener.wait_for(RESULTS["detect"], lambda one: one.sender not in earlier, 30)
+            back = self.goes_on(listener)
+            stream.stop(10.0)
+        finally:
+            stream.kill()
+            listener.stop()
+        return {"went_on_with_what_it_knew": kept, "back_after_s": round(first.time - start, 2) if first else None,
+                "reported": said(stream, "truncated|starts again|was killed"), "good": bool(kept and first and back)}  # fmt: skip
+
+    def replaced(self):
+        """Another store takes its place in one step; then none is there, then the first one again."""
+        folder = self.folder("replaced")
+        store = self.store(folder)
+        other = folder / "other.store"
+        shutil.copytree(store, other)
+        self.changed("rename", other, self.names(other)[0], "of_the_other")
+        stream = self.stream(folder, "--objects", store)
+        listener = Listener(HEARD, RESULTS.values())
+        try:
+            self.wait_for(stream, r"pose [1-9][\d.]* Hz", 60)
+            store.rename(folder / "first.store")
+            other.rename(store)
+            self.wait_for(stream, r"hs-pose: .*new: of_the_other", 60)
+            self.wait_for(stream, r"hs-detect: .*new: of_the_other", 60)
+            store.rename(other)
+            self.wait_for(stream, r"hs-detect: .*what was known stays", 30)
+            kept = self.goes_on(listener)
+            (folder / "first.store").rename(store)
+            self.wait_for(stream, r"hs-detect: .*gone: of_the_other", 60)
+            back = self.goes_on(listener)
+            restarts = said(stream, "starts again")
+            stream.stop(10.0)
+        finally:
+            stream.kill()
+            listener.stop()
+        return {"went_on_with_what_it_knew": kept, "restarts": restarts,
+                "reported": said(stream, "from here on|what was known stays"),
+                "good": kept and back and not restarts}  # fmt: skip
+
+    def all(self):
+        yield "who changes the store is killed at 22 moments", self.writer_killed
+        yield "the store's forest is cut, and hs-detect killed meanwhile", self.torn
+        yield "the store is replaced, taken away, put back", self.replaced
