@@ -136,6 +136,12 @@ class Stream:
             time.sleep(0.05)
         return None
 
+    def record(self):
+        """What was heard; the log, which holds all frames, goes."""
+        record = Record(self.recorded)
+        self.recorded.unlink()
+        return record
+
     def stop(self):
         self.running.by_name["camera"].kill()
         self.running.stop(*(name for name in self.running.by_name if name != "camera"), seconds=20.0)
@@ -228,7 +234,7 @@ def run_one(taught, network, log, out):
         time.sleep(ALONE_S)
         summary = usage.summary()
         stream.stop()
-    record = Record(stream.recorded)
+    record = stream.record()
     end = max(record.frames.values())
     return {**figures(record, min(record.frames.values()) + WARM_UP_S, end, {"a": taught.objects[0]}), "cores": summary["cores"]}
 
@@ -251,7 +257,7 @@ def run_two(taught, network, log, out):
         time.sleep(AGAIN_S)
         times["end"] = time.time()
         stream.stop()
-    record = Record(stream.recorded)
+    record = stream.record()
     together = figures(record, min(record.frames.values()) + WARM_UP_S, times["cut"], parts)
     return {**together, "cores": summary["cores"]}, lost_host(record, times, parts, said)
 
