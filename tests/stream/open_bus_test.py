@@ -1,5 +1,5 @@
 """A bus with ttl=0 is this machine's own: what another host sends to its port does not reach a process, by plain UDP or to
-the group. With ttl=1 it does. Two hosts are network namespaces joined by a cable. Uses what end_to_end_test.py has made.
+the group. With ttl=1 it does. Two hosts are network namespaces at a switch. Uses what end_to_end_test.py has made.
 """
 
 import re
@@ -8,8 +8,9 @@ import sys
 import time
 
 from folders import read_arguments
+from studies.network import Network
 from studies.stream import Process
-from two_hosts_test import HostB, enter_own_namespace
+from two_hosts_test import enter_own_namespace
 
 MESSAGES = 10
 GROUP = "239.255.76.67"
@@ -47,18 +48,15 @@ def main():
     enter_own_namespace()
     arguments = read_arguments(__doc__, made="what end_to_end_test.py has made")
     tools, made, folder = arguments.tools, arguments.made, arguments.out
-    host_b = HostB()
-    ways = {"from this host, to the group": lambda: send(GROUP),
-            "from another host, by plain UDP": lambda: send("10.77.0.1", host_b.enter),
-            "from another host, to the group": lambda: send(GROUP, host_b.enter)}
-    try:
+    with Network("b") as network:
+        ways = {"from this host, to the group": lambda: send(GROUP),
+                "from another host, by plain UDP": lambda: send("10.77.0.1", network.enter("b")),
+                "from another host, to the group": lambda: send(GROUP, network.enter("b"))}  # fmt: skip
         for ttl in (0, 1):
             for number, (way, deliver) in enumerate(ways.items()):
                 count = heard(tools, made, folder / f"{ttl}_{number}", ttl, deliver)
                 print(f"ttl={ttl}, {way}: {count} of {MESSAGES}")
                 assert count == (MESSAGES if ttl == 1 or "this host" in way else 0), (ttl, way, count)
-    finally:
-        host_b.close()
 
 
 if __name__ == "__main__":
