@@ -112,7 +112,10 @@ KnownObjects StoreFollower::known() const {
 
 void StoreFollower::live(std::chrono::milliseconds period) {
   lower_priority();
-  const WorkAlone alone;
+  const WorkAlone alone([this] {
+    const std::lock_guard ending(mutex_);
+    return ending_;
+  });
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, period, [this] { return ending_; })) {
     lock.unlock();
@@ -141,6 +144,8 @@ void StoreFollower::load(const std::string& state) {
     if (state_of_store(folder_) != state) return;  // of two stores
     take_over(store, std::move(loaded));
     taken_ = state;
+  } catch (const WorkGivenUp&) {
+    return;
   } catch (const std::exception& error) {
     if (state_of_store(folder_) != state) return;
     problem = error.what();

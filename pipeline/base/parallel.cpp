@@ -125,9 +125,10 @@ class IdleHelpers {
   std::vector<std::unique_ptr<Helper>> helpers_;
 };
 
-int& times_alone() {
-  thread_local int times = 0;
-  return times;
+/// Of the calling thread; null where it may have helpers.
+const WorkAlone*& working_alone() {
+  thread_local const WorkAlone* alone = nullptr;
+  return alone;
 }
 
 IdleHelpers& idle_helpers() {
@@ -158,12 +159,16 @@ void work_with_helpers(Items& items, int helpers) {
 
 }  // namespace
 
-WorkAlone::WorkAlone() {
-  ++times_alone();
+WorkAlone::WorkAlone(std::function<bool()> is_over) : is_over_(std::move(is_over)), outer_(working_alone()) {
+  working_alone() = this;
 }
 
 WorkAlone::~WorkAlone() {
-  --times_alone();
+  working_alone() = outer_;
+}
+
+void WorkAlone::ask() const {
+  if (is_over_ && is_over_()) throw WorkGivenUp("work that nobody waits for any more");
 }
 
 void parallel_for(int threads, int count, const ItemWork& work) {
@@ -171,8 +176,12 @@ void parallel_for(int threads, int count, const ItemWork& work) {
 }
 
 void parallel_for_workers(int threads, int count, const WorkerItemWork& work) {
-  if (threads <= 1 || count <= 1 || times_alone() > 0) {
-    for (int i = 0; i < count; ++i) work(0, i);
+  const WorkAlone* alone = working_alone();
+  if (threads <= 1 || count <= 1 || alone != nullptr) {
+    for (int i = 0; i < count; ++i) {
+      if (alone != nullptr) alone->ask();
+      work(0, i);
+    }
     return;
   }
   Items items(work, count);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 namespace houghstream {
@@ -34,14 +36,26 @@ void parallel_for(int threads, int count, const ItemWork& work);
 /// share memory. Workers are numbered from 0; there are at most max(threads, 1). Which items a worker gets is chance.
 void parallel_for_workers(int threads, int count, const WorkerItemWork& work);
 
+/// Work that nobody waits for any more: what WorkAlone's calls end with.
+struct WorkGivenUp : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// As long as one lives, the calls above work alone on the thread that made it, whatever `threads` says: for a thread
-/// of low priority, whose new threads would be of its priority and be kept for others' calls.
+/// of low priority, whose new threads would be of its priority and be kept for others' calls. Before each item they ask
+/// `is_over`, if there is one, and throw WorkGivenUp where it says so.
 class WorkAlone {
  public:
-  WorkAlone();
+  explicit WorkAlone(std::function<bool()> is_over = {});
   ~WorkAlone();
   WorkAlone(const WorkAlone&) = delete;
   WorkAlone& operator=(const WorkAlone&) = delete;
+
+  void ask() const;
+
+ private:
+  std::function<bool()> is_over_;
+  const WorkAlone* outer_;
 };
 
 /// Memory for each worker of parallel_for_workers, kept from call to call by whoever holds this. Each worker's lies in

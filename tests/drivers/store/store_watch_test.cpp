@@ -7,6 +7,7 @@
 #include <houghstream/status_t.hpp>
 
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/parallel.hpp"
 #include "pipeline/process/detect_process.hpp"
 #include "tests/drivers/store/small_store.hpp"
 #include "tests/pipeline/process_test.hpp"
@@ -72,6 +73,27 @@ TEST(StoreWatch, AChangeIsSaid) {
   }
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("2 objects from here on; new: bowl; gone: brick"), std::string::npos) << said;
+}
+
+TEST(StoreWatch, LoadingDoesNotKeepAProcessFromEnding) {
+  const fs::path folder = whole_store("watch_end");
+  std::atomic<int> done{0};
+  {
+    bool first = true;
+    Second watch(folder, [&](const ObjectStore& store) {
+      if (!std::exchange(first, false)) {
+        parallel_for(2, 3000, [&](int) {
+          std::this_thread::sleep_for(milliseconds(10));
+          ++done;
+        });
+      }
+      return load_second(store);
+    });
+    watch.follow(kPeriod);
+    exchange(folder, "bowl");
+    ASSERT_TRUE(comes_true([&] { return done > 2; }));
+  }
+  EXPECT_LT(done, 2000) << "half a minute of work is given up";
 }
 
 TEST(StoreWatch, WithoutFollowingItStays) {

@@ -80,6 +80,20 @@ TEST(ParallelFor, WhoWorksAloneGetsNoHelpers) {
   EXPECT_GT(threads_of().size(), 1U);
 }
 
+TEST(ParallelFor, WhoWorksAloneGivesUpWhereItIsOver) {
+  int done = 0;
+  const auto work = [&] { parallel_for(4, 64, [&](int) { ++done; }); };
+  {
+    const WorkAlone alone([&] { return done == 3; });
+    EXPECT_THROW(work(), WorkGivenUp);
+  }
+  EXPECT_EQ(done, 3);
+  const WorkAlone alone;
+  done = 0;
+  work();
+  EXPECT_EQ(done, 64);
+}
+
 TEST(ParallelForWorkers, AWorkerDoesOneItemAtATime) {
   for (const int threads : {0, 1, 2, 5}) {
     const auto workers = static_cast<std::size_t>(std::max(threads, 1));
