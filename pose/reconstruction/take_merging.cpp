@@ -145,19 +145,25 @@ bool merge_takes(const Take& first, ShownModel& model, const Take& second, Shown
   const auto found = register_models({&model.mesh, &model.seen}, {&other.mesh, &other.seen}, false, settings.threads);
   if (!found) return false;
   const Eigen::Isometry3d T_other_model = found->T_a_b.inverse();
-  for (ShownView& view : other.views) view.T_camera_object = view.T_camera_object * T_other_model;
-  other.T_world_object = other.T_world_object * T_other_model;
+  ShownModel moved = other;
+  for (ShownView& view : moved.views) view.T_camera_object = view.T_camera_object * T_other_model;
+  moved.T_world_object = moved.T_world_object * T_other_model;
   Mesh both = model.mesh;  // its outline is that of both
   append_mesh(other.mesh, found->T_a_b, both);
   MaskedViews views{training_views(first, model.views, ""), {}};
   views.lights.assign(views.views.size(), light_of(first, 0));
-  std::vector<TrainingView> more = training_views(second, other.views, "");
+  std::vector<TrainingView> more = training_views(second, moved.views, "");
   std::move(more.begin(), more.end(), std::back_inserter(views.views));
   views.lights.resize(views.views.size(), light_of(second, 1));
   ModelOfViews fused = fuse_masked_views("both takes", views, both, std::nullopt, settings);
+  moved.seen_through = std::max(seen_through_share(fused.mesh, first, model.views, settings.threads),
+                                seen_through_share(fused.mesh, second, moved.views, settings.threads));
+  if (moved.seen_through > kMostSeenThrough) return false;
+  model.seen_through = moved.seen_through;
   model.mesh = std::move(fused.mesh);
   model.seen = std::move(fused.seen);
-  other.mesh = model.mesh;
+  moved.mesh = model.mesh;
+  other = std::move(moved);
   for (const auto& [take, shown] : {std::pair{&first, &model}, std::pair{&second, &other}}) {
     parallel_for(settings.threads, static_cast<int>(shown->views.size()), [&, take = take, shown = shown](int i) {
       ShownView& view = shown->views[static_cast<std::size_t>(i)];

@@ -271,6 +271,38 @@ cv::Mat mask_of(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3
   return mask;
 }
 
+double seen_through_share(const Mesh& mesh, const Take& take, const std::vector<ShownView>& views, int threads) {
+  struct Count {
+    double all = 0.0;
+    double through = 0.0;
+  };
+  std::vector<Count> counts(views.size());
+  parallel_for(threads, static_cast<int>(views.size()), [&](int i) {
+    const ShownView& view = views[static_cast<std::size_t>(i)];
+    const RgbdFrame& frame = take.keyframes[static_cast<std::size_t>(view.keyframe)].frame;
+    const cv::Rect whole(0, 0, frame.camera.width, frame.camera.height);
+    const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, whole);
+    cv::Mat nearest = frame.depth.clone();  // about a pixel: the outline may be one off
+    nearest.setTo(0.0F, nearest != nearest);
+    cv::erode(nearest, nearest, cv::Mat());
+    Count& count = counts[static_cast<std::size_t>(i)];
+    for (int y = 0; y < model.rows; ++y) {
+      for (int x = 0; x < model.cols; ++x) {
+        const float z = model.at<float>(y, x);
+        if (!std::isfinite(z) || !(frame.depth.at<float>(y, x) > 0.0F)) continue;
+        count.all += 1.0;
+        count.through += nearest.at<float>(y, x) > z + 0.012 + 3.0 * depth_sigma(z) ? 1.0 : 0.0;
+      }
+    }
+  });
+  Count sum;
+  for (const Count& count : counts) {
+    sum.all += count.all;
+    sum.through += count.through;
+  }
+  return sum.all > 0.0 ? sum.through / sum.all : 0.0;
+}
+
 ShownModel make_model(const Take& take, const ModelMaking& settings) {
   Filled filled = find_object(take, settings);
   Eigen::AlignedBox3d box = filled.box;
@@ -307,6 +339,7 @@ ShownModel make_model(const Take& take, const ModelMaking& settings) {
     model.views.push_back(std::move(shown[i]));
   }
   model.agreement_m = median(std::move(all));
+  model.seen_through = seen_through_share(model.mesh, take, model.views, settings.threads);
   return model;
 }
 

@@ -195,6 +195,7 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
   shown.mesh = std::move(model.mesh);
   shown.seen = std::move(model.seen);
   shown.agreement_m = model.agreement_m;
+  shown.seen_through = model.seen_through;
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return shown;
 }

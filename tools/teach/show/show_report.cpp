@@ -134,6 +134,7 @@ OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
   json["drift_mm"] = drift_mm;
   json["drift_deg"] = drift_deg;
   json["agreement_mm"] = 1e3 * shown.agreement_m;
+  json["seen_through"] = shown.seen_through;
   json["outline_overlap"] = shown.outline_overlap ? OrderedJson(*shown.outline_overlap) : OrderedJson();
   json["seen_share"] =
       static_cast<double>(reconstruction::count_seen(seen_by_all(shown))) / reconstruction::kSphereDirections;
@@ -234,8 +235,15 @@ Verdict judge(const Shown& shown) {
     verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * seen_surface(shown)));
   if (shown.views.front().size() < kFewestKeyframes)
     verdict.reasons.push_back(fmt::format("only {} keyframes show it", shown.views.front().size()));
+  if (shown.seen_through > reconstruction::kMostSeenThrough)
+    verdict.reasons.push_back(
+        fmt::format("the model is seen through in {:.0f} % of its outline, expected less than {:.0f}: a hand or the "
+                    "table was taken for it",
+                    100.0 * shown.seen_through, 100.0 * reconstruction::kMostSeenThrough));
   if (!shown.second_fits)
-    verdict.reasons.emplace_back("the second take does not fit the first, expected the same object, another side up");
+    verdict.reasons.emplace_back(
+        "the second take does not fit the first, or shows a hand or the table as if they were the object, expected the "
+        "same object, another side up");
   verdict.good = verdict.reasons.empty();
   return verdict;
 }

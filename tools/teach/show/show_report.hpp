@@ -18,6 +18,7 @@ struct Shown {
   std::vector<bool> seen;   ///< per vertex
   bool second_fits = true;  ///< the second take, where there was one
   double agreement_m = 0.0;
+  double seen_through = 0.0;              ///< reconstruction::seen_through_share()
   std::optional<double> outline_overlap;  ///< median over the views, with masks that were given
   double seconds = 0.0;                   ///< that it took until the model was there
 };

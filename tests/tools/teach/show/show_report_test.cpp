@@ -26,6 +26,16 @@ TEST(Verdict, OutlinesThatDoNotFitTheGivenMasksArePoor) {
   EXPECT_EQ(verdict.reasons[0], "the model's outline overlaps with the masks by 0.85, expected at least 0.9");
 }
 
+TEST(Verdict, AModelThatIsSeenThroughIsPoor) {
+  Shown shown = good_turntable();
+  shown.seen_through = 0.063;
+  const Verdict verdict = judge(shown);
+  ASSERT_EQ(verdict.reasons.size(), 1U);
+  EXPECT_EQ(
+      verdict.reasons[0],
+      "the model is seen through in 6 % of its outline, expected less than 2: a hand or the table was taken for it");
+}
+
 TEST(Verdict, WithoutGivenMasksTheirOverlapIsNotAsked) {
   Shown shown = good_turntable();
   shown.outline_overlap.reset();

@@ -1,0 +1,34 @@
+#include "pose/reconstruction/take_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/pose/reconstruction/shown_scene.hpp"
+
+namespace houghstream::reconstruction {
+namespace {
+
+TEST(SeenThrough, WhatIsNoPartOfTheObjectIsSeenThrough) {
+  const test_scene::ShownScene scene;
+  Take take;
+  std::vector<ShownView> views;
+  for (int i = 0; i < 6; ++i) {
+    Keyframe keyframe;
+    keyframe.T_camera_world = test_scene::camera_at(1.0 * i, 0.7, 0.6);
+    keyframe.frame =
+        test_scene::photograph(test_scene::table_with(scene), keyframe.T_camera_world, scene.camera, i + 1);
+    views.push_back({i, keyframe.T_camera_world, {}});
+    take.keyframes.push_back(std::move(keyframe));
+  }
+  Mesh box;
+  test_scene::add_box(scene.box, 0.0, box);
+  EXPECT_LT(seen_through_share(box, take, views, 1), 0.002);
+  Mesh with_finger = box;
+  test_scene::add_side({0.5 * scene.box.x(), 0.0, 0.1}, {0.06, 0.0, 0.0}, {0.0, 0.02, 0.04}, with_finger);
+  const double share = seen_through_share(with_finger, take, views, 1);
+  EXPECT_GT(share, kMostSeenThrough);
+  EXPECT_LT(share, 0.1);
+  EXPECT_EQ(seen_through_share(with_finger, take, views, 3), share);
+}
+
+}  // namespace
+}  // namespace houghstream::reconstruction
