@@ -8,8 +8,9 @@ from studies.command import Options, die, positive, prepare, step
 from studies.stream import ProcessFailed, enter_private_network, enter_shared_network
 from studies.work import UnitFailed, locked
 
-TARGETS = ("hs-render", "hs-teach", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
-           "hs-spy", "hs-evaluate", "virtual_camera")  # fmt: skip
+TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
+           "hs-spy", "hs-evaluate")  # fmt: skip
+LIVE_TARGETS = ("hs-teach", "virtual_camera")  # of --live and --teach: a minute of the build
 
 
 def parse(words):
@@ -54,7 +55,7 @@ def parse(words):
 
 def main():
     options = parse(sys.argv[1:])
-    programs = prepare(options, TARGETS)
+    programs = prepare(options, TARGETS + LIVE_TARGETS if options.live or options.teach else TARGETS)
     options.network = enter_shared_network() if options.shared_bus else enter_private_network()
     from studies.demo import run  # needs what has been installed
 
