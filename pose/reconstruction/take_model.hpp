@@ -46,7 +46,10 @@ cv::Mat mask_of(const Mesh& mesh, const RgbdFrame& frame, const Eigen::Isometry3
 
 /// Share of the model's pixels in its views behind which depth is measured. A hand or a piece of the table that was
 /// taken for the object is seen through in all views in which it has gone.
-constexpr double kMostSeenThrough = 0.02;  ///< of a model without such parts; development takes: 0.001 and 0.06
 double seen_through_share(const Mesh& mesh, const Take& take, const std::vector<ShownView>& views, int threads);
+
+/// The most that a model without such parts has: of development takes those without had up to 0.004, those with from
+/// 0.06 on.
+constexpr double kMostSeenThrough = 0.02;
 
 }  // namespace houghstream::reconstruction

@@ -9,6 +9,7 @@
 #include "pipeline/process/detect_process.hpp"
 #include "pipeline/process/warm_up.hpp"
 #include "tools/common/search_options.hpp"
+#include "tools/common/stored_forest.hpp"
 #include "tools/common/tool_main.hpp"
 
 namespace {
@@ -34,11 +35,7 @@ struct ReadyDetector {
 
 std::shared_ptr<const ReadyDetector> load_detector(const store::ObjectStore& store, const SearchOptions& search,
                                                    const RgbdFrame& made_up) {
-  Forest forest = load_forest(store.forest_file());
-  std::vector<std::string> names;
-  for (const ObjectClass& object : forest.classes) names.push_back(object.name);
-  store::require_same_objects(store, names);
-  return std::make_shared<const ReadyDetector>(make_detector(std::move(forest), search), made_up);
+  return std::make_shared<const ReadyDetector>(make_detector(load_store_forest(store), search), made_up);
 }
 
 /// What a command line asks for.

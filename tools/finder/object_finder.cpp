@@ -1,21 +1,18 @@
 #include "tools/finder/object_finder.hpp"
 
 #include "detector/detector.hpp"
-#include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pose/pose_estimator.hpp"
 #include "tools/common/search_options.hpp"
+#include "tools/common/stored_forest.hpp"
 #include "tools/common/stored_quality.hpp"
 
 namespace houghstream {
 namespace {
 
 Detector make_detector(const store::ObjectStore& store, const FinderOptions& options) {
-  Forest forest = load_forest(store.forest_file());
-  std::vector<std::string> names;
-  for (const ObjectClass& object : forest.classes) names.push_back(object.name);
-  store::require_same_objects(store, names);
+  Forest forest = load_store_forest(store);
   SearchOptions search;
   search.threads = options.threads;
   search.threshold = options.threshold.value_or(kStoreThreshold);

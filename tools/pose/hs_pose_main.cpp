@@ -95,14 +95,13 @@ void run_with_models(PoseOptions options) {
 void run_with_store(PoseOptions options) {
   options.settings.quality.least = options.min_quality.value_or(kStoreQuality);
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
-  int threads = threads_to_start(options.settings.threads);
+  const int threads = threads_to_start(options.settings.threads);  // of the first store: later ones are loaded alone
   const auto load = [&](const store::ObjectStore& store) {
     PoseSettings settings = options.settings;
     take_from_store(store, settings);
     return warmed_up(store::load_store_meshes(store, threads), settings, {threads, made_up.get()});
   };
   store::StoreWatch<PoseEstimator> watch(options.objects, load);
-  threads = 1;  // of later stores, which are made beside the work on frames
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
   LcmBus bus(options.url, options.output_log);

@@ -21,6 +21,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "tools/common/stored_forest.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/teach/contact_sheet.hpp"
 #include "tools/teach/lookalikes.hpp"
@@ -53,10 +54,7 @@ Contents read_contents(const fs::path& folder) {
   Contents contents;
   contents.list = store::read_store(folder);
   contents.meshes = store::load_store_meshes(contents.list);
-  contents.forest = load_forest(contents.list.forest_file());
-  std::vector<std::string> names;
-  for (const ObjectClass& object : contents.forest->classes) names.push_back(object.name);
-  store::require_same_objects(contents.list, names);
+  contents.forest = load_store_forest(contents.list);
   return contents;
 }
 

@@ -9,6 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/fnv.hpp"
 #include "pose/model/surface_colour.hpp"
 
 namespace houghstream::track {
@@ -71,13 +72,6 @@ std::string face_lines(const Patch& patch, bool normals) {
   return text;
 }
 
-/// FNV-1a (Fowler, Noll and Vo).
-std::uint64_t number_of(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 1099511628211ULL;
-  return hash;
-}
-
 /// meldis takes the name of the .mtl up to the first blank.
 std::string file_name(const std::string& name, std::uint64_t number) {
   std::string safe = name.substr(0, 64);
@@ -108,7 +102,7 @@ ViewerMesh write_viewer_mesh(const Mesh& mesh, const std::string& name, const fs
   std::error_code error;
   fs::create_directories(folder, error);
   require(!error, "{}: cannot make this folder: {}", folder.string(), error.message());
-  const std::string stem = file_name(name, number_of(body + materials));
+  const std::string stem = file_name(name, fnv1a(materials.data(), materials.size(), fnv1a(body.data(), body.size())));
   write_new_file(folder / (stem + ".mtl"), materials);  // before the mesh that names it
   const fs::path file = fs::absolute(folder / (stem + ".obj")).lexically_normal();
   write_new_file(file, "mtllib " + stem + ".mtl\n" + body);

@@ -4,19 +4,12 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
+#include "tests/pipeline/geometry/tetrahedron.hpp"
 
 namespace houghstream {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A tetrahedron with corners at the origin and 0.1 m along each axis.
-Mesh tetrahedron() {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}, {0, 0, 0.1F}};
-  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  return mesh;
-}
 
 Symmetries some_symmetries() {
   Symmetries out;
@@ -27,7 +20,8 @@ Symmetries some_symmetries() {
 
 fs::path write_models(const std::string& name) {
   fs::path folder = fresh_folder(name);
-  write_bop_models({{1, "bowl", tetrahedron(), some_symmetries()}, {12, "mug", tetrahedron(), {}}}, folder / "models");
+  write_bop_models({{1, "bowl", tetrahedron(0.1F), some_symmetries()}, {12, "mug", tetrahedron(0.1F), {}}},
+                   folder / "models");
   return folder;
 }
 
@@ -59,7 +53,7 @@ TEST(BopModels, MeshesComeByClassNameAndNamesMustDiffer) {
 TEST(BopModels, OfOtherFoldersEachFileIsAClass) {
   const fs::path folder = fresh_folder("models_plain");
   EXPECT_THROW(load_class_models(folder), InputError) << "empty";
-  save_ply(tetrahedron(), folder / "mug.ply");
+  save_ply(tetrahedron(0.1F), folder / "mug.ply");
   write_text(folder / "plate.obj", "v 0 0 0\nv 200 0 0\nv 0 200 0\nf 1 2 3\n");
   std::map<std::string, Mesh> meshes = load_class_models(folder);
   ASSERT_EQ(meshes.size(), 2U);

@@ -6,16 +6,9 @@
 #include "drivers/store/object_store.hpp"
 #include "drivers/store/store_build.hpp"
 #include "tests/drivers/test_files.hpp"
+#include "tests/pipeline/geometry/tetrahedron.hpp"
 
 namespace houghstream::store {
-
-/// A tetrahedron with corners at the origin and `side_m` along each axis.
-inline Mesh tetrahedron(float side_m) {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {side_m, 0, 0}, {0, side_m, 0}, {0, 0, side_m}};
-  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  return mesh;
-}
 
 /// A whole store of a mug and of what the second name says, in a folder that is there.
 inline void fill_store(const std::filesystem::path& folder, const std::string& second_name) {

@@ -6,17 +6,16 @@
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/pipeline/geometry/tetrahedron.hpp"
 
 namespace houghstream::track {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A tetrahedron: red where the fourth vertex is not, darker elsewhere.
-Mesh tetrahedron() {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}, {0, 0, 0.1F}};
-  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+/// Red where the fourth vertex is not, darker elsewhere.
+Mesh red_tetrahedron() {
+  Mesh mesh = tetrahedron(0.1F);
   mesh.colours = {{0, 0, 255}, {0, 0, 255}, {0, 0, 255}, {0, 0, 0}};
   compute_normals(mesh);
   return mesh;
@@ -35,7 +34,7 @@ std::string text_of(const fs::path& file) {
 }
 
 TEST(ViewerMesh, IsAnObjInMetresWithItsMaterialsBesideIt) {
-  const ViewerMesh written = write_viewer_mesh(tetrahedron(), "my mug/2", empty_folder("obj"));
+  const ViewerMesh written = write_viewer_mesh(red_tetrahedron(), "my mug/2", empty_folder("obj"));
   ASSERT_TRUE(fs::path(written.file).is_absolute());
   EXPECT_EQ(fs::path(written.file).extension(), ".obj");
   EXPECT_EQ(fs::path(written.file).filename().string().substr(0, 9), "my_mug_2-") << "no blanks, no folders";
@@ -53,7 +52,7 @@ TEST(ViewerMesh, IsAnObjInMetresWithItsMaterialsBesideIt) {
 }
 
 TEST(ViewerMesh, ATexturesColoursAreThoseOfItsTriangles) {
-  Mesh mesh = tetrahedron();
+  Mesh mesh = red_tetrahedron();
   mesh.colours.clear();
   mesh.uvs.assign(4, {0.9F, 0.9F});
   mesh.texture = cv::Mat(4, 4, CV_8UC3, cv::Scalar(255, 0, 0));
@@ -62,14 +61,14 @@ TEST(ViewerMesh, ATexturesColoursAreThoseOfItsTriangles) {
 
 TEST(ViewerMesh, EqualMeshesAreOneFileAndOthersAnother) {
   const fs::path folder = empty_folder("equal");
-  const ViewerMesh first = write_viewer_mesh(tetrahedron(), "mug", folder);
+  const ViewerMesh first = write_viewer_mesh(red_tetrahedron(), "mug", folder);
   const auto written = fs::last_write_time(first.file);
-  EXPECT_EQ(write_viewer_mesh(tetrahedron(), "mug", folder).file, first.file);
+  EXPECT_EQ(write_viewer_mesh(red_tetrahedron(), "mug", folder).file, first.file);
   EXPECT_EQ(fs::last_write_time(first.file), written) << "not written again";
-  Mesh larger = tetrahedron();
+  Mesh larger = red_tetrahedron();
   larger.vertices[1].x() = 0.2F;
   EXPECT_NE(write_viewer_mesh(larger, "mug", folder).file, first.file);
-  Mesh darker = tetrahedron();
+  Mesh darker = red_tetrahedron();
   darker.colours[1] = {0, 0, 0};
   EXPECT_NE(write_viewer_mesh(darker, "mug", folder).file, first.file);
 }
@@ -78,7 +77,7 @@ TEST(ViewerMesh, AFolderThatCannotBeMadeIsNamed) {
   const fs::path file = empty_folder("file");
   std::ofstream(file) << "no folder";
   try {
-    write_viewer_mesh(tetrahedron(), "mug", file / "meshes");
+    write_viewer_mesh(red_tetrahedron(), "mug", file / "meshes");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find((file / "meshes").string()), std::string::npos) << error.what();

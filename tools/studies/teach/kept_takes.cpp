@@ -9,6 +9,7 @@
 
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/fnv.hpp"
 
 namespace houghstream::studies {
 namespace {
@@ -17,14 +18,11 @@ namespace fs = std::filesystem;
 
 using FramePlace = std::pair<std::size_t, std::size_t>;  // scene, frame
 
-/// FNV-1a (Fowler, Noll, Vo 1991) of the pixels.
+/// Of the pixels.
 std::uint64_t fingerprint(const cv::Mat& picture) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (int y = 0; y < picture.rows; ++y) {
-    const auto* row = picture.ptr<std::uint8_t>(y);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(picture.cols) * picture.elemSize(); ++i)
-      hash = (hash ^ row[i]) * 0x100000001b3ULL;
-  }
+  std::uint64_t hash = fnv1a(nullptr, 0);
+  for (int y = 0; y < picture.rows; ++y)
+    hash = fnv1a(picture.ptr(y), static_cast<std::size_t>(picture.cols) * picture.elemSize(), hash);
   return hash;
 }
 
