@@ -42,17 +42,17 @@ function(houghstream_compile_options target)
   # goes without them, as precompiled headers have one set of options.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                            -Wno-float-conversion ${HOUGHSTREAM_WERROR} -ffp-contract=off -fno-strict-aliasing)
+  set(sanitized -fno-omit-frame-pointer -g1 $<$<CONFIG:Release>:-O1>) # more takes minutes and gigabytes a source
   if(HOUGHSTREAM_FUZZ) # by clang, whose warnings are others
     target_compile_options(${target} PRIVATE -Wno-error -fsanitize=fuzzer-no-link,address,undefined
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     target_compile_definitions(${target} PRIVATE EIGEN_MALLOC_ALREADY_ALIGNED=1)
   elseif(HOUGHSTREAM_SANITIZE STREQUAL thread)
-    target_compile_options(${target} PRIVATE -fsanitize=thread -fno-omit-frame-pointer -g)
+    target_compile_options(${target} PRIVATE -fsanitize=thread ${sanitized})
     target_link_options(${target} PUBLIC -fsanitize=thread)
   elseif(HOUGHSTREAM_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
-                                             -fno-omit-frame-pointer -g)
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all ${sanitized})
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     # Under the address sanitizer Eigen would align its memory itself, and free what PCL's library, which is built
     # without one, has allocated otherwise. The sanitizer's malloc is as aligned as the C library's.
@@ -93,6 +93,23 @@ function(houghstream_use_shared_headers target shared)
   endif()
 endfunction()
 
+# With CMAKE_UNITY_BUILD eight sources of a target are compiled as one, which reads PCL's and OpenCV's headers once: a third
+# of the time where everything is built, more where one source changes. Names of anonymous namespaces are then those of
+# the whole target. A source that Highway compiles for each instruction set includes itself and stays alone.
+function(houghstream_prepare_unity target)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_filename_component(source "${source}" ABSOLUTE)
+    file(STRINGS "${source}" alone REGEX "hwy/foreach_target.h" LIMIT_COUNT 1)
+    if(alone)
+      set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+  if(CMAKE_UNITY_BUILD) # which takes a source's own types for those of a header
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
+endfunction()
+
 # houghstream_library(NAME SOURCES a.cpp ... LINK x ...)
 function(houghstream_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
@@ -100,6 +117,7 @@ function(houghstream_library name)
   target_link_libraries(${name} PUBLIC ${ARG_LINK})
   houghstream_compile_options(${name})
   houghstream_use_shared_headers(${name} library_headers)
+  houghstream_prepare_unity(${name})
 endfunction()
 
 # houghstream_executable(NAME SOURCES a.cpp ... LINK x ...)
@@ -140,6 +158,7 @@ function(houghstream_tests name)
   houghstream_compile_options(${name})
   houghstream_compile_quickly(${name})
   houghstream_use_shared_headers(${name} test_headers)
+  houghstream_prepare_unity(${name})
   foreach(source IN LISTS sources)
     houghstream_test_entry(${name} "${source}")
   endforeach()

@@ -51,9 +51,10 @@ std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRe
   return points;
 }
 
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px) {
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneRange& tone) {
   LabRegion region{{}, part_px.tl()};
   cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
+  apply_tone(tone_curve(frame.colour, tone), region.lab, region.lab);
   cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);
   return region;
 }
@@ -61,7 +62,7 @@ LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px) {
 SeenObject see_object(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
                       const RegionSettings& settings, const DepthNoise& noise) {
   SeenObject seen{frame, model, detection.centre_camera, noise, find_region(frame, detection, model, settings), {}};
-  if (seen.region.points >= settings.min_points) seen.colours = lab_region(frame, seen.region.box_px);
+  if (seen.region.points >= settings.min_points) seen.colours = lab_region(frame, seen.region.box_px, settings.tone);
   return seen;
 }
 

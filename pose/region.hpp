@@ -6,6 +6,7 @@
 
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
+#include "pipeline/types/tone.hpp"
 #include "pose/model/object_model.hpp"
 
 namespace houghstream {
@@ -30,6 +31,7 @@ struct RegionSettings {
   double enlarge = 0.15;        ///< of the box's size, on each side
   double gate_margin_m = 0.06;  ///< depth farther from the centre than the model's radius plus this is not the object
   int min_points = 60;          ///< pixels with depth inside the gate; with fewer there is no pose
+  ToneRange tone;               ///< the frame's colours are brought into it
 };
 
 /// Where in the depth image a detected object can be: its box, a little enlarged, and a range of depth.
@@ -50,8 +52,8 @@ struct LabRegion {
   cv::Mat lab;          ///< CV_8UC3, 8-bit CIE L*a*b*, of the part; neighbouring pixels averaged against noise
   cv::Point origin_px;  ///< its first pixel in the frame
 };
-/// `part_px` must lie inside the image and not be empty.
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px);
+/// Brought into the tone by what the whole frame looks like. `part_px` must lie inside the image and not be empty.
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneRange& tone);
 
 /// What is seen of a detected object, and the model that it is compared with: what every later stage looks at. Frame
 /// and model must outlive it.

@@ -14,10 +14,12 @@ die() {
 }
 
 # configure_and_build FOLDER BUILD_TYPE CMAKE_OPTIONS... -- TARGETS... (no target: everything)
+# A folder that is new is built as a whole, several sources at a time; one that somebody configured stays as it is.
 configure_and_build() {
   local folder=$1 build_type=$2
   shift 2
   local options=()
+  [ -f "$folder/CMakeCache.txt" ] || options+=(-DCMAKE_UNITY_BUILD=ON)
   while [ $# -gt 0 ] && [ "$1" != -- ]; do
     options+=("$1")
     shift

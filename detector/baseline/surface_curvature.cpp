@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "detector/baseline/surface_normals.hpp"
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::baseline {
@@ -62,9 +62,8 @@ void write(const Curvature& curvature, int y, int x, std::vector<cv::Mat>& plane
 }  // namespace
 
 std::vector<Curvature> row_curvatures(const SurfaceVectors& normals, int y, int radius_px) {
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const std::vector<WindowMoments> moments = row_moments(normals, y, radius_px);
-  std::vector<Curvature> row(moments.size(), {kNone, kNone, {kNone, kNone, kNone}});
+  std::vector<Curvature> row(moments.size(), {kNoValue, kNoValue, {kNoValue, kNoValue, kNoValue}});
   for (std::size_t x = 0; x < row.size(); ++x) {
     if (moments[x].count == 0) continue;
     const Eigen::Vector3d normal(normals.xyz[0].ptr<float>(y)[x], normals.xyz[1].ptr<float>(y)[x],

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "detector/baseline/surface_normals.hpp"
 #include "detector/baseline/surface_window.hpp"
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::baseline {
 
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// About `count` places spread evenly over the unit disk.
 std::vector<cv::Point2f> disk(int count) {
@@ -67,7 +65,7 @@ Eigen::Vector3f normal_at(const WorkingFrame& frame, cv::Point at, const std::ve
     squares += apart * apart.transpose();
     ++count;
   }
-  if (count * 4 < places.size()) return Eigen::Vector3f::Constant(kNone);
+  if (count * 4 < places.size()) return Eigen::Vector3f::Constant(kNoValue);
   const double n = static_cast<double>(count);
   const Eigen::Vector3d mean = sum / n;
   return facing_normal(squares / n - mean * mean.transpose(), middle).cast<float>();
@@ -79,7 +77,7 @@ HistogramCloud empty_cloud(cv::Size pixels, const PointHistogramSettings& settin
   cloud.size = {(pixels.width + settings.step_px - 1) / settings.step_px,
                 (pixels.height + settings.step_px - 1) / settings.step_px};
   const auto count = static_cast<std::size_t>(cloud.size.area());
-  cloud.points.assign(static_cast<pcl::index_t>(count), pcl::PointXYZ(kNone, kNone, kNone));
+  cloud.points.assign(static_cast<pcl::index_t>(count), pcl::PointXYZ(kNoValue, kNoValue, kNoValue));
   cloud.normals.resize(count);
   cloud.reaches.resize(count, 0.0F);
   const std::vector<cv::Point2f> places = disk(settings.given);

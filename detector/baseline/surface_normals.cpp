@@ -2,15 +2,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::baseline {
 
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 SurfaceVectors points_of(const WorkingFrame& frame) {
   SurfaceVectors points;
@@ -28,7 +26,7 @@ SurfaceVectors points_of(const WorkingFrame& frame) {
 }
 
 cv::Vec3f normal_of(const WindowMoments& moments, const Eigen::Vector3d& ray, int least_points) {
-  if (moments.count < least_points) return {kNone, kNone, kNone};
+  if (moments.count < least_points) return {kNoValue, kNoValue, kNoValue};
   const Eigen::Vector3d normal = facing_normal(moments.covariance, ray);
   return {static_cast<float>(normal.x()), static_cast<float>(normal.y()), static_cast<float>(normal.z())};
 }
@@ -64,7 +62,7 @@ SurfaceVectors normal_vectors(const WorkingFrame& frame, const cv::Mat& normals)
   vectors.depth = frame.filled_depth.clone();
   for (int y = 0; y < normals.rows; ++y) {
     for (int x = 0; x < normals.cols; ++x) {
-      if (std::isnan(normals.at<cv::Vec3f>(y, x)[2])) vectors.depth.at<float>(y, x) = kNone;
+      if (std::isnan(normals.at<cv::Vec3f>(y, x)[2])) vectors.depth.at<float>(y, x) = kNoValue;
     }
   }
   return vectors;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "detector/evidence/likeness.hpp"
+#include "pipeline/base/no_value.hpp"
 
 namespace houghstream {
 namespace {
@@ -51,7 +51,6 @@ void place(const TrainedView& view, const Eigen::Vector3f& centre, const Camera&
 
 /// Without branches on what the cells are, which nobody could predict.
 Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   Comparison out;
   place(view, centre, frame.camera, size, out);
   const float metres = 0.001F * size;  // per millimetre of the view
@@ -71,10 +70,10 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
       const std::int16_t neighbour = view.appearance.beside[cell];
       out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),
                                      static_cast<std::uint8_t>(column)};
-      out.excess[out.object_cells] = remembered > Appearance::kNoDepth ? beyond_centre - metres * remembered : kNone;
+      out.excess[out.object_cells] = remembered > Appearance::kNoDepth ? beyond_centre - metres * remembered : kNoValue;
       out.object_cells += remembered != Appearance::kBeside ? 1 : 0;
       out.excess_beside[out.beside_cells] =
-          neighbour > Appearance::kNoDepth ? beyond_centre - metres * neighbour : kNone;
+          neighbour > Appearance::kNoDepth ? beyond_centre - metres * neighbour : kNoValue;
       out.beside_cells += neighbour != Appearance::kBeside ? 1 : 0;
     }
   }

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "pipeline/types/tone.hpp"
+
 namespace houghstream {
 
 /// How one object is known at every distance.
@@ -30,6 +32,7 @@ struct FeatureSettings {
   /// ... or metres on the surface that it borrows from, if those are more pixels, see HoleReach. 0, and in a scale
   /// space: the nearest pixel lends, whatever its depth.
   float fill_distance = 0.06F;
+  ToneRange tone;  ///< frames that are searched are brought into it; what is learnt from stays as it is
 };
 
 }  // namespace houghstream

@@ -7,11 +7,12 @@
 #include <limits>
 #include <vector>
 
+#include "pipeline/base/no_value.hpp"
+
 namespace houghstream {
 namespace {
 
 constexpr int kBorder = 2;  // pixels around the distances, so that no neighbour needs a check
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // In 1/65536 pixel.
@@ -109,7 +110,7 @@ void fill_holes(cv::Mat& depth, const HoleReach& reach, HoleMemory& memory) {
   for (const Hole hole : holes) {
     float& lent = depth.ptr<float>(hole.y)[hole.x];
     const float farthest = std::max(reach.px, reach.px_at_1m / lent) * kStraight;
-    if (static_cast<float>(distances.at(hole)) > farthest) lent = kNone;
+    if (static_cast<float>(distances.at(hole)) > farthest) lent = kNoValue;
   }
 }
 

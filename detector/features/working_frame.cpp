@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "detector/features/picture_memory.hpp"
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// Mean of those depths of the block that belong to its nearest surface.
 float nearest_surface(const cv::Mat& depth, int x0, int x1, int y0, int y1) {
@@ -33,7 +32,7 @@ float nearest_surface(const cv::Mat& depth, int x0, int x1, int y0, int y1) {
       }
     }
   }
-  return count > 0 && std::isfinite(nearest) ? sum / static_cast<float>(count) : kNone;
+  return count > 0 && std::isfinite(nearest) ? sum / static_cast<float>(count) : kNoValue;
 }
 
 /// The same of a block of 2x2 pixels, without branches: NaN fails every comparison.
@@ -47,7 +46,7 @@ float nearest_of_four(float a, float b, float c, float d) {
     sum += depth <= limit ? depth : 0.0F;
     count += depth <= limit ? 1.0F : 0.0F;
   }
-  return nearest < std::numeric_limits<float>::infinity() ? sum / count : kNone;
+  return nearest < std::numeric_limits<float>::infinity() ? sum / count : kNoValue;
 }
 
 void halve_depth(const cv::Mat& depth, cv::Mat& out) {
@@ -123,6 +122,14 @@ void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& set
   fill_holes(out.filled_depth, hole_reach(settings, out.camera), holes);
 }
 
+/// The colours that the frame lends stay its own: what becomes of them is put into `memory`.
+void bring_into(const ToneCurve& tone, const RgbdFrame& frame, cv::Mat& memory, cv::Mat& colour) {
+  if (!tone.changes()) return;
+  if (colour.data != frame.colour.data) return apply_tone(tone, colour, colour);
+  apply_tone(tone, frame.colour, memory);
+  colour = memory;
+}
+
 }  // namespace
 
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
@@ -169,9 +176,11 @@ void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings
   images.levels = feature_levels(settings);
   images.frames.resize(images.levels.size());
   images.holes.resize(images.levels.size());
+  const ToneCurve tone = tone_curve(frame.colour, settings.tone);
   parallel_for(threads, static_cast<int>(images.levels.size()), [&](int l) {
     const auto level = static_cast<std::size_t>(l);
     resize_into(frame, images.levels[level].scale, settings, images.holes[level], images.frames[level]);
+    bring_into(tone, frame, images.toned, images.frames[level].colour);
     if (level != 0) return;
     averaged_lab(images.frames[0].colour, images.blurred, images.lab);
   });

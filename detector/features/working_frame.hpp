@@ -52,6 +52,7 @@ struct WorkingImages {
   LabLevels lab;                     ///< averaged_lab of the first level
   std::vector<HoleMemory> holes;     ///< one for each level
   cv::Mat blurred;
+  cv::Mat toned;  ///< colours of the level that has the frame's own size
 };
 
 /// Depth-normalised levels of a frame. What `images` held is overwritten and its memory used again where nobody shares

@@ -38,6 +38,7 @@ struct TrainingSettings {
   double cleared_share = 0.5;    ///< of the composites in which haze is taken from the object, see clear_haze
   double sharpened_share = 0.5;  ///< of those that trees learn from, in which the object is sharpened, see sharpened
   double light_variation = 1.0;  ///< strength of the changes of exposure, colour cast and haze, 0 = none
+  double tone_share = 0.0;       ///< of the pictures that trees learn from, in which coded values change, see vary_tone
   int max_leaf_votes = 12;       ///< offsets kept per leaf and class after merging
   int max_leaf_views = 12;       ///< remembered training views per leaf and class
   float merge_radius = 0.008F;   ///< offsets nearer than this to each other become one vote, metres

@@ -17,7 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kGlance(50);          // how long a stop request or an unplugged camera may go unnoticed
 constexpr std::chrono::seconds kSilence(3);  // a camera that gives no frame for so long is taken for gone
 
 double seconds_since(Clock::time_point start) {

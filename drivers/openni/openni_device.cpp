@@ -21,7 +21,6 @@ using Sensor = SensorImage::Sensor;
 // The images that a driver may hold when its modes are set, computed as they were before; drivers have three buffers.
 constexpr int kDepthBeforeModes = 3;
 constexpr milliseconds kFirstImage(1000);  // cameras take that long to start
-constexpr milliseconds kGlance(50);        // how long a stop request may go unnoticed
 
 /// Calls `wait` with parts of `patience` until it returns something, the patience has run out or a stop is asked for.
 template <typename Wait>

@@ -32,17 +32,27 @@ bool truth(const nlohmann::json& entry, const char* key, const std::string& wher
 /// That of a store that does not say it is the origin.
 Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& where) {
   constexpr float kFarthest = 10.0F;  // a mesh is smaller
-  Eigen::Vector3f centre = Eigen::Vector3f::Zero();
-  const auto found = entry.find("vote_centre_m");
-  if (found == entry.end()) return centre;
-  bool good = found->is_array() && found->size() == 3;
-  for (std::size_t i = 0; good && i < 3; ++i) {
-    good = (*found)[i].is_number();
-    if (good) centre[static_cast<Eigen::Index>(i)] = (*found)[i].get<float>();
-  }
-  require(good && centre.allFinite() && centre.norm() < kFarthest,
-          "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where, found->dump());
+  if (!entry.contains("vote_centre_m")) return Eigen::Vector3f::Zero();
+  const std::vector<double> xyz = json_numbers(entry, "vote_centre_m", 3, where);
+  const Eigen::Vector3f centre = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).cast<float>();
+  require(centre.norm() < kFarthest, "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where,
+          entry.at("vote_centre_m").dump());
   return centre;
+}
+
+/// That of a store that does not say it holds every picture.
+ToneRange parse_tone(const nlohmann::json& json, const std::string& file) {
+  ToneRange tone;
+  const auto found = json.find("tone");
+  if (found == json.end()) return tone;
+  require(found->is_object(), "{}: 'tone' is {}, expected means and a deviation of grey values", file, found->dump());
+  tone.least_mean = static_cast<float>(json_number(*found, "least_mean", file));
+  tone.most_mean = static_cast<float>(json_number(*found, "most_mean", file));
+  tone.most_deviation = static_cast<float>(json_number(*found, "most_deviation", file));
+  require(tone.least_mean >= 0.0F && tone.least_mean <= tone.most_mean && tone.most_mean <= 255.0F &&
+              tone.most_deviation >= 1.0F && tone.most_deviation <= 255.0F,
+          "{}: 'tone' is {}, expected grey values of 0 to 255", file, found->dump());
+  return tone;
 }
 
 StoredObject parse_object(const nlohmann::json& entry, const std::string& file) {
@@ -149,6 +159,7 @@ ObjectStore read_store(const fs::path& folder) {
   ObjectStore store;
   store.folder = folder;
   store.objects = parse_objects(json, file.string());
+  store.tone = parse_tone(json, file.string());
   if (json.contains("settings")) store.settings = json.at("settings");
   require_file(store.forest_file(), folder);
   require_file(store.models_folder() / "models_info.json", folder);
@@ -212,6 +223,9 @@ void write_store_json(const ObjectStore& store) {
     if (!object.quality.is_null()) entry["quality"] = object.quality;
     json["objects"].push_back(entry);
   }
+  json["tone"] = {{"least_mean", store.tone.least_mean},
+                  {"most_mean", store.tone.most_mean},
+                  {"most_deviation", store.tone.most_deviation}};
   json["settings"] = store.settings;
   write_json(json, store.json_file());
 }

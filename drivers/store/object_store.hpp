@@ -8,6 +8,7 @@
 #include "drivers/files/json_file.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
+#include "pipeline/types/tone.hpp"
 
 // The object store: a folder with all that is known of the taught objects, which hs-teach writes and hs-detect and
 // hs-pose take as one argument.
@@ -33,6 +34,7 @@ struct StoredObject {
 struct ObjectStore {
   std::filesystem::path folder;
   std::vector<StoredObject> objects;                 ///< by id
+  ToneRange tone;                                    ///< of the pictures in which they were practised
   OrderedJson settings;                              ///< of the last teaching, for people
   std::map<int, Symmetries> symmetries;              ///< by id, of models_info.json; empty for an object without any
   std::filesystem::path json_file() const;           ///< the list

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/geometry/raster_edge.hpp"
 
 // Scan conversion with exact edges (raster_edge.hpp), one span per row. Depth comes from the plane of the unsnapped
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kNear = 0.05;          // metres
 constexpr double kSnapLimit = 1 << 29;  // keeps products of two coordinates within 64 bits
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 struct ClipVertex {
   Eigen::Vector3d position;
@@ -254,7 +254,7 @@ cv::Mat Rasteriser::depth() const {
   for (int y = 0; y < depth.rows; ++y) {
     const float* in = inverse_depth_.ptr<float>(y);
     float* out = depth.ptr<float>(y);
-    for (int x = 0; x < depth.cols; ++x) out[x] = in[x] > 0.0F ? 1.0F / in[x] : kNone;
+    for (int x = 0; x < depth.cols; ++x) out[x] = in[x] > 0.0F ? 1.0F / in[x] : kNoValue;
   }
   return depth;
 }

@@ -3,11 +3,10 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream {
 namespace {
-
-constexpr double kUnitTolerance = 1e-3;  // a quaternion of another sender may be rounded
 
 void set_pose(const Eigen::Isometry3d& T, double* trans, double* quat) {
   const rigid_transform_t transform = to_message(0, T);

@@ -5,12 +5,10 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream {
 namespace {
-
-// A unit quaternion in single precision is this close to length 1.
-constexpr double kUnitTolerance = 1e-3;
 
 bool is_share(float value) {
   return value >= 0.0F && value <= 1.0F;

@@ -3,13 +3,12 @@
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream {
 namespace {
-
-constexpr double kUnitTolerance = 1e-3;  // a unit vector in single precision is this close to length 1
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 std::optional<cv::Rect2f> box_from(const teaching_t& message) {
   const cv::Rect2f box(message.box_x, message.box_y, message.box_width, message.box_height);
@@ -60,10 +59,10 @@ teaching_t to_message(const Teaching& teaching) {
   message.name = teaching.name;
   message.state = static_cast<std::int8_t>(teaching.state);
   message.message = teaching.message;
-  message.progress = teaching.progress.value_or(kNone);
+  message.progress = teaching.progress.value_or(kNoValue);
   message.n_frames = teaching.frames;
   message.n_keyframes = teaching.keyframes;
-  const cv::Rect2f box = teaching.box_px.value_or(cv::Rect2f(kNone, kNone, kNone, kNone));
+  const cv::Rect2f box = teaching.box_px.value_or(cv::Rect2f(kNoValue, kNoValue, kNoValue, kNoValue));
   message.box_x = box.x;
   message.box_y = box.y;
   message.box_width = box.width;

@@ -13,6 +13,9 @@
 
 namespace houghstream {
 
+/// A unit vector or quaternion in single precision, rounded by another sender, is this close to length 1.
+inline constexpr double kUnitTolerance = 1e-3;
+
 /// What names a frame, read without decoding its images.
 struct FrameHeader {
   std::int64_t utime = 0;

@@ -1,9 +1,9 @@
 #include "pipeline/types/frame.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/no_value.hpp"
 
 namespace houghstream {
 
@@ -11,11 +11,10 @@ cv::Mat depth_from_millimetres(const cv::Mat& depth_mm) {
   require(depth_mm.type() == CV_16UC1, "depth image of OpenCV type {}, expected 16-bit single channel",
           depth_mm.type());
   cv::Mat depth(depth_mm.size(), CV_32FC1);
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   for (int y = 0; y < depth.rows; ++y) {
     const auto* in = depth_mm.ptr<std::uint16_t>(y);
     auto* out = depth.ptr<float>(y);
-    for (int x = 0; x < depth.cols; ++x) out[x] = in[x] == 0 ? kNone : static_cast<float>(in[x]) * 1e-3F;
+    for (int x = 0; x < depth.cols; ++x) out[x] = in[x] == 0 ? kNoValue : static_cast<float>(in[x]) * 1e-3F;
   }
   return depth;
 }

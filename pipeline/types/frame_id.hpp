@@ -30,6 +30,11 @@ inline std::string to_string(const FrameId& id) {
   return (id.channel.empty() ? "" : id.channel + " ") + std::to_string(id.utime);
 }
 
+/// From one time in microseconds to another.
+inline double seconds_between(std::int64_t from, std::int64_t to) {
+  return static_cast<double>(to - from) * 1e-6;
+}
+
 }  // namespace houghstream
 
 template <>

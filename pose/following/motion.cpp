@@ -12,10 +12,6 @@ bool is_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 
 }  // namespace
 
-double seconds_between(std::int64_t from, std::int64_t to) {
-  return 1e-6 * static_cast<double>(to - from);
-}
-
 Eigen::Vector3d turn_of(const Eigen::Matrix3d& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();

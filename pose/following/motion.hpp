@@ -1,14 +1,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace houghstream {
-
-/// From one time in microseconds to another.
-double seconds_between(std::int64_t from, std::int64_t to);
 
 /// A rotation as axis times angle, radians.
 Eigen::Vector3d turn_of(const Eigen::Matrix3d& rotation);

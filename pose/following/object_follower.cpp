@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
 #include "pose/following/motion.hpp"
 

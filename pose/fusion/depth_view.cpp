@@ -3,13 +3,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
+
+#include "pipeline/base/no_value.hpp"
 
 namespace houghstream::fusion {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRadius_px = 3;  // of the planes that give normals
 
 /// The plane's normal n with n.X = 1 for its points X: 1/z is linear in the pixel, so this is a linear fit. False where
@@ -38,7 +38,7 @@ bool fit_plane(const cv::Mat& depth, const Camera& camera, int x, int y, Eigen::
 
 void set_surface(const cv::Mat& depth, DepthView& out) {
   constexpr double kLeastFacing = 0.2;
-  out.depth = cv::Mat(depth.size(), CV_32FC1, cv::Scalar(kNone));
+  out.depth = cv::Mat(depth.size(), CV_32FC1, cv::Scalar(kNoValue));
   out.normals = cv::Mat(depth.size(), CV_32FC3, cv::Scalar::all(0.0));
   for (int y = 0; y < depth.rows; ++y) {
     for (int x = 0; x < depth.cols; ++x) {
@@ -113,7 +113,7 @@ DepthView make_depth_view(const TrainingView& view) {
   out.colour = view.frame.colour;
   const cv::Mat mask = without_specks(view.mask);
   cv::Mat depth = view.frame.depth.clone();
-  depth.setTo(kNone, mask == 0);
+  depth.setTo(kNoValue, mask == 0);
   set_surface(depth, out);
   out.outside = outside_of(mask, view.frame.depth);
   return out;

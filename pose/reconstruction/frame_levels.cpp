@@ -6,10 +6,10 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/base/no_value.hpp"
+
 namespace houghstream::reconstruction {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// Half the size; a pixel's depth is the mean of those of its four that lie on the nearest surface.
 cv::Mat half_depth(const cv::Mat& depth) {
@@ -29,7 +29,7 @@ cv::Mat half_depth(const cv::Mat& depth) {
         sum += z;
         ++count;
       }
-      half.at<float>(y, x) = count > 0 ? sum / static_cast<float>(count) : kNone;
+      half.at<float>(y, x) = count > 0 ? sum / static_cast<float>(count) : kNoValue;
     }
   }
   return half;
@@ -148,7 +148,7 @@ std::vector<SurfacePoint> points_of(const FrameLevel& level, const cv::Mat& mask
       point.point = level.camera.backproject(px.x, px.y, level.depth.at<float>(px)).cast<float>();
       if (-point.normal.dot(point.point.normalized()) < static_cast<float>(least_facing)) continue;
       const bool stays = !level.stays.empty() && level.stays.at<std::uint8_t>(px) != 0;
-      point.light = stays ? kNone : level.light.at<float>(px);
+      point.light = stays ? kNoValue : level.light.at<float>(px);
       points.push_back(point);
     }
   }

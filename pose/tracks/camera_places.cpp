@@ -9,13 +9,13 @@
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/motion_filter.hpp"
 
 namespace houghstream::tracks {
 namespace {
 
 constexpr std::size_t kSamples = 2048;
-constexpr std::int64_t kSecond = 1000000;
 
 bool equal_places(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double kSame = 1e-6;
@@ -111,7 +111,7 @@ void CameraPlaces::fix(const std::string& camera, const Eigen::Isometry3d& T_wor
 
 void CameraPlaces::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
   std::deque<Sample>& samples = moving_[camera];
-  if (!samples.empty() && utime + kSecond < samples.back().utime) samples.clear();
+  if (!samples.empty() && seconds_between(utime, samples.back().utime) > 1.0) samples.clear();
   auto place = samples.end();
   while (place != samples.begin() && (place - 1)->utime >= utime) --place;
   if (place != samples.end() && place->utime == utime) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t kTogetherUs = 40000;  // of frames that are compared
 constexpr double kReachM = 0.3;              // an object that is seen farther away is another one
-constexpr std::size_t kSamples = 300;
+constexpr std::size_t kOffsets = 300;
 constexpr std::size_t kEnough = 20;
 
 Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
@@ -45,7 +45,7 @@ void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_wo
       if (nearest == nullptr) continue;
       offsets.push_back(first ? Eigen::Vector3d(nearest->centre - here.centre)
                               : Eigen::Vector3d(here.centre - nearest->centre));
-      if (offsets.size() > kSamples) offsets.pop_front();
+      if (offsets.size() > kOffsets) offsets.pop_front();
     }
   }
   // Several detectors' results of one frame are one view.

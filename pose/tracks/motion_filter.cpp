@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
+#include "pipeline/types/frame_id.hpp"
+
 namespace houghstream::tracks {
 namespace {
-
-double seconds_between(std::int64_t from, std::int64_t to) {
-  return static_cast<double>(to - from) * 1e-6;
-}
 
 Vector6 both(double translation, double rotation) {
   Vector6 out;

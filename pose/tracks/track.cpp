@@ -15,21 +15,12 @@ constexpr std::size_t kHypotheses = 3;
 constexpr double kMostWeight = 6.0;
 constexpr double kForgetS = 3.0;
 
-double logit(double p) {
-  const double q = std::clamp(p, 0.02, 0.98);
-  return std::log(q / (1.0 - q));
-}
-
 /// The measured pose as the one of those that look the same that is nearest to the known one.
 PoseMeasurement aligned(const PoseMeasurement& measured, const Eigen::Isometry3d& T_known,
                         const Symmetries& symmetries) {
   PoseMeasurement out = measured;
   out.T_world_object = nearest_equivalent(measured.T_world_object, T_known, symmetries);
   return out;
-}
-
-double seconds_between(std::int64_t from, std::int64_t to) {
-  return static_cast<double>(to - from) * 1e-6;
 }
 
 Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera, double radius_m) {
@@ -51,6 +42,11 @@ Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_wor
 }
 
 }  // namespace
+
+double log_odds_of(double quality) {
+  const double q = std::clamp(quality, 0.02, 0.98);
+  return std::log(q / (1.0 - q));
+}
 
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries) {
   TrackModels models;
@@ -111,7 +107,7 @@ Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isome
 
 PoseTrack::PoseTrack(const SeenPose& first, const PoseTrackSettings& settings)
     : settings_(settings),
-      hypotheses_{{MotionFilter(first.measured, settings.motion), logit(first.quality)}},
+      hypotheses_{{MotionFilter(first.measured, settings.motion), log_odds_of(first.quality)}},
       weighed_utime_(first.frame.utime) {
   witnesses_[first.frame.channel].agreed_utime = first.frame.utime;
 }
@@ -171,7 +167,7 @@ void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries, bool do
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.weight *= std::exp(-passed / kForgetS);
   const std::size_t index = hypothesis_for(pose.measured, symmetries);
   Hypothesis& hypothesis = hypotheses_[index];
-  hypothesis.weight = std::min(kMostWeight, hypothesis.weight + std::max(0.1, logit(pose.quality)));
+  hypothesis.weight = std::min(kMostWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
   SeenPose turned = pose;
   turned.measured = aligned(pose.measured, hypothesis.filter.T_world_object(), symmetries);
   hypothesis.filter.predict(pose.frame.utime);

@@ -44,6 +44,9 @@ struct SeenPose {
 std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                  const TrackModels& models);
 
+/// What a quality speaks for, the certain ones cut to 0.02 and 0.98.
+double log_odds_of(double quality);
+
 /// How the depth of a frame speaks for an object at a pose.
 struct Look {
   TrackState state = TrackState::kOutOfView;  ///< kUnrecognised: it agrees; kGone: it was seen through

@@ -10,17 +10,6 @@
 namespace houghstream::tracks {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000;
-
-double seconds_between(std::int64_t from, std::int64_t to) {
-  return static_cast<double>(to - from) * 1e-6;
-}
-
-double logit(double p) {
-  const double q = std::clamp(p, 0.02, 0.98);
-  return std::log(q / (1.0 - q));
-}
-
 /// An object, or what may become one.
 struct Track {
   std::int64_t id = 0;  ///< 0: not confirmed
@@ -140,7 +129,7 @@ void Tracker::State::begin_world() {
 bool Tracker::State::begin_frame(const FrameId& frame, double& seconds) {
   constexpr double kUsualS = 1.0 / 30.0;
   constexpr double kMostS = 0.1;
-  if (newest_utime != 0 && frame.utime + kSecond < newest_utime) {
+  if (newest_utime != 0 && seconds_between(frame.utime, newest_utime) > 1.0) {
     log_warning("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
                 seconds_between(frame.utime, newest_utime));
     begin_world();
@@ -216,8 +205,9 @@ void Tracker::State::take(Track& track, const SeenPose& pose, double seconds) {
   constexpr double kMost = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
   track.pose.take(pose, symmetries_of(track.class_name), track.seen_through_s > 0.0);
-  track.log_odds = std::min(settings.existence.most, track.log_odds + share * settings.existence.gain *
-                                                                          std::clamp(logit(pose.quality), 0.3, kMost));
+  track.log_odds =
+      std::min(settings.existence.most,
+               track.log_odds + share * settings.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMost));
   ++track.seen;
   track.seen_now = true;
   track.seen_through_s = 0.0;
@@ -239,7 +229,7 @@ void Tracker::State::begin(const SeenPose& pose) {
               pose.frame,
               TrackState::kVisible,
               fmt::format("seen by {}", pose.frame.channel)};
-  track.log_odds = settings.existence.prior + settings.existence.gain * logit(pose.quality);
+  track.log_odds = settings.existence.prior + settings.existence.gain * log_odds_of(pose.quality);
   track.seen_now = true;
   tracks.push_back(std::move(track));
 }

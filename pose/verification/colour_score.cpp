@@ -35,12 +35,12 @@ double chroma_left_over(const ColourProducts& products, Eigen::Index remembered,
 
 /// The same for lightness on the remembered one and the surface's normal.
 double lightness_left_over(const ColourProducts& products) {
-  constexpr double kDamping = 1e-4;  // terms that do not vary are left alone
-  constexpr int kTerms = kOne + 1;   // remembered value, normal (3), 1
+  constexpr double kRidge = 1e-4;   // terms that do not vary are left alone
+  constexpr int kTerms = kOne + 1;  // remembered value, normal (3), 1
   constexpr int kOthers = kTerms - 1;
   using Terms = Eigen::Matrix<double, kTerms, 1>;
   Eigen::Matrix<double, kTerms, kTerms> curvature = products.topLeftCorner<kTerms, kTerms>();
-  curvature.diagonal().array() += kDamping;
+  curvature.diagonal().array() += kRidge;
   const Terms with_seen = products.block<kTerms, 1>(0, kSeenLightness);
   Terms weights = curvature.ldlt().solve(with_seen);
   const double gain = std::clamp(weights[0], kLeastGain, kMostGain);

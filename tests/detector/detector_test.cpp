@@ -7,7 +7,6 @@
 
 #include "detector/baseline/reference_engine.hpp"
 #include "detector/stages.hpp"
-#include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/same_detections.hpp"
 #include "tests/detector/toy_data.hpp"
@@ -15,16 +14,11 @@
 namespace houghstream {
 namespace {
 
-const Forest& toy_forest() {
-  static const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
-  return forest;
-}
-
 Detections detect(const RgbdFrame& frame, int threads) {
   DetectionSettings settings;
   settings.threads = threads;
   settings.evidence.threshold = 0.5F;  // toys have learnt their scores from few pictures
-  return Detector(toy_forest(), settings).detect(frame);
+  return Detector(toy::forest(), settings).detect(frame);
 }
 
 void expect_tile(int kind, double u, double v, double distance) {
@@ -97,13 +91,13 @@ TEST(Detector, AnyNumberOfThreadsAndTheReferenceEngineGiveTheSameDetections) {
   DetectionSettings settings;
   settings.leaves.first_trees = 1;  // the toy forest has few
   settings.threads = 1;
-  const Detections serial = Detector(toy_forest(), settings).detect(frame);
+  const Detections serial = Detector(toy::forest(), settings).detect(frame);
   ASSERT_GE(serial.detections.size(), 2U);
   for (const int threads : {2, 3, 7}) {
     settings.threads = threads;
-    expect_same(Detector(toy_forest(), settings).detect(frame), serial);
+    expect_same(Detector(toy::forest(), settings).detect(frame), serial);
   }
-  expect_same(Detector(toy_forest(), settings, baseline::reference_engine()).detect(frame), serial);
+  expect_same(Detector(toy::forest(), settings, baseline::reference_engine()).detect(frame), serial);
 }
 
 TEST(Detector, StagesAreTimedInTheOrderOfThePage) {
@@ -123,7 +117,7 @@ TEST(Detector, AWorkspaceLeavesNothingOfTheFramesBefore) {
   toy::put_tile(1, 250, 180, 1.1, other);
   DetectionSettings settings;
   settings.threads = 3;
-  const Detector detector(toy_forest(), settings);
+  const Detector detector(toy::forest(), settings);
   DetectorWorkspace workspace;
   detector.detect(other, workspace);
   const Detections found = detector.detect(frame, workspace);
@@ -132,10 +126,10 @@ TEST(Detector, AWorkspaceLeavesNothingOfTheFramesBefore) {
 }
 
 TEST(Detector, AForestThatNeedsTheBaselineIsRefusedWithoutIt) {
-  Forest forest = toy_forest();
+  Forest forest = toy::forest();
   forest.features.handling = ScaleHandling::kScaleSpace;
   EXPECT_THROW(Detector(forest, {}), InputError);
-  forest.features = toy_forest().features;
+  forest.features = toy::forest().features;
   forest.features.families |= kHonv;
   EXPECT_THROW(Detector(forest, {}), InputError);
 }

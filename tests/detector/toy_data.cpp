@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream::toy {
@@ -77,6 +78,11 @@ std::vector<TrainingView> training_views() {
     views.push_back(background);
   }
   return views;
+}
+
+const Forest& forest() {
+  static const Forest forest = training::train_forest(training_views(), quick_profile(), [](const auto&) {});
+  return forest;
 }
 
 Profile quick_profile() {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "detector/forest/forest.hpp"
 #include "detector/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 
@@ -16,6 +17,9 @@ cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame&
 
 /// A few views of both kinds (classes 1 "stripes" and 2 "rings") and background frames.
 std::vector<TrainingView> training_views();
+
+/// Taught those views by quick_profile, once in a process.
+const Forest& forest();
 
 /// The default profile with training settings that take a second.
 Profile quick_profile();

@@ -3,18 +3,12 @@
 #include "detector/baseline/reference_engine.hpp"
 #include "detector/detector.hpp"
 #include "detector/stages.hpp"
-#include "detector/training/forest_trainer.hpp"
 #include "tests/detector/listed_voters.hpp"
 #include "tests/detector/same_detections.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {
-
-const Forest& toy_forest() {
-  static const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
-  return forest;
-}
 
 /// One tile in a room that is too far away for the near level: most of that one's picture is looked at by nobody.
 RgbdFrame tile_in_a_room() {
@@ -41,7 +35,7 @@ DetectionSettings curious() {
 
 /// The stages up to the leaves.
 void see(const RgbdFrame& frame, const DetectionSettings& settings, DetectorWorkspace& workspace) {
-  const Search search{toy_forest(), settings};
+  const Search search{toy::forest(), settings};
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);
@@ -50,9 +44,9 @@ void see(const RgbdFrame& frame, const DetectionSettings& settings, DetectorWork
 /// The patches' levels, with features of whole images, whoever looks at them.
 std::vector<FeatureImage> whole_images(const RgbdFrame& frame) {
   std::vector<FeatureImage> images;
-  for (const FeatureLevel& level : feature_levels(toy_forest().features)) {
-    const WorkingFrame working = make_working_frame(frame, level.scale, toy_forest().features);
-    images.push_back(compute_features(working, toy_forest().features, 1));
+  for (const FeatureLevel& level : feature_levels(toy::forest().features)) {
+    const WorkingFrame working = make_working_frame(frame, level.scale, toy::forest().features);
+    images.push_back(compute_features(working, toy::forest().features, 1));
   }
   return images;
 }
@@ -68,7 +62,7 @@ TEST(WantedTiles, LeavesInWantedTilesAreThoseInWholeImages) {
     see(frame, settings, workspace);
     LeafMemory memory;
     PatchPosteriors expected;
-    find_posteriors({toy_forest(), whole, workspace.patches, settings.leaves, threads}, fast_engine(), memory,
+    find_posteriors({toy::forest(), whole, workspace.patches, settings.leaves, threads}, fast_engine(), memory,
                     expected);
     for (int c = 0; c < 2; ++c) {
       const std::vector<ListedVoter> wanted = voters_for(c, expected);
@@ -80,7 +74,7 @@ TEST(WantedTiles, LeavesInWantedTilesAreThoseInWholeImages) {
 
 TEST(WantedTiles, EveryLeafOfEveryTreeIsFoundInWantedTilesAlone) {
   const RgbdFrame frame = tile_in_a_room();
-  const Forest& forest = toy_forest();
+  const Forest& forest = toy::forest();
   DetectorWorkspace workspace;
   see(frame, curious(), workspace);
   const PatchGrid& patches = workspace.patches;
@@ -111,11 +105,11 @@ TEST(WantedTiles, EveryLeafOfEveryTreeIsFoundInWantedTilesAlone) {
 TEST(WantedTiles, DetectionsInThemAreThoseInWholeImages) {
   DetectionSettings settings;
   settings.leaves.first_trees = 1;  // the toy forest has few
-  const Detector detector(toy_forest(), settings);
+  const Detector detector(toy::forest(), settings);
   DetectorWorkspace workspace;
   detector.detect(other_frame(), workspace);
   const Detections found = detector.detect(tile_in_a_room(), workspace);
-  const Detections expected = Detector(toy_forest(), settings, baseline::reference_engine()).detect(tile_in_a_room());
+  const Detections expected = Detector(toy::forest(), settings, baseline::reference_engine()).detect(tile_in_a_room());
   ASSERT_FALSE(expected.detections.empty());
   expect_same(found, expected);
 }

@@ -39,6 +39,20 @@ TEST(Region, HoldsTheObjectsDepthAndNotTheWalls) {
   EXPECT_LT(region.farthest, 1.5F);
 }
 
+TEST(Region, ColoursAreBroughtIntoTheToneOfTheWholeFrame) {
+  RgbdFrame frame = patch_before_wall();
+  frame.colour = cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(20));
+  frame.colour(cv::Rect(200, 150, 100, 80)).setTo(cv::Scalar::all(60));
+  RegionSettings settings;
+  const auto lightness = [&] {
+    const SeenObject seen = see_object(frame, patch_detection(), kModel, settings, DepthNoise());
+    return seen.colours.lab.at<cv::Vec3b>(50, 50)[0];
+  };
+  const int dark = lightness();
+  settings.tone = {100.0F, 130.0F, 50.0F};
+  EXPECT_GT(lightness(), dark + 60) << "140 instead of 60";
+}
+
 TEST(Region, PointsAreSpreadOverIt) {
   const RgbdFrame frame = patch_before_wall();
   const DepthRegion region = find_region(frame, patch_detection(), kModel, RegionSettings());

@@ -43,6 +43,7 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
 void take_from_store(const store::ObjectStore& objects, PoseSettings& settings) {
   settings.class_quality = stored_quality(objects, settings.quality);
   settings.model.vote_centres = objects.vote_centres();
+  settings.region.tone = objects.tone;
 }
 
 }  // namespace houghstream

@@ -36,6 +36,13 @@ def write_json(file, value):
     write_atomically(file, json.dumps(value, indent=2) + "\n")
 
 
+def percentiles(values, of=(50, 95, 99), unit=""):
+    """{"p50": ...} of some values; None where there are none."""
+    ordered = sorted(values)
+    last = len(ordered) - 1
+    return {f"p{p}{unit}": round(ordered[min(last, p * len(ordered) // 100)], 2) if ordered else None for p in of}
+
+
 def threads():
     """As many as this process may use, like nproc."""
     return len(os.sched_getaffinity(0))

@@ -93,6 +93,7 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   training::train_score_model(validation_source(frames), new_ids, 0, profile, forest);
 
   quality::PosedModels models;
+  models.tone = forest.features.tone;
   std::map<std::string, PoseModel> judged_by;
   for (const PractisedObject& object : objects) {
     models.meshes[object.name] = object.mesh;

@@ -12,6 +12,7 @@ PoseSettings withholding_none(const PosedModels& models, int threads) {
   PoseSettings settings;
   settings.threads = threads;
   settings.model.vote_centres = models.vote_centres;
+  settings.region.tone = models.tone;
   settings.quality.least = 0.0F;
   return settings;
 }

@@ -35,6 +35,7 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
 struct PosedModels {
   std::map<std::string, Mesh> meshes;
   std::map<std::string, Eigen::Vector3f> vote_centres;
+  ToneRange tone = {};  ///< see RegionSettings
 };
 
 /// Finds poses and withholds none, and says what each would be judged by.

@@ -33,6 +33,8 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
+constexpr double kToneShare = 0.7;  // see TrainingSettings
+
 /// A line for each step, with the seconds since the start.
 class Progress {
  public:
@@ -233,6 +235,8 @@ Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>
   }
   profile.training.validation_frames = 0;    // practice tells more
   profile.training.composites_per_view = 1;  // another view tells more than another room
+  profile.training.tone_share = kToneShare;
+  if (!old) profile.features.tone = kPractisedTone;
   profile.training.views_per_picture = kViewsPerPicture;
   const int pictures = std::max(most_views(views) / kViewsPerPicture, 1);
   profile.training.patches_per_view = std::clamp(kPatches / pictures, kFewestPatches, kMostPatches);
@@ -251,6 +255,7 @@ void write_store(ObjectStore list, const std::vector<NamedModel>& models, const 
   std::vector<fs::path> pictures;
   for (const StoredObject& object : list.objects) pictures.push_back(list.view_picture(object.id));
   write_contact_sheet(pictures, list.contact_sheet());
+  list.tone = forest.features.tone;
   store::write_store_json(list);
 }
 

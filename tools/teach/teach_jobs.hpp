@@ -13,6 +13,10 @@
 
 namespace houghstream::teach {
 
+/// In which tone objects are looked for that hs-teach has taught. Real cameras' tones are more various than rendered
+/// rooms': some two fifths of these are as bright as this, nine in ten no more contrasty.
+constexpr ToneRange kPractisedTone{100.0F, 130.0F, 50.0F};
+
 /// What hs-teach mesh is asked for.
 struct TeachOptions {
   MeshSources meshes;

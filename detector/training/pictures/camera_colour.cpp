@@ -149,7 +149,9 @@ cv::Mat toned(const ColourVariation& camera, const cv::Mat& raw) {
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const double value = std::pow(std::min(1.0, static_cast<double>(i) / kSteps), camera.gamma);
     const double s_curve = value * value * (3.0 - 2.0 * value);
-    curve[i] = static_cast<float>(255.0 * (value + camera.contrast * (s_curve - value)));
+    const double contrasty = value + camera.contrast * (s_curve - value);
+    const double levelled = (contrasty - camera.black) / (camera.white - camera.black);
+    curve[i] = static_cast<float>(255.0 * std::clamp(levelled, 0.0, 1.0));
   }
   std::array<std::uint8_t, kLevels> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -215,7 +217,7 @@ bool counts_light(const ColourVariation& camera) {
   return camera.exposure_stops != 0.0 || camera.exposure_follow > 0.0 || camera.vignetting > 0.0 ||
          camera.shot_noise > 0.0 || camera.read_noise > 0.0 || camera.flare > 0.0 ||
          camera.white_balance_bgr != none.white_balance_bgr || camera.bayer >= 0 || camera.gamma != 1.0 ||
-         camera.contrast != 0.0;
+         camera.contrast != 0.0 || camera.black != 0.0 || camera.white != 1.0;
 }
 
 }  // namespace

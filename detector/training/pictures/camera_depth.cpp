@@ -5,11 +5,11 @@
 
 #include "detector/training/pictures/camera_variation.hpp"
 #include "detector/training/pictures/composites.hpp"
+#include "pipeline/base/no_value.hpp"
 
 namespace houghstream::training {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFar = 1e6F;        // stands for none where the nearest is sought
 constexpr double kEdgeStep = 0.03;  // a depth edge, relative to depth
 
@@ -79,7 +79,7 @@ void grow(const std::array<int, 2>& by_px, cv::Mat& depth) {
   if (by_px[0] == 0 && by_px[1] == 0) return;
   const cv::Mat holes = ~known(depth);
   depth = nearest_around(depth, by_px[0], by_px[1]);
-  depth.setTo(kNone, holes);
+  depth.setTo(kNoValue, holes);
 }
 
 /// Outlines that waver, and pixels that see both surfaces of an edge.
@@ -241,7 +241,7 @@ void cast_shadow(double baseline_m, double focal_px, cv::Mat& depth) {
       float& z = row[right ? depth.cols - 1 - i : i];
       if (std::isnan(z)) continue;
       const float column = static_cast<float>(i) + shift_px / z;
-      if (column < most - 1.5F) z = kNone;
+      if (column < most - 1.5F) z = kNoValue;
       most = std::max(most, column);
     }
   }
@@ -266,14 +266,14 @@ void make_holes(const DepthVariation& camera, const Edges& edges, const Surfaces
     for (int x = 0; x < depth.cols; ++x) {
       if (is_edge[x] != 0) {
         const float rank = 1.0F / (1.0F + std::exp(1.702F * noise_row[x]));  // the normal distribution's, nearly
-        if (rank < edge_loss) row[x] = kNone;
+        if (rank < edge_loss) row[x] = kNoValue;
       } else if (is_near_edge[x] == 0) {
         const float z_sq = row[x] * row[x];
         const float wobble = std::max(0.2F, 1.0F + 0.25F * noise_row[x]);
         const float limit = wobble * wobble * (1.0F + slant_sq[x]);
         const bool flat = cosine_sq * limit > 1.0F;
         const bool dark = reflectance[x] * reflectance[x] < signal_sq * limit * z_sq * z_sq;
-        if (flat || dark) row[x] = kNone;
+        if (flat || dark) row[x] = kNoValue;
       }
     }
   }

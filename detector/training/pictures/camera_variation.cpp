@@ -103,4 +103,17 @@ void look_through_another(double share, double strength, RgbdFrame& frame, Rando
   apply_colour(camera, frame.colour, random);
 }
 
+void vary_tone(double share, double strength, cv::Mat& colour, Random& random) {
+  if (share <= 0.0 || strength <= 0.0 || random.uniform() >= share) return;
+  Draw draw(strength * random.uniform(), random);
+  CameraVariation camera;
+  camera.colour.gamma = draw.factor(-0.4, 0.4);
+  camera.colour.contrast = draw.part(-0.35, 0.7);
+  camera.colour.black = draw.part(-0.06, 0.14);
+  camera.colour.white = 1.0 - draw.part(-0.04, 0.22);
+  camera.colour.saturation = draw.factor(-0.9, 0.9);
+  camera.colour.hue_turn = draw.part(-0.12, 0.12);
+  apply_colour(camera, colour, random);
+}
+
 }  // namespace houghstream::training

@@ -48,12 +48,14 @@ struct ColourVariation {
   bool edge_aware = false;                                 ///< demosaicing along edges
   double gamma = 1.0;                                      ///< on coded values; below 1 brightens
   double contrast = 0.0;                                   ///< share of an S curve; below 0 flattens
-  double saturation = 1.0;                                 ///< factor on what a colour differs from its grey
-  double hue_turn = 0.0;                                   ///< radians, of all colours about grey
-  double sharpening = 0.0;                                 ///< share of the unsharp mask that is added
-  double sharpening_px = 1.0;                              ///< its standard deviation
-  bool half_chroma = false;                                ///< one colour for two neighbours (4:2:2)
-  int jpeg_quality = 0;                                    ///< 0 = not compressed
+  double black = 0.0;          ///< coded value, 0 to 1, that becomes black; below 0 greys it
+  double white = 1.0;          ///< coded value that becomes white
+  double saturation = 1.0;     ///< factor on what a colour differs from its grey
+  double hue_turn = 0.0;       ///< radians, of all colours about grey
+  double sharpening = 0.0;     ///< share of the unsharp mask that is added
+  double sharpening_px = 1.0;  ///< its standard deviation
+  bool half_chroma = false;    ///< one colour for two neighbours (4:2:2)
+  int jpeg_quality = 0;        ///< 0 = not compressed
 };
 
 /// A depth camera and its registration to colour. As it stands, it changes nothing.
@@ -98,5 +100,10 @@ void apply_colour(const CameraVariation& camera, cv::Mat& colour, Random& random
 /// before apply_colour()) says what is dark; without one, all is of middle grey. Holes stay holes.
 void apply_depth(const CameraVariation& camera, const Camera& view, cv::Mat& depth, Random& random,
                  const cv::Mat& colour = cv::Mat());
+
+/// Of the colours of a camera alone what it does to coded values: gamma, contrast, levels, saturation, hue. More widely
+/// than draw_camera(): what trees have learnt from may be stranger than what scores are learnt from, which would only
+/// trust colours less.
+void vary_tone(double share, double strength, cv::Mat& colour, Random& random);
 
 }  // namespace houghstream::training

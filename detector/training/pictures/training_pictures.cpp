@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "detector/training/pictures/camera_variation.hpp"
 #include "detector/training/pictures/composites.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 
@@ -169,6 +170,7 @@ TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& backgr
   }
   if (!composite) return picture;
 
+  vary_tone(settings.tone_share, settings.camera_variation, composite->frame.colour, random);
   if (needs_far_noise(profile)) {
     const double farthest = *std::max_element(profile.features.scales.begin(), profile.features.scales.end());
     add_far_noise(distance, std::exp(random.uniform(0.0, std::log(farthest))), composite->frame.depth, random);
@@ -209,6 +211,7 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
   part.depth = background.depth(place);
   part.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
   vary_exposure(part.colour, settings.light_variation, random);
+  vary_tone(settings.tone_share, settings.camera_variation, part.colour, random);
 
   const WorkingFrame frame = make_working_frame(part, level, profile.features);
   TrainingPicture picture;

@@ -5,8 +5,6 @@
 namespace houghstream::openni {
 namespace {
 
-constexpr std::chrono::seconds kPatience(5);  // with a disk that is asleep
-
 class OniSource : public FrameSource {
  public:
   OniSource(const std::string& file, const CameraOptions& options, StopRequested stop_requested)
@@ -17,7 +15,7 @@ class OniSource : public FrameSource {
 
   std::optional<RgbdFrame> next() override {
     while (!device_->ended() && !(stop_requested_ && stop_requested_())) {
-      std::optional<SensorImage> image = device_->wait(kPatience);
+      std::optional<SensorImage> image = device_->wait(kFilePatience);
       if (!image) continue;
       const std::optional<ImagePair> pair = pairing_.put(std::move(*image));
       if (pair) return frame_of_pair(*pair, camera_, utime_of(*pair));

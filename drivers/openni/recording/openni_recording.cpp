@@ -15,14 +15,13 @@ namespace {
 
 constexpr std::size_t kRemembered = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
 constexpr std::size_t kCompared = 8;      // recorded images of a stream
-constexpr std::chrono::seconds kPatience(5);
 
 /// Fewer where a recording is shorter.
 FirstImages first_recorded(const std::string& file) {
   const auto device = OpenniDevice::open_file(file);
   FirstImages first;
   while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
-    const std::optional<SensorImage> image = device->wait(kPatience);
+    const std::optional<SensorImage> image = device->wait(kFilePatience);
     if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
   }
   return first;

@@ -8,7 +8,7 @@
 namespace houghstream::baseline {
 namespace {
 
-enum Plane : std::size_t { kLightness, kA, kB, kIx, kIy, kIxx, kIyy, kHog };
+enum IntensityPlane : std::size_t { kLightness, kA, kB, kIx, kIy, kIxx, kIyy, kFirstHog };
 
 std::vector<int> at_centre(const cv::Mat& picture) {
   std::vector<int> values;
@@ -44,16 +44,16 @@ TEST(IntensityFeatures, AVerticalEdgeHasASlopeAcrossOnly) {
   EXPECT_EQ(across[kIy], 0);
   EXPECT_GT(across[kIxx], 50);
   EXPECT_EQ(across[kIyy], 0);
-  EXPECT_GT(across[kHog], 100);
-  EXPECT_EQ(across[kHog + 4], 0);
+  EXPECT_GT(across[kFirstHog], 100);
+  EXPECT_EQ(across[kFirstHog + 4], 0);
   cv::Mat turned;
   cv::transpose(picture, turned);
   const std::vector<int> down = at_centre(turned);
   EXPECT_EQ(down[kIx], 0);
   EXPECT_EQ(down[kIy], across[kIx]);
   EXPECT_EQ(down[kIyy], across[kIxx]);
-  EXPECT_EQ(down[kHog], 0);
-  EXPECT_GT(down[kHog + 4], 50);
+  EXPECT_EQ(down[kFirstHog], 0);
+  EXPECT_GT(down[kFirstHog + 4], 50);
 }
 
 TEST(IntensityFeatures, DarkToBrightAndBrightToDarkLookAlike) {

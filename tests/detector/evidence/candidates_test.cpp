@@ -7,20 +7,14 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/stages.hpp"
-#include "detector/training/forest_trainer.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
 namespace {
 
-const Forest& toy_forest() {
-  static const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
-  return forest;
-}
-
 std::vector<Candidate> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
                                   const std::vector<std::uint32_t>& excluded_views = {}) {
-  const Search search{toy_forest(), settings, fast_engine(), excluded_views};
+  const Search search{toy::forest(), settings, fast_engine(), excluded_views};
   DetectorWorkspace workspace;
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
@@ -40,14 +34,14 @@ TEST(Candidates, TheStrongestOfAClassComesWithEvidenceForIt) {
   EXPECT_GT(best.evidence.fit.visible, 0.8F);
   EXPECT_GT(best.evidence.fit.likeness, 0.5F);
   EXPECT_GT(box_iou(best.detection.box_px, cv::Rect2f(cv::boundingRect(mask))), 0.7F);
-  EXPECT_EQ(best.detection.score, score(toy_forest().classes[0].score_model, best.evidence));
+  EXPECT_EQ(best.detection.score, score(toy::forest().classes[0].score_model, best.evidence));
 }
 
 TEST(Candidates, ExcludedViewsAreNotCompared) {
   RgbdFrame frame = toy::room(77);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   std::vector<std::uint32_t> all;
-  for (std::uint32_t v = 0; v < toy_forest().views.size(); ++v) all.push_back(v);
+  for (std::uint32_t v = 0; v < toy::forest().views.size(); ++v) all.push_back(v);
   const std::vector<Candidate> found = candidates(frame, {}, all);
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().evidence.fit.visible, 0.0F);

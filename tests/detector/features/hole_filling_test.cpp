@@ -6,12 +6,11 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// Every pixel another depth, so that it shows who has borrowed from whom.
 cv::Mat numbered_depth(cv::Size size) {
@@ -42,7 +41,7 @@ TEST(HoleFilling, HolesBorrowFromTheNearestPixelOrOneHardlyFartherAway) {
     cv::Mat missing = cv::Mat::zeros(depth.size(), CV_8UC1);
     for (int i = 0; i < 90 * 70; ++i) missing.at<std::uint8_t>(i / 90, i % 90) = random.uniform() < share ? 1 : 0;
     missing(cv::Rect(20, 20, 30, 25)).setTo(1);
-    depth.setTo(kNone, missing);
+    depth.setTo(kNoValue, missing);
     cv::Mat nearest;
     cv::distanceTransform(missing, nearest, cv::DIST_L2, cv::DIST_MASK_PRECISE);
     fill_holes(depth, {1000.0F, 0.0F});
@@ -57,7 +56,7 @@ TEST(HoleFilling, HolesBorrowFromTheNearestPixelOrOneHardlyFartherAway) {
 
 TEST(HoleFilling, WhatIsFartherAwayThanTheLimitStaysAHole) {
   cv::Mat depth = numbered_depth({40, 1});
-  depth.colRange(5, 40).setTo(kNone);
+  depth.colRange(5, 40).setTo(kNoValue);
   fill_holes(depth, {10.0F, 0.0F});
   EXPECT_EQ(depth.at<float>(0, 14), 5.0F);
   EXPECT_TRUE(std::isnan(depth.at<float>(0, 15)));
@@ -65,7 +64,7 @@ TEST(HoleFilling, WhatIsFartherAwayThanTheLimitStaysAHole) {
 
 /// A near surface on the left, a far one on the right, between them columns 10 to 89 without depth.
 cv::Mat gap(float near, float far) {
-  cv::Mat depth(3, 100, CV_32FC1, cv::Scalar(kNone));
+  cv::Mat depth(3, 100, CV_32FC1, cv::Scalar(kNoValue));
   depth.colRange(0, 10).setTo(near);
   depth.colRange(90, 100).setTo(far);
   return depth;
@@ -96,7 +95,7 @@ TEST(HoleFilling, WithoutHolesAndWithoutDepthNothingChanges) {
   cv::Mat full = numbered_depth({9, 7});
   fill_holes(full, {5.0F, 0.0F});
   EXPECT_EQ(cv::countNonZero(full != numbered_depth({9, 7})), 0);
-  cv::Mat empty(7, 9, CV_32FC1, cv::Scalar(kNone));
+  cv::Mat empty(7, 9, CV_32FC1, cv::Scalar(kNoValue));
   fill_holes(empty, {5.0F, 0.0F});
   EXPECT_EQ(cv::countNonZero(empty == empty), 0);
 }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/base/no_value.hpp"
+
 namespace houghstream {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 RgbdFrame flat_frame(int width, int height, float depth) {
   RgbdFrame frame;
@@ -23,7 +23,7 @@ TEST(WorkingFrame, TheNearestSurfaceOfABlockCountsAndNeverAMixture) {
   frame.depth.at<float>(2, 2) = 1.0F;    // one of four pixels
   frame.depth.at<float>(2, 5) = 1.0F;    // three of four, one far
   frame.depth.at<float>(3, 4) = 1.002F;  // the same surface: averaged with the first
-  frame.depth.at<float>(3, 5) = kNone;
+  frame.depth.at<float>(3, 5) = kNoValue;
   const WorkingFrame working = make_working_frame(frame, 0.5F, {});
   EXPECT_FLOAT_EQ(working.filled_depth.at<float>(1, 1), 1.0F);
   EXPECT_FLOAT_EQ(working.filled_depth.at<float>(1, 2), 1.001F);
@@ -55,9 +55,30 @@ TEST(WorkingImages, MemoryIsUsedAgainButNeverThatOfTheFrameItself) {
   EXPECT_EQ(images.lab[0].data, lab);
 }
 
+TEST(WorkingImages, AreBroughtIntoTheToneAndTheFrameStays) {
+  FeatureSettings settings;
+  settings.tone = {100.0F, 130.0F, 50.0F};
+  const RgbdFrame frame = flat_frame(64, 48, 1.0F);  // grey of 21.9
+  for (const float scale : {0.5F, 1.0F}) {           // resized, and lent by the frame
+    settings.image_scale = scale;
+    WorkingImages images;
+    make_working_images(frame, settings, 2, images);
+    ASSERT_EQ(images.frames.size(), 2U);
+    for (const WorkingFrame& working : images.frames) {
+      const auto colour = working.colour.at<cv::Vec3b>(10, 10);
+      EXPECT_NEAR(colour[0], 88, 1) << scale;
+      EXPECT_NEAR(colour[2], 108, 1) << scale;
+    }
+    EXPECT_EQ(frame.colour.at<cv::Vec3b>(10, 10), cv::Vec3b(10, 20, 30));
+    const auto* memory = images.toned.data;
+    make_working_images(frame, settings, 2, images);
+    EXPECT_EQ(images.toned.data, memory);
+  }
+}
+
 TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
   RgbdFrame frame = flat_frame(64, 48, 1.0F);
-  frame.depth.colRange(20, 30).setTo(kNone);
+  frame.depth.colRange(20, 30).setTo(kNoValue);
   frame.colour.colRange(0, 13).setTo(cv::Scalar(200, 90, 10));
   const std::vector<FeatureLevel> levels = feature_levels({});
   for (const int threads : {1, 3}) {
@@ -78,7 +99,7 @@ TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
 }
 
 TEST(WorkingFrame, ASinglePixelOfDepthIsEnoughForABlock) {
-  RgbdFrame frame = flat_frame(8, 8, kNone);
+  RgbdFrame frame = flat_frame(8, 8, kNoValue);
   frame.depth.at<float>(5, 5) = 0.9F;
   FeatureSettings settings;
   settings.fill_distance_px = 0.0F;
@@ -89,7 +110,7 @@ TEST(WorkingFrame, ASinglePixelOfDepthIsEnoughForABlock) {
 }
 
 TEST(WorkingFrame, HolesBorrowTheNearestDepthUpToTheLimit) {
-  RgbdFrame frame = flat_frame(60, 10, kNone);
+  RgbdFrame frame = flat_frame(60, 10, kNoValue);
   frame.depth.colRange(0, 5).setTo(1.0F);
   frame.depth.colRange(55, 60).setTo(2.0F);
   FeatureSettings settings;
@@ -104,7 +125,7 @@ TEST(WorkingFrame, HolesBorrowTheNearestDepthUpToTheLimit) {
 }
 
 TEST(WorkingFrame, NearSurfacesLendOverAsManyMetresWithDepthNormalisation) {
-  RgbdFrame frame = flat_frame(60, 10, kNone);
+  RgbdFrame frame = flat_frame(60, 10, kNoValue);
   frame.depth.colRange(0, 5).setTo(0.4F);
   FeatureSettings settings;
   settings.fill_distance_px = 10.0F;
@@ -120,13 +141,13 @@ TEST(WorkingFrame, NearSurfacesLendOverAsManyMetresWithDepthNormalisation) {
 
 TEST(WorkingFrame, TheFrameItselfIsNotTouchedInFullSize) {
   RgbdFrame frame = flat_frame(10, 10, 1.0F);
-  frame.depth.at<float>(4, 4) = kNone;
+  frame.depth.at<float>(4, 4) = kNoValue;
   EXPECT_FLOAT_EQ(make_working_frame(frame, 1.0F, {}).filled_depth.at<float>(4, 4), 1.0F);
   EXPECT_TRUE(std::isnan(frame.depth.at<float>(4, 4)));
 }
 
 TEST(WorkingFrame, WithoutAnyDepthNothingIsInvented) {
-  const cv::Mat depth = make_working_frame(flat_frame(20, 10, kNone), 0.5F, {}).filled_depth;
+  const cv::Mat depth = make_working_frame(flat_frame(20, 10, kNoValue), 0.5F, {}).filled_depth;
   EXPECT_EQ(cv::countNonZero(depth == depth), 0);
 }
 
@@ -141,7 +162,7 @@ TEST(WorkingFrame, LevelsShareTheDistancesWithoutGapOrOverlap) {
   const auto levels = feature_levels({});
   EXPECT_FLOAT_EQ(levels[1].scale, 2.0F * levels[0].scale);
   for (const float depth : {0.3F, 1.2F, 1.2001F, 2.8F}) EXPECT_NE(levels[0].holds(depth), levels[1].holds(depth));
-  for (const float depth : {0.0F, 2.9F, kNone}) {
+  for (const float depth : {0.0F, 2.9F, kNoValue}) {
     EXPECT_FALSE(levels[0].holds(depth) || levels[1].holds(depth)) << depth;
   }
 }

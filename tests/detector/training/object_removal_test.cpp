@@ -14,10 +14,10 @@
 namespace houghstream::training {
 namespace {
 
-const auto kQuiet = [](const std::string&) {};
+const auto kUnheard = [](const std::string&) {};
 
 const Forest& both() {
-  static const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), kQuiet);
+  static const Forest forest = train_forest(toy::training_views(), toy::quick_profile(), kUnheard);
   return forest;
 }
 

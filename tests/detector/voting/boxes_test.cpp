@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/detector/small_camera.hpp"
+
 namespace houghstream {
 namespace {
-
-const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
 
 /// A supporter per 2-pixel cell of a rectangle of the frame.
 cv::Rect2f box_of(const cv::Rect& supported) {
@@ -41,7 +41,7 @@ TEST(Boxes, SidesMoveOutToTheRememberedOnesUnlessHidden) {
 
 TEST(Boxes, WithoutSupportThereIsNoBox) {
   BoxMemory memory;
-  EXPECT_EQ(backprojected_box({}, {}, {}, kCamera, memory), cv::Rect2f());
+  EXPECT_EQ(backprojected_box({}, {}, {}, toy::kSmallCamera, memory), cv::Rect2f());
 }
 
 Detection boxed(float score, float x) {

@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-const Camera kCamera{100, 80, 100.0, 100.0, 49.5, 39.5};
+const Camera kHundredWide{100, 80, 100.0, 100.0, 49.5, 39.5};
 
 /// One tree that is one leaf, certain by `probability` of the only class, with one vote.
 Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
@@ -36,7 +36,7 @@ HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points
   posteriors.note({0, all.size(), all.data(), leaves.data()});
   HoughSpace space;
   CastMemory memory;
-  cast_votes({forest, patches, posteriors, kCamera, {}}, 0, memory, space);
+  cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, memory, space);
   return space;
 }
 
@@ -108,7 +108,7 @@ TEST(HoughSpace, ASpaceIsUsedAgain) {
   PatchPosteriors posteriors(forest, 1, 0.0F);
   posteriors.note({0, 1, &patch, &leaf});
   CastMemory memory;
-  cast_votes({forest, patches, posteriors, kCamera, {}}, 0, memory, space);
+  cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, memory, space);
   const HoughSpace fresh = vote(forest, patches.point_camera);
   EXPECT_EQ(space.voter.size(), 1U);
   EXPECT_EQ(space.voters.size(), 1U);

@@ -4,10 +4,10 @@
 
 #include <numeric>
 
+#include "tests/detector/small_camera.hpp"
+
 namespace houghstream {
 namespace {
-
-const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
 
 /// A forest of one leaf that takes every patch for the centre of the only class.
 Forest centre_forest() {
@@ -46,7 +46,7 @@ std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
   std::iota(all.begin(), all.end(), 0U);
   posteriors.note({0, all.size(), all.data(), leaves.data()});
   const VotingSettings settings;
-  const VotingInput input{forest, patches, posteriors, kCamera, settings};
+  const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
   VotingMemory::Worker own;
   cast_votes(input, 0, own.casting, own.space);
   return class_hypotheses(input, 0, least_mass, settings.candidates_per_class, own);

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/detector/small_camera.hpp"
+
 namespace houghstream {
 namespace {
-
-const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
 
 struct Placed {
   int x;
@@ -24,7 +24,8 @@ HoughSpace space_of(const std::vector<Placed>& placed) {
   space.first_vote.assign(80 * 60 + 1, 0);
   for (const Placed& p : placed) {
     const auto cell = static_cast<std::size_t>(p.y * 80 + p.x);
-    space.votes.push_back({kCamera.backproject(2 * p.x + 0.5, 2 * p.y + 0.5, p.depth).cast<float>(), p.weight});
+    space.votes.push_back(
+        {toy::kSmallCamera.backproject(2 * p.x + 0.5, 2 * p.y + 0.5, p.depth).cast<float>(), p.weight});
     space.image[cell] += p.weight;
     for (std::size_t c = cell + 1; c < space.first_vote.size(); ++c) ++space.first_vote[c];
   }
@@ -34,7 +35,7 @@ HoughSpace space_of(const std::vector<Placed>& placed) {
 
 std::vector<Eigen::Vector3f> maxima_of(const HoughSpace& space, int limit = 24) {
   MaximaMemory memory;
-  return find_maxima(space, kCamera, {}, limit, memory);
+  return find_maxima(space, toy::kSmallCamera, {}, limit, memory);
 }
 
 TEST(Maxima, TheHighestComesFirst) {

@@ -6,11 +6,11 @@
 #include <numeric>
 
 #include "pipeline/base/random.hpp"
+#include "tests/detector/small_camera.hpp"
 
 namespace houghstream {
 namespace {
 
-const Camera kCamera{160, 120, 131.25, 131.25, 79.5, 59.5};
 constexpr float kSigma = 0.016F;
 
 /// Votes about a point, all in one row of cells.
@@ -111,10 +111,10 @@ TEST(MeanShift, ClimbsToTheMiddleOfACluster) {
   std::fill(space.first_vote.begin() + 30 * 80 + 41, space.first_vote.end(), 2U);  // both in cell (40, 30)
   space.votes.resize(2 + kSpareVotes);
   std::vector<VoteRange> ranges;
-  const Eigen::Vector3f top = climb(space, kCamera, {0.015F, 0.01F, 1.01F}, kSigma, ranges);
+  const Eigen::Vector3f top = climb(space, toy::kSmallCamera, {0.015F, 0.01F, 1.01F}, kSigma, ranges);
   EXPECT_LT((top - Eigen::Vector3f(0.002F, 0.0F, 1.0F)).norm(), 0.001F) << top.transpose();
   const Eigen::Vector3f alone(-0.3F, 0.1F, 1.0F);
-  EXPECT_EQ(climb(space, kCamera, alone, kSigma, ranges), alone);
+  EXPECT_EQ(climb(space, toy::kSmallCamera, alone, kSigma, ranges), alone);
 }
 
 }  // namespace

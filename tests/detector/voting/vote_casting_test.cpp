@@ -8,7 +8,7 @@
 namespace houghstream {
 namespace {
 
-const Camera kCamera{320, 240, 262.5, 262.5, 159.5, 119.5};
+const Camera kHalfVga{320, 240, 262.5, 262.5, 159.5, 119.5};
 
 /// Leaves of 0 to 12 votes anywhere about a patch.
 Forest random_forest(Random& random) {
@@ -49,7 +49,7 @@ std::uint32_t cell_of(const Eigen::Vector3f& centre, const CellGrid& grid) {
 }
 
 void expect_as_one_by_one(const Forest& forest, const PatchGrid& patches, const std::vector<Voter>& voters) {
-  const CellGrid grid(kCamera, 2);
+  const CellGrid grid(kHalfVga, 2);
   CastVotes cast;
   cast_all({forest, patches, voters, grid}, cast);
   std::size_t v = 0;
@@ -93,7 +93,7 @@ TEST(VoteCasting, ManyAtOnceAreAsOneByOneOnEveryMachine) {
 TEST(VoteCasting, NobodyCastsNothing) {
   CastVotes cast;
   cast.count = 7;
-  cast_all({{}, {}, {}, CellGrid(kCamera, 2)}, cast);
+  cast_all({{}, {}, {}, CellGrid(kHalfVga, 2)}, cast);
   EXPECT_EQ(cast.count, 0U);
 }
 

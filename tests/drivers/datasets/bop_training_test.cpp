@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
-const cv::Rect kBox(150, 100, 30, 20);
+const cv::Rect kOwnBox(150, 100, 30, 20);
 
 RgbdFrame room_frame() {
   RgbdFrame frame = plain_frame(kWidth, kHeight);
@@ -27,7 +27,7 @@ TrueObject mug() {
   TrueObject object;
   object.object_id = 2;
   object.T_camera_object.translation() = Eigen::Vector3d(0.0, 0.0, 1.0);
-  object.box_visible_px = kBox;
+  object.box_visible_px = kOwnBox;
   return object;
 }
 
@@ -37,7 +37,7 @@ fs::path write_training(const std::string& name, const std::vector<RgbdFrame>& f
   BopWriter writer(folder / "train" / "000002");
   for (const RgbdFrame& frame : frames) {
     std::vector<cv::Mat> visible;
-    if (masks) visible.push_back(box_mask(kBox, kWidth, kHeight));
+    if (masks) visible.push_back(box_mask(kOwnBox, kWidth, kHeight));
     writer.add(frame, {mug()}, visible);
   }
   writer.finish();
@@ -47,7 +47,7 @@ fs::path write_training(const std::string& name, const std::vector<RgbdFrame>& f
 
 RgbdFrame without_object_depth() {
   RgbdFrame frame = room_frame();
-  frame.depth(kBox).setTo(std::numeric_limits<float>::quiet_NaN());
+  frame.depth(kOwnBox).setTo(std::numeric_limits<float>::quiet_NaN());
   return frame;
 }
 
@@ -61,10 +61,10 @@ TEST(BopTraining, ViewsAreCroppedAroundTheObjectAndKeepTheirRays) {
   EXPECT_NO_THROW(check_frame(view.frame, "view"));
   EXPECT_EQ(view.mask.size(), view.frame.colour.size());
   EXPECT_LT(view.frame.camera.width, kWidth);
-  EXPECT_EQ(cv::countNonZero(view.mask), kBox.area());
+  EXPECT_EQ(cv::countNonZero(view.mask), kOwnBox.area());
   const cv::Rect box = cv::boundingRect(view.mask);
   const Eigen::Vector3d ray = view.frame.camera.backproject(box.x, box.y, 1.0);
-  EXPECT_NEAR((ray - room_frame().camera.backproject(kBox.x, kBox.y, 1.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((ray - room_frame().camera.backproject(kOwnBox.x, kOwnBox.y, 1.0)).norm(), 0.0, 1e-12);
 }
 
 TEST(BopTraining, ImagesWithoutObjectsAreBackground) {
@@ -92,8 +92,9 @@ TEST(BopTraining, EachObjectOfAnImageIsAViewByItsOwnMask) {
   cup.object_id = 5;
   cup.T_camera_object.translation().z() = 2.0;
   BopWriter writer(folder);
-  writer.add(room_frame(), {mug(), cup, mug()},
-             {box_mask(kBox, kWidth, kHeight), box_mask(second_box, kWidth, kHeight), box_mask(kBox, kWidth, kHeight)});
+  writer.add(
+      room_frame(), {mug(), cup, mug()},
+      {box_mask(kOwnBox, kWidth, kHeight), box_mask(second_box, kWidth, kHeight), box_mask(kOwnBox, kWidth, kHeight)});
   writer.finish();
   const auto views = read_bop_training_views(folder);
   ASSERT_EQ(views.size(), 3U);
@@ -101,7 +102,7 @@ TEST(BopTraining, EachObjectOfAnImageIsAViewByItsOwnMask) {
   EXPECT_EQ(views[1].class_name, "object_5");
   EXPECT_EQ(views[1].T_camera_object.translation().z(), 2.0);
   EXPECT_EQ(cv::countNonZero(views[1].mask), second_box.area());
-  EXPECT_EQ(cv::countNonZero(views[2].mask), kBox.area());
+  EXPECT_EQ(cv::countNonZero(views[2].mask), kOwnBox.area());
   const cv::Rect box = cv::boundingRect(views[1].mask);
   const Eigen::Vector3d ray = views[1].frame.camera.backproject(box.x, box.y, 1.0);
   EXPECT_NEAR((ray - room_frame().camera.backproject(second_box.x, second_box.y, 1.0)).norm(), 0.0, 1e-12);
@@ -113,7 +114,7 @@ TEST(BopTraining, WhatIsMostlyHiddenIsLeftOutOfACrowd) {
   hidden.object_id = 7;
   hidden.visible_fraction = kTaughtVisibility - 0.01;
   BopWriter writer(folder);
-  const cv::Mat mask = box_mask(kBox, kWidth, kHeight);
+  const cv::Mat mask = box_mask(kOwnBox, kWidth, kHeight);
   writer.add(room_frame(), {hidden, mug()}, {mask, mask});
   writer.add(room_frame(), {hidden}, {mask});
   writer.finish();

@@ -73,7 +73,25 @@ TEST(ObjectStore, AVoteCentreIsThreeNumbersOrTheOrigin) {
   expect_says(error_of_reading(folder),
               {"store.json object 5", "'vote_centre_m' is [0.0,60.0,0.0]", "expected x, y, z"});
   replace_in_file(folder / "store.json", "60.0", "\"high\"");
-  expect_says(error_of_reading(folder), {"'vote_centre_m'", "expected x, y, z"});
+  expect_says(error_of_reading(folder), {"'vote_centre_m' holds \"high\"", "expected finite numbers"});
+}
+
+TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
+  const fs::path folder = whole_store("store_tone");
+  ObjectStore store = read_store(folder);
+  EXPECT_EQ(store.tone.least_mean, 0.0F);
+  EXPECT_EQ(store.tone.most_mean, 255.0F);
+  store.tone = {90.0F, 120.0F, 45.0F};
+  write_store_json(store);
+  EXPECT_EQ(read_store(folder).tone.most_mean, 120.0F);
+  EXPECT_EQ(read_store(folder).tone.most_deviation, 45.0F);
+  store.tone.least_mean = 121.0F;
+  write_store_json(store);
+  expect_says(error_of_reading(folder), {"store.json: 'tone' is {", "121.0", "expected grey values of 0 to 255"});
+  replace_in_file(folder / "store.json", "121.0", "\"dark\"");
+  expect_says(error_of_reading(folder), {"store.json", "least_mean"});
+  replace_in_file(folder / "store.json", "\"tone\": {", "\"old\": {");
+  EXPECT_EQ(read_store(folder).tone.most_deviation, 255.0F);
 }
 
 TEST(ObjectStore, PartsThatContradictOneAnotherAreRefused) {

@@ -10,8 +10,8 @@
 namespace houghstream::virtual_camera {
 namespace {
 
-const OniVideoMode kLarge{ONI_PIXEL_FORMAT_DEPTH_1_MM, 64, 48, 30};
-const OniVideoMode kSmall{ONI_PIXEL_FORMAT_DEPTH_1_MM, 32, 24, 30};
+const OniVideoMode kLargeMode{ONI_PIXEL_FORMAT_DEPTH_1_MM, 64, 48, 30};
+const OniVideoMode kSmallMode{ONI_PIXEL_FORMAT_DEPTH_1_MM, 32, 24, 30};
 
 /// A stream of a device that has none itself.
 class VirtualStreamTest : public ::testing::Test {
@@ -32,7 +32,8 @@ class VirtualStreamTest : public ::testing::Test {
   const PicturesBySize pictures{{{64, 48}, make_test_pattern(camera)}};
   const ScriptWatch script{std::filesystem::path()};
   VirtualDevice device{script, pictures, "TEST"};
-  VirtualStream stream{device, {ONI_SENSOR_DEPTH, {kLarge, kSmall}, {camera, {32, 24, 40.0, 40.0, 15.5, 11.5}}}};
+  VirtualStream stream{device,
+                       {ONI_SENSOR_DEPTH, {kLargeMode, kSmallMode}, {camera, {32, 24, 40.0, 40.0, 15.5, 11.5}}}};
   TakenImages taken{stream};
   const cv::Mat picture = pictures.at({64, 48}).pictures[3].depth_mm;
 };
@@ -60,12 +61,12 @@ TEST_F(VirtualStreamTest, PicturesAreSentWhileItRunsMirroredUnlessAskedOtherwise
 }
 
 TEST_F(VirtualStreamTest, OnlyItsModesCanBeSetAndOtherSizesAreNotSent) {
-  OniVideoMode unknown = kSmall;
+  OniVideoMode unknown = kSmallMode;
   unknown.fps = 60;
   EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, unknown), ONI_STATUS_BAD_PARAMETER);
   EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, 7), ONI_STATUS_BAD_PARAMETER);
   EXPECT_EQ(stream.mode().resolutionX, 64);
-  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, kSmall), ONI_STATUS_OK);
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, kSmallMode), ONI_STATUS_OK);
   EXPECT_EQ(get<OniVideoMode>(ONI_STREAM_PROPERTY_VIDEO_MODE).resolutionX, 32);
   EXPECT_EQ(get<int>(ONI_STREAM_PROPERTY_STRIDE), 64);
   stream.start();
@@ -79,7 +80,7 @@ TEST_F(VirtualStreamTest, OnlyItsModesCanBeSetAndOtherSizesAreNotSent) {
 TEST_F(VirtualStreamTest, FieldsOfViewAreThoseOfTheModeAndColoursSettingsAreNotDepths) {
   EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_HORIZONTAL_FOV), 2.0 * std::atan(32.0 / 50.0), 1e-6);
   EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_VERTICAL_FOV), 2.0 * std::atan(24.0 / 60.0), 1e-6);
-  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, kSmall), ONI_STATUS_OK);
+  EXPECT_EQ(set(ONI_STREAM_PROPERTY_VIDEO_MODE, kSmallMode), ONI_STATUS_OK);
   EXPECT_NEAR(get<float>(ONI_STREAM_PROPERTY_HORIZONTAL_FOV), 2.0 * std::atan(16.0 / 40.0), 1e-6);
   EXPECT_EQ(set(ONI_STREAM_PROPERTY_GAIN, 50), ONI_STATUS_NOT_SUPPORTED);
   EXPECT_FALSE(stream.isPropertySupported(ONI_STREAM_PROPERTY_AUTO_EXPOSURE));

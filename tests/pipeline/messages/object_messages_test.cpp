@@ -5,6 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "tests/pipeline/messages/over_the_wire.hpp"
 
 namespace houghstream {
 namespace {
@@ -32,11 +33,6 @@ WorldObjects one_mug() {
   world.objects = {mug};
   world.stages = {{"track.update", 15}};
   return world;
-}
-
-objects_t over_the_wire(const objects_t& message) {
-  const std::vector<std::uint8_t> bytes = encode_message(message);
-  return decode_message<objects_t>({bytes.data(), bytes.size()});
 }
 
 TEST(ObjectMessages, AWorldComesBackAsItWas) {

@@ -6,6 +6,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "tests/pipeline/messages/over_the_wire.hpp"
 
 namespace houghstream {
 namespace {
@@ -53,12 +54,6 @@ ObjectPoses make_poses() {
   refused.status = PoseStatus::kTooFewPoints;
   refused.residual = kNan;
   return {{"OPENNI_FRAME", 77}, {valid, refused}, {{"pose.icp", 3000}}};
-}
-
-template <typename Message>
-Message over_the_wire(const Message& message) {
-  const std::vector<std::uint8_t> bytes = encode_message(message);
-  return decode_message<Message>({bytes.data(), bytes.size()});
 }
 
 TEST(ResultMessages, DetectionsComeBack) {

@@ -6,6 +6,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "tests/pipeline/messages/over_the_wire.hpp"
 
 namespace houghstream {
 namespace {
@@ -23,12 +24,6 @@ Teaching mug_half_seen() {
   mug.T_camera_object = Eigen::Translation3d(0.1, 0.2, 0.7) * Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY());
   mug.directions = {{Eigen::Vector3f::UnitX(), true}, {-Eigen::Vector3f::UnitX(), false}};
   return mug;
-}
-
-template <typename Message>
-Message over_the_wire(const Message& message) {
-  const std::vector<std::uint8_t> bytes = encode_message(message);
-  return decode_message<Message>({bytes.data(), bytes.size()});
 }
 
 std::string refusal(const teaching_t& message) {

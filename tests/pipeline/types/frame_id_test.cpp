@@ -27,5 +27,9 @@ TEST(FrameId, IsPrinted) {
   EXPECT_EQ(to_string(FrameId{"", 5}), "5");
 }
 
+TEST(FrameId, SecondsBetweenTimesAreNegativeWhenTheyGoBack) {
+  EXPECT_DOUBLE_EQ(seconds_between(2000000, 500000), -1.5);
+}
+
 }  // namespace
 }  // namespace houghstream

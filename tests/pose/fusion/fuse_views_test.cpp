@@ -11,7 +11,7 @@ namespace {
 using test_scene::median;
 using test_scene::TurntableScene;
 
-const Eigen::Vector3d kHalf(0.09, 0.03, 0.13);  // of the cereal box
+const Eigen::Vector3d kHalfBox(0.09, 0.03, 0.13);  // of the cereal box
 
 FusionSettings settings_for_tests() {
   FusionSettings settings;
@@ -22,7 +22,7 @@ FusionSettings settings_for_tests() {
 
 /// Wide sides green, narrow ones red, the top blue.
 cv::Vec3b side_paint(const Eigen::Vector3d& p) {
-  const Eigen::Vector3d past = p.cwiseAbs() - kHalf;
+  const Eigen::Vector3d past = p.cwiseAbs() - kHalfBox;
   if (past.z() > past.x() && past.z() > past.y()) return {200, 20, 20};
   return past.x() > past.y() ? cv::Vec3b(20, 20, 200) : cv::Vec3b(20, 200, 20);
 }
@@ -43,11 +43,11 @@ TEST(FuseViews, ABoxComesBackWithinMillimetresAndInItsColours) {
   for (std::size_t i = 0; i < model.mesh.vertices.size(); ++i) {
     const Eigen::Vector3d v = model.mesh.vertices[i].cast<double>();
     if (!model.seen[i]) continue;
-    errors.push_back(std::abs(test_scene::box_distance(v, kHalf)));
-    const Eigen::Vector3d past = v.cwiseAbs() - kHalf;
+    errors.push_back(std::abs(test_scene::box_distance(v, kHalfBox)));
+    const Eigen::Vector3d past = v.cwiseAbs() - kHalfBox;
     if ((past.array() > -0.006).count() > 1) continue;
     ++away_from_edges;
-    inwards += test_scene::box_distance(v + 0.004 * model.mesh.normals[i].cast<double>(), kHalf) < 0.0 ? 1 : 0;
+    inwards += test_scene::box_distance(v + 0.004 * model.mesh.normals[i].cast<double>(), kHalfBox) < 0.0 ? 1 : 0;
     wrong_colour += cv::norm(cv::Vec3i(model.mesh.colours[i]) - cv::Vec3i(side_paint(v))) > 30.0 ? 1 : 0;
   }
   EXPECT_LT(median(errors), 0.001);
@@ -69,8 +69,8 @@ TEST(FuseViews, TheUnseenBottomIsFlatAndClosed) {
       }
     }
     ASSERT_GT(bottom.size(), 1000U);
-    EXPECT_NEAR(median(bottom), -kHalf.z(), 0.004);
-    EXPECT_NEAR(mesh_diameter(model.mesh), 2.0 * kHalf.norm(), 0.012);
+    EXPECT_NEAR(median(bottom), -kHalfBox.z(), 0.004);
+    EXPECT_NEAR(mesh_diameter(model.mesh), 2.0 * kHalfBox.norm(), 0.012);
   }
 }
 

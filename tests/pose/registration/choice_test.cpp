@@ -18,7 +18,7 @@ struct Boxed {
   DepthRegion region{cv::Rect(0, 0, 640, 480), 0.5F, 1.2F, 10000};
 
   RegistrationResult choose(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {
-    const SeenObject seen{frame, model, centre, {}, region, lab_region(frame, region.box_px)};
+    const SeenObject seen{frame, model, centre, {}, region, lab_region(frame, region.box_px, {})};
     return choose_pose(seen, register_candidates(seen, candidates, {}), {}, {});
   }
 };

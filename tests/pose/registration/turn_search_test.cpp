@@ -20,7 +20,7 @@ struct SeenBox {
   ObjectModel model = make_object_model("box", printed_box(), {});
   Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
   RgbdFrame frame = coloured_frame(model.mesh, truth, 3);
-  SeenObject seen{frame, model, truth.translation().cast<float>(), {}, {}, lab_region(frame, {0, 0, 640, 480})};
+  SeenObject seen{frame, model, truth.translation().cast<float>(), {}, {}, lab_region(frame, {0, 0, 640, 480}, {})};
 };
 
 TEST(TurnSearch, FindsTheWayBackFromEveryQuarter) {

@@ -19,7 +19,7 @@ const DepthTolerance kTolerance{0.008, {}};
 std::optional<ColourComparison> compare(const RgbdFrame& frame, const Mesh& mesh,
                                         const Eigen::Isometry3d& T_camera_object) {
   const ObjectModel model = make_object_model("box", mesh, {});
-  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480));
+  const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
   return compare_colours(colours, look_at_view(frame, model, T_camera_object, 400), kTolerance);
 }
 
@@ -87,7 +87,7 @@ TEST(ColourScore, OnlyThePartThatIsGivenIsLookedAt) {
   const Mesh box = printed_box();
   const RgbdFrame frame = coloured_frame(box, kPose, 1);
   const ObjectModel model = make_object_model("box", box, {});
-  const LabRegion corner = lab_region(frame, cv::Rect(0, 0, 20, 20));
+  const LabRegion corner = lab_region(frame, cv::Rect(0, 0, 20, 20), {});
   EXPECT_FALSE(compare_colours(corner, look_at_view(frame, model, kPose, 400), kTolerance).has_value());
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using namespace test_scene;
 
-const DepthTolerance kTolerance{0.008, DepthNoise()};
+const DepthTolerance kDepthTolerance{0.008, DepthNoise()};
 
 struct BoxOnTable {
   Mesh object = cereal_box();
@@ -20,7 +20,7 @@ struct BoxOnTable {
 
 TEST(Verification, TruePoseAgreesAlmostEverywhere) {
   const BoxOnTable scene;
-  const Verification found = verify_pose(scene.frame, scene.object, scene.truth, kTolerance);
+  const Verification found = verify_pose(scene.frame, scene.object, scene.truth, kDepthTolerance);
   EXPECT_GT(found.rendered, 5000);
   EXPECT_GT(found.visible_fraction(), 0.95F);  // 2 % of the depth is lost
   EXPECT_LT(found.free_space_violation(), 0.01F);
@@ -32,7 +32,7 @@ TEST(Verification, ModelInFrontOfWhatWasSeenViolatesFreeSpace) {
   const BoxOnTable scene;
   Eigen::Isometry3d nearer = scene.truth;
   nearer.translation() *= 0.9;
-  const Verification found = verify_pose(scene.frame, scene.object, nearer, kTolerance);
+  const Verification found = verify_pose(scene.frame, scene.object, nearer, kDepthTolerance);
   EXPECT_GT(found.free_space_violation(), 0.9F);
 }
 
@@ -40,7 +40,7 @@ TEST(Verification, ModelBehindWhatWasSeenIsOccludedNotContradicted) {
   const BoxOnTable scene;
   Eigen::Isometry3d farther = scene.truth;
   farther.translation() *= 1.1;
-  const Verification found = verify_pose(scene.frame, scene.object, farther, kTolerance);
+  const Verification found = verify_pose(scene.frame, scene.object, farther, kDepthTolerance);
   EXPECT_GT(found.occluded, 0.8 * found.rendered);
   EXPECT_LT(found.free_space_violation(), 0.1F);
 }
@@ -51,8 +51,8 @@ TEST(Verification, PointsOfAViewTellWhatRenderedPixelsTell) {
   for (const double scale : {0.9, 0.99, 1.0, 1.01, 1.1}) {
     Eigen::Isometry3d pose = scene.truth;
     pose.translation() *= scale;
-    const Verification pixels = verify_pose(scene.frame, scene.object, pose, kTolerance);
-    const Verification points = verify_look(look_at_view(scene.frame, model, pose, 600), kTolerance);
+    const Verification pixels = verify_pose(scene.frame, scene.object, pose, kDepthTolerance);
+    const Verification points = verify_look(look_at_view(scene.frame, model, pose, 600), kDepthTolerance);
     EXPECT_GT(points.rendered, 300);
     EXPECT_NEAR(points.visible_fraction(), pixels.visible_fraction(), 0.06) << scale;
     EXPECT_NEAR(points.free_space_violation(), pixels.free_space_violation(), 0.06) << scale;
@@ -65,7 +65,7 @@ TEST(Verification, FaceSunkIntoTheTableAgreesButHasNoOutline) {
   Eigen::Isometry3d sunk =
       scene.truth * Eigen::Translation3d(-0.3, 0.2, -0.13 - 0.03);  // its large face in the table's
   sunk.rotate(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX()));
-  const Verification found = verify_pose(scene.frame, scene.object, sunk, kTolerance);
+  const Verification found = verify_pose(scene.frame, scene.object, sunk, kDepthTolerance);
   EXPECT_GT(found.visible_fraction(), 0.4F);
   EXPECT_LT(found.free_space_violation(), 0.01F);
   EXPECT_GT(found.outline_continues, 20 * found.outline_ends);
@@ -76,14 +76,14 @@ TEST(Verification, OutsideTheImageNothingIsRendered) {
   for (const Eigen::Vector3d& place : {Eigen::Vector3d(5, 0, 1), Eigen::Vector3d(0, 0, -1)}) {
     Eigen::Isometry3d outside = scene.truth;
     outside.translation() = place;
-    const Verification found = verify_pose(scene.frame, scene.object, outside, kTolerance);
+    const Verification found = verify_pose(scene.frame, scene.object, outside, kDepthTolerance);
     EXPECT_EQ(found.rendered, 0);
     EXPECT_EQ(found.visible_fraction(), 0.0F);
     EXPECT_EQ(found.free_space_violation(), 0.0F);
   }
   Eigen::Isometry3d half = scene.truth;
   half.translation().x() = -0.62;  // cut by the left border
-  EXPECT_GT(verify_pose(scene.frame, scene.object, half, kTolerance).rendered, 100);
+  EXPECT_GT(verify_pose(scene.frame, scene.object, half, kDepthTolerance).rendered, 100);
 }
 
 }  // namespace

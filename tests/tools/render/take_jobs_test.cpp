@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RenderOptions into(const fs::path& folder) {
+RenderOptions takes_into(const fs::path& folder) {
   RenderOptions options;
   options.out = folder;
   options.threads = 1;
@@ -32,7 +32,7 @@ TEST(TakeJobs, ObjectsAreWrittenUnderTheirNumbersWithTruthOfEveryFrame) {
   const fs::path folder = fresh_folder("take_jobs");
   TakesJob job = two_frames({"coffee_mug", "bowl"});
   job.take = 2;
-  render_takes(into(folder), job);
+  render_takes(takes_into(folder), job);
   const nlohmann::json takes = read_json_list(folder / "takes.json");
   ASSERT_EQ(takes.size(), 2U);
   EXPECT_EQ(takes[0], (nlohmann::json{{"scene", 2},
@@ -54,7 +54,7 @@ TEST(TakeJobs, ObjectsAreWrittenUnderTheirNumbersWithTruthOfEveryFrame) {
 }
 
 TEST(TakeJobs, WhatIsNotShownOrTooShortIsRefused) {
-  const RenderOptions options = into(fresh_folder("take_jobs_refused"));
+  const RenderOptions options = takes_into(fresh_folder("take_jobs_refused"));
   EXPECT_NE(error_of([&] {
               render_takes(options, two_frames({"plate"}));
             }).find("object \"plate\": expected all or one of bowl"),

@@ -61,6 +61,9 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_TRUE(fs::exists(first.contact_sheet()));
   EXPECT_EQ(static_cast<int>(read_bop_training_views(options.dump_views).size()), first.objects[0].views);
 
+  EXPECT_EQ(first.tone.least_mean, kPractisedTone.least_mean) << "hs-pose reads it here";
+  EXPECT_EQ(load_forest(first.forest_file()).features.tone.most_deviation, kPractisedTone.most_deviation);
+
   const nlohmann::json learnt = first.objects[0].quality;
   EXPECT_EQ(stored_quality(first, {}).count("bracket"), 1U);
 
@@ -75,6 +78,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   ASSERT_EQ(both.objects.size(), 2U);
   EXPECT_FALSE(both.objects[1].coloured);
   EXPECT_EQ(both.objects[1].id, 2);
+  EXPECT_EQ(both.tone.most_mean, kPractisedTone.most_mean);
   EXPECT_EQ(both.objects[0].quality, learnt) << "what was learnt of an older object stays";
   EXPECT_EQ(stored_quality(both, {}).count("grey"), 1U);
   EXPECT_EQ(forest_names(options.out), (std::vector<std::string>{"bracket", "grey"}));
@@ -111,6 +115,7 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   EXPECT_EQ(after.objects[0].views, before.objects[0].views);
   EXPECT_EQ(after.objects[0].quality, before.objects[0].quality);
   EXPECT_EQ(after.settings, before.settings);
+  EXPECT_EQ(after.tone.most_mean, before.tone.most_mean);
   EXPECT_TRUE(fs::exists(after.contact_sheet()));
   cv::Mat difference;
   cv::absdiff(read_colour_image(after.view_picture(1)), views, difference);

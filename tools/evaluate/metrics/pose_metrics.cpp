@@ -7,8 +7,6 @@
 namespace houghstream {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 Points transformed(const Points& points, const Eigen::Isometry3d& T) {
   const Eigen::Isometry3f T_float = T.cast<float>();
   Points out;
@@ -32,7 +30,7 @@ double recall(const std::vector<JudgedPose>& poses, double JudgedPose::*error, d
     ++counted;
     good += pose.*error < kRightBelow * diameter ? 1 : 0;  // false for NaN
   }
-  return counted > 0 ? static_cast<double>(good) / counted : kNaN;
+  return counted > 0 ? static_cast<double>(good) / counted : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

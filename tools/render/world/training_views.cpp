@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTopM = 0.02;
 constexpr std::uint64_t kAttitudeViews = 100000;  // numbers of one attitude's views, more than there can be
-constexpr std::uint64_t kFirstRoom = 900000;      // numbers of training worlds that backgrounds do not use
+constexpr std::uint64_t kFirstViewRoom = 900000;  // numbers of training worlds that backgrounds do not use
 
 ThingPtr make_turntable_disc(Random& random) {
   const cv::Mat cover = plain({256, 256}, hsv(random.uniform(0, 360), 0.1, random.uniform(0.3, 0.8)), 0.05, random);
@@ -35,7 +35,7 @@ Turntable::Turntable(const TurntableSettings& settings, std::uint64_t seed) : se
   const std::set<Attitude> different(settings.attitudes.begin(), settings.attitudes.end());
   require(different.size() == settings.attitudes.size(), "turntable: an attitude is named twice, expected each once");
   for (int pitch = 0; pitch < settings.pitches; ++pitch) {
-    const auto number = seed * 100000U + kFirstRoom + static_cast<std::uint64_t>(pitch);
+    const auto number = seed * 100000U + kFirstViewRoom + static_cast<std::uint64_t>(pitch);
     const std::uint64_t own = world_seed(WorldUse::kTraining, number);
     World world;
     world.items = make_room(static_cast<RoomStyle>(pitch % kRoomStyles), aspect_seed(own, 1)).items;

@@ -5,7 +5,7 @@ import bisect
 import statistics
 
 from studies.command import die
-from studies.measured import read_csv, read_json
+from studies.measured import percentiles, read_csv, read_json
 
 HALF_PERIOD_US = 16667
 
@@ -22,13 +22,6 @@ def nearest(times, wanted):
     return best if best is not None and abs(best - wanted) < HALF_PERIOD_US else None
 
 
-def percentiles(values):
-    if not values:
-        return {"p50": None, "p95": None, "p99": None}
-    ordered = sorted(values)
-    return {f"p{p}": round(ordered[min(len(ordered) - 1, p * len(ordered) // 100)], 2) for p in (50, 95, 99)}
-
-
 def latencies_ms(rows, key, shutters, start_us):
     """From the shutter to the arrival of what `key` names, for the frames for which it came."""
     taken = [(nearest(shutters, int(row["utime"])), row[key]) for row in rows if row[key]]
@@ -40,9 +33,7 @@ def latencies_ms(rows, key, shutters, start_us):
 
 def unplugging(rows, start_us, replugged_us):
     """How long no frame came, and how soon after the camera frames and poses were back."""
-    frames, poses = (
-        sorted(start_us + 1e6 * float(row[key]) for row in rows if row[key]) for key in ("t_frame", "t_poses")
-    )
+    frames, poses = (sorted(start_us + 1e6 * float(row[key]) for row in rows if row[key]) for key in ("t_frame", "t_poses"))
     frame, pose = bisect.bisect_left(frames, replugged_us), bisect.bisect_left(poses, replugged_us)
     if frame in (0, len(frames)) or pose == len(poses):
         die("the camera was unplugged, expected frames before and frames with poses afterwards")
@@ -96,11 +87,7 @@ def print_summary(summary):
             **summary
         )
     )
-    print(
-        "frames are stamped {median} ms after the shutter (median), at worst {worst} ms".format(
-            **summary["utime_error_ms"]
-        )
-    )
+    print("frames are stamped {median} ms after the shutter (median), at worst {worst} ms".format(**summary["utime_error_ms"]))
     if "unplugged" in summary:
         print(
             "unplugged on the way: no frame for {gap_s} s; plugged in again, frames were back after {frames_back_ms} ms, poses"

@@ -10,13 +10,12 @@ import json
 import os
 import pathlib
 import shutil
-import statistics
 import time
 
 from studies.command import step
 from studies.following import make_log
 from studies.lcm_log import objects_of, poses_of, read_log, utime_of
-from studies.measured import about, read_json, threads, write_json
+from studies.measured import about, percentiles, read_json, threads, write_json
 from studies.network import URL, Network
 from studies.stream import Processes, UsageWatch, enter_private_network
 from studies.work import Runner, Store, Units
@@ -73,14 +72,18 @@ class Taught:
         self.objects = divided([names[key] for key in sorted(names, key=int)], self.visible)
         forests = [self._taught(host, objects, rooms) for host, objects in zip(HOSTS, self.objects)]
         self.forests = self._made(*forests)
-        self.host_models = [copy_models(self.models, objects, out / f"models_{host}") for host, objects in zip(HOSTS, self.objects)]
+        self.host_models = [
+            copy_models(self.models, objects, out / f"models_{host}") for host, objects in zip(HOSTS, self.objects)
+        ]
 
     def _taught(self, host, objects, rooms):
         """The unit of a host's forest: those that stand in the scene by more views than the others."""
         views = []
         for kind, how, wanted in (("seen", SEEN_VIEWS, True), ("other", OTHER_VIEWS, False)):
             some = [name for name in objects if (name in self.visible) == wanted]
-            views.append(self._add(f"{kind}_{host}", "hs-render", "training", "--objects", ",".join(some), *how, "--out", "{out}"))
+            views.append(
+                self._add(f"{kind}_{host}", "hs-render", "training", "--objects", ",".join(some), *how, "--out", "{out}")
+            )
         words = [word for one in views for word in ("--views", f"bop:{{{one}}}")]
         return self._add(f"forest_{host}", "hs-train", "--threads", threads(), "--composites", 2, *words, "--background",
                          f"bop:{{{rooms}}}", "--out", "{out}")  # fmt: skip
@@ -164,22 +167,19 @@ class Record:
                 self.worlds.append((timestamp * 1e-6, utime_of(data), objects))
 
 
-def percentiles(values):
-    values = sorted(values)
-    if not values:
-        return {"p50_ms": None, "p99_ms": None}
-    return {"p50_ms": round(1000 * statistics.median(values), 1), "p99_ms": round(1000 * values[int(0.99 * (len(values) - 1))], 1)}
-
-
 def figures(record, begin, end, parts):
     """Between two times: for each host's objects how often there were poses of them and how old the frame was by then, and
     the same of the world; and how many objects it held in the end."""
+
     def told(results):
         first = {}  # of several results of a frame the first one
         for when, utime, _ in results:
             if utime in record.frames and begin <= record.frames[utime] < end:
                 first.setdefault(utime, when - record.frames[utime])
-        return {"hz": round(len(first) / (end - begin), 2), **percentiles(first.values())}
+        return {
+            "hz": round(len(first) / (end - begin), 2),
+            **percentiles([1e3 * age for age in first.values()], (50, 99), "_ms"),
+        }
 
     sent = sum(begin <= when < end for when in record.frames.values())
     out = {"sent_hz": round(sent / (end - begin), 2)}
@@ -236,7 +236,10 @@ def run_one(taught, network, log, out):
         stream.stop()
     record = stream.record()
     end = max(record.frames.values())
-    return {**figures(record, min(record.frames.values()) + WARM_UP_S, end, {"a": taught.objects[0]}), "cores": summary["cores"]}
+    return {
+        **figures(record, min(record.frames.values()) + WARM_UP_S, end, {"a": taught.objects[0]}),
+        "cores": summary["cores"],
+    }
 
 
 def run_two(taught, network, log, out):

@@ -133,16 +133,37 @@ Take follow(const ShowOptions& options, const std::optional<cv::Rect>& boxed, co
   }
 }
 
-/// What is taught of a view: the object with a margin.
+/// What is taught of a view: the object with a margin, in the tone in which it is looked for.
 void crop_to_object(TrainingView& view) {
   constexpr int kMargin_px = 8;
+  const ToneCurve tone = tone_curve(view.frame.colour, kPractisedTone);
   cv::Rect crop = cv::boundingRect(view.mask);
   crop = cv::Rect(crop.x - kMargin_px, crop.y - kMargin_px, crop.width + 2 * kMargin_px, crop.height + 2 * kMargin_px) &
          cv::Rect({0, 0}, view.mask.size());
-  view.frame.colour = view.frame.colour(crop).clone();
+  cv::Mat colour;
+  apply_tone(tone, view.frame.colour(crop), colour);
+  view.frame.colour = colour;
   view.frame.depth = view.frame.depth(crop).clone();
   view.frame.camera = view.frame.camera.cropped(crop.x, crop.y, crop.width, crop.height);
   view.mask = view.mask(crop).clone();
+}
+
+/// Gives the model of the takes the colours that it has in pictures of the tone in which it is looked for.
+void bring_into_tone(const std::vector<Take>& takes, std::vector<cv::Vec3b>& colours) {
+  if (colours.empty()) return;
+  ToneCurve mean{0.0F, 0.0F};
+  float count = 0.0F;
+  for (const Take& take : takes) {
+    for (const reconstruction::Keyframe& keyframe : take.keyframes) {
+      const ToneCurve tone = tone_curve(keyframe.frame.colour, kPractisedTone);
+      mean.gain += tone.gain;
+      mean.offset += tone.offset;
+      count += 1.0F;
+    }
+  }
+  if (count == 0.0F) return;
+  cv::Mat all(colours);  // lies where they do
+  apply_tone({mean.gain / count, mean.offset / count}, all, all);
 }
 
 /// The shown mesh as one that hs-teach mesh could have read, and the keyframes' views of it.
@@ -154,6 +175,7 @@ TeachOptions teaching_of(const ShowOptions& options, const Shown& shown) {
   mesh.mesh = shown.mesh;
   check_mesh(options.name, 1e-3, mesh.mesh);
   mesh.coloured = has_colour(mesh.mesh);
+  bring_into_tone(shown.takes, mesh.mesh.colours);
   teach.shown = {std::move(mesh)};
   for (std::size_t t = 0; t < shown.takes.size(); ++t) {
     std::vector<TrainingView> own = training_views(shown.takes[t], shown.views[t], options.name);

@@ -12,8 +12,8 @@ namespace houghstream::view {
 namespace {
 
 constexpr int kColumn = 3;  // pixels of one frame
-constexpr double kTextScale = 0.4;
-const cv::Scalar kGround(52, 48, 46);
+constexpr double kChartText = 0.4;
+const cv::Scalar kChartGround(52, 48, 46);
 const cv::Scalar kMark(255, 255, 255);
 
 double milliseconds(const StageTime& stage) {
@@ -78,14 +78,14 @@ void draw_stage_list(cv::Mat& image, const cv::Rect& area, const std::vector<Sta
     const cv::Rect square(corner.x, corner.y + (row_height - kSquare) / 2, kSquare, kSquare);
     cv::rectangle(image, square, stage_colour(i), cv::FILLED);
     draw_text(image, fmt::format("{} {:.1f}", stages[i].stage, milliseconds(stages[i])),
-              corner + cv::Point(kSquare + 4, row_height - 5), kTextScale);
+              corner + cv::Point(kSquare + 4, row_height - 5), kChartText);
   }
 }
 
 void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHistory& history) {
   const cv::Rect inside = area & cv::Rect(0, 0, image.cols, image.rows);
   if (inside.empty()) return;
-  cv::rectangle(image, inside, kGround, cv::FILLED);
+  cv::rectangle(image, inside, kChartGround, cv::FILLED);
   double highest = 0.0;
   for (const FrameLatency& frame : history) highest = std::max(highest, height_ms(frame));
   if (highest <= 0.0) return;
@@ -94,7 +94,7 @@ void draw_latency_chart(cv::Mat& image, const cv::Rect& area, const LatencyHisto
   for (auto frame = history.rbegin(); frame != history.rend() && x >= inside.x; ++frame, x -= kColumn) {
     draw_frame(image, cv::Rect(x, inside.y, kColumn - 1, inside.height), *frame, top_ms);
   }
-  draw_text(image, fmt::format("{:.0f} ms", top_ms), {inside.x + 3, inside.y + 12}, kTextScale);
+  draw_text(image, fmt::format("{:.0f} ms", top_ms), {inside.x + 3, inside.y + 12}, kChartText);
 }
 
 }  // namespace houghstream::view

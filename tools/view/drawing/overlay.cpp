@@ -13,7 +13,6 @@
 namespace houghstream::view {
 namespace {
 
-constexpr double kNearPlane = 0.05;    // metres; nothing nearer is drawn
 constexpr double kDefaultAxis = 0.05;  // metres, for a class without a model
 constexpr double kFontScale = 0.45;    // of OpenCV's simplex font
 constexpr int kSubpixelBits = 4;       // anti-aliased lines are placed to 1/16 of a pixel

@@ -15,6 +15,10 @@ namespace houghstream::view {
 /// Models by class name, metres, in the object frame of the poses. A class without one gets no outline.
 using ClassModels = std::map<std::string, Mesh>;
 
+inline constexpr float kNearPlane = 0.05F;  ///< metres; nothing nearer is drawn
+inline constexpr double kPanelText = 0.42;  ///< scale of the text beside the picture
+inline const cv::Scalar kPanelGround(38, 34, 32);
+
 /// The colour (BGR) in which a class is drawn everywhere: eight that stay apart for colour-blind eyes
 /// (Okabe and Ito 2008), then again from the first.
 cv::Scalar class_colour(int class_id);

@@ -15,10 +15,8 @@ namespace {
 constexpr int kSphere_px = 88;
 constexpr int kMargin_px = 6;
 constexpr int kLine_px = 18;
-constexpr double kTextScale = 0.42;
 const cv::Scalar kSeen(110, 200, 60);
 const cv::Scalar kUnseen(95, 90, 86);
-const cv::Scalar kGround(38, 34, 32);
 const cv::Scalar kWarning(80, 170, 255);
 
 cv::Scalar colour_of(TeachingState state) {
@@ -34,7 +32,7 @@ bool is_of(const Teaching& teaching, const FrameId& frame) {
 /// A part of the picture, made darker for what is written on it.
 cv::Mat darkened(cv::Mat& picture, const cv::Rect& area) {
   cv::Mat part = picture(area & cv::Rect({}, picture.size()));
-  cv::Mat ground(part.size(), part.type(), kGround);
+  cv::Mat ground(part.size(), part.type(), kPanelGround);
   cv::addWeighted(part, 0.25, ground, 0.75, 0.0, part);
   return part;
 }
@@ -66,10 +64,10 @@ void draw_spheres(cv::Mat& picture, const Teaching& teaching) {
   const int top = kMargin_px + kLine_px;
   draw_sphere(part, {kMargin_px, top, kSphere_px, kSphere_px}, teaching.directions, near);
   draw_sphere(part, {2 * kMargin_px + kSphere_px, top, kSphere_px, kSphere_px}, teaching.directions, far);
-  draw_text(part, "from here", {kMargin_px + 10, kLine_px - 2}, kTextScale);
-  draw_text(part, "from behind", {2 * kMargin_px + kSphere_px + 2, kLine_px - 2}, kTextScale);
+  draw_text(part, "from here", {kMargin_px + 10, kLine_px - 2}, kPanelText);
+  draw_text(part, "from behind", {2 * kMargin_px + kSphere_px + 2, kLine_px - 2}, kPanelText);
   draw_text(part, fmt::format("seen from {} of {}", count_seen(teaching), teaching.directions.size()),
-            {kMargin_px + 10, top + kSphere_px + kLine_px - 4}, kTextScale);
+            {kMargin_px + 10, top + kSphere_px + kLine_px - 4}, kPanelText);
 }
 
 void draw_words(cv::Mat& picture, const Teaching& teaching) {
@@ -79,8 +77,8 @@ void draw_words(cv::Mat& picture, const Teaching& teaching) {
   const cv::Scalar colour = colour_of(teaching.state);
   const std::string counts = fmt::format("{}: {}, {} frames, {} kept", teaching.name, to_string(teaching.state),
                                          teaching.frames, teaching.keyframes);
-  draw_text(part, counts, {kMargin_px, kLine_px - 4}, kTextScale, colour);
-  draw_text(part, teaching.message, {kMargin_px, 2 * kLine_px - 4}, kTextScale);
+  draw_text(part, counts, {kMargin_px, kLine_px - 4}, kPanelText, colour);
+  draw_text(part, teaching.message, {kMargin_px, 2 * kLine_px - 4}, kPanelText);
   if (!teaching.progress) return;
   const int length = static_cast<int>(std::lround(*teaching.progress * static_cast<float>(part.cols)));
   part(cv::Rect(0, part.rows - kBar_px, length, kBar_px)).setTo(colour);

@@ -10,8 +10,7 @@ namespace {
 
 constexpr double kFromTheRight = 35.0 * M_PI / 180.0;
 constexpr double kFromAbove = 25.0 * M_PI / 180.0;
-constexpr float kNearPlane = 0.05F;  // metres
-const cv::Scalar kGround(40, 34, 30);
+const cv::Scalar kTurnedGround(40, 34, 30);
 
 /// Median of the measured depths, from a part of them; 1 m where there are none.
 double middle_depth(const cv::Mat& depth) {
@@ -33,7 +32,7 @@ class PointPicture {
  public:
   explicit PointPicture(const Camera& camera)
       : camera_(camera),
-        image_(camera.height, camera.width, CV_8UC3, kGround),
+        image_(camera.height, camera.width, CV_8UC3, kTurnedGround),
         nearest_(camera.height, camera.width, CV_32FC1, cv::Scalar(std::numeric_limits<float>::infinity())) {}
 
   void add(const Eigen::Vector3f& point, const cv::Vec3b& colour) {

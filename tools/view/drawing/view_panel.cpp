@@ -16,8 +16,6 @@ constexpr int kHeading = 24;
 constexpr int kBlockHeight = kHeading + kRows * kRowHeight + 6;
 constexpr int kKeysHeight = 28;
 constexpr int kMargin = 8;
-constexpr double kTextScale = 0.42;
-const cv::Scalar kGround(38, 34, 32);
 const cv::Scalar kKeysGround(60, 54, 50);
 const cv::Scalar kMuted(190, 190, 190);
 const cv::Scalar kBright(255, 255, 255);
@@ -28,11 +26,11 @@ class Block {
  public:
   Block(cv::Mat& panel, const cv::Point& corner, const std::string& heading)
       : image_(panel(cv::Rect(corner, cv::Size(kBlockWidth, kBlockHeight)) & cv::Rect({}, panel.size()))) {
-    draw_text(image_, heading, {kMargin, kHeading - 7}, kTextScale, kMuted);
+    draw_text(image_, heading, {kMargin, kHeading - 7}, kPanelText, kMuted);
   }
 
   void line(int row, const std::string& text, const cv::Scalar& colour = kBright, int indent = 0) {
-    draw_text(image_, text, {kMargin + indent, kHeading + (row + 1) * kRowHeight - 5}, kTextScale, colour);
+    draw_text(image_, text, {kMargin + indent, kHeading + (row + 1) * kRowHeight - 5}, kPanelText, colour);
   }
 
   void square(int row, const cv::Scalar& colour) {
@@ -128,7 +126,8 @@ cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const Fr
   constexpr int kBlocks = 4;
   const int columns = std::clamp(width / kBlockWidth, 1, kBlocks);
   const int blocks_height = (kBlocks + columns - 1) / columns * kBlockHeight;
-  cv::Mat panel(blocks_height + (settings.show_keys ? kKeysHeight : 0), std::max(width, kBlockWidth), CV_8UC3, kGround);
+  cv::Mat panel(blocks_height + (settings.show_keys ? kKeysHeight : 0), std::max(width, kBlockWidth), CV_8UC3,
+                kPanelGround);
   const auto corner = [&](int block) {
     return cv::Point(block % columns * kBlockWidth, block / columns * kBlockHeight);
   };

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/base/no_value.hpp"
 #include "pipeline/base/random.hpp"
 #include "tests/every_target.hpp"
 
 namespace houghstream {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFocal = 260.0F;
 
 template <typename T, typename Value>
@@ -159,7 +159,7 @@ TEST(TileDerivatives, OfDepthAreMetresPerMetre) {
 TEST(TileDerivatives, CliffsAreLimitedAndUnknownDepthIsLevel) {
   const auto cliff = plane_of<float>({20, 3}, 4, [](int x, int) { return x < 10 ? 0.5 : 1.5; });
   const auto drop = plane_of<float>({20, 3}, 4, [](int x, int) { return x < 10 ? 1.5 : 0.5; });
-  const auto hole = plane_of<float>({20, 3}, 4, [](int x, int y) { return x == 10 && y == 1 ? kNone : 0.7F; });
+  const auto hole = plane_of<float>({20, 3}, 4, [](int x, int y) { return x == 10 && y == 1 ? kNoValue : 0.7F; });
   const SobelKernels kernels = sobel_kernels(3);
   simd::with_every_target([&] {
     const DepthDerivatives up = depth_derivatives(cliff, kernels);
@@ -195,7 +195,7 @@ TEST(TileDerivatives, OfDepthAreTheSameBitForBitOnEveryInstructionSet) {
   for (const int size : {3, 7}) {
     const SobelKernels kernels = sobel_kernels(size);
     const auto depth = plane_of<float>({61, 4}, 2 + size / 2, [&](int, int y) {
-      return random.uniform() < 0.003 ? static_cast<double>(kNone) : random.uniform(0.70, 0.70 + 0.01 * (y + 9));
+      return random.uniform() < 0.003 ? static_cast<double>(kNoValue) : random.uniform(0.70, 0.70 + 0.01 * (y + 9));
     });
     const auto metric = [&](std::size_t order_x, std::size_t order_y) {
       return [&, order_x, order_y](int x, int y) {
@@ -224,7 +224,7 @@ TEST(TileDerivatives, OfDepthAreTheSameBitForBitOnEveryInstructionSet) {
 
 TEST(TileDerivatives, StepsOfDepthAreRoundedLimitedAndNoneWhereUnknown) {
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
-  const std::vector<float> metres = {0.4F, 0.4019F, 0.4021F, 0.0F, 300.0F, 5000.0F, -1.0F, kNone, kInfinite};
+  const std::vector<float> metres = {0.4F, 0.4019F, 0.4021F, 0.0F, 300.0F, 5000.0F, -1.0F, kNoValue, kInfinite};
   const std::vector<int> steps = {100, 100, 101, 0, 65535, 0, 0, 0, 0};
   const auto place = [&](int x, int y) { return static_cast<std::size_t>(x + 3 * y + 10) % metres.size(); };
   const auto depth = plane_of<float>({35, 3}, 2, [&](int x, int y) { return metres[place(x, y)]; });

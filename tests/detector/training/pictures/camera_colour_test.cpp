@@ -135,6 +135,40 @@ TEST(CameraColour, GammaAndContrastKeepTheOrderOfGreys) {
   EXPECT_GT(taken(bright, ramp).at<cv::Vec3b>(0, 100)[0], 110);
 }
 
+TEST(CameraColour, LevelsLoseWhatIsDarkAndBrightAndSpreadTheRest) {
+  cv::Mat ramp(1, 256, CV_8UC3);
+  for (int v = 0; v < 256; ++v) ramp.at<cv::Vec3b>(0, v) = cv::Vec3b::all(static_cast<std::uint8_t>(v));
+  ColourVariation camera;
+  camera.black = 0.2;
+  camera.white = 0.8;
+  const cv::Mat after = taken(camera, ramp);
+  EXPECT_EQ(after.at<cv::Vec3b>(0, 50)[0], 0);
+  EXPECT_EQ(after.at<cv::Vec3b>(0, 205)[0], 255);
+  EXPECT_NEAR(after.at<cv::Vec3b>(0, 153)[0], 170, 2);
+  camera.black = -0.1;
+  EXPECT_NEAR(taken(camera, ramp).at<cv::Vec3b>(0, 0)[0], 28, 2) << "lifted blacks are grey";
+}
+
+TEST(CameraColour, ToneChangesPicturesAndNothingWithoutAShare) {
+  const cv::Mat before = chart();
+  cv::Mat after = before.clone();
+  Random random(3);
+  vary_tone(0.0, 1.0, after, random);
+  EXPECT_EQ(cv::norm(before, after, cv::NORM_INF), 0.0);
+  double change = 0.0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    after = before.clone();
+    cv::Mat again = before.clone();
+    Random first(seed);
+    Random second(seed);
+    vary_tone(1.0, 1.0, after, first);
+    vary_tone(1.0, 1.0, again, second);
+    EXPECT_EQ(cv::norm(after, again, cv::NORM_INF), 0.0);
+    change = std::max(change, cv::norm(before, after, cv::NORM_L1) / (3.0 * static_cast<double>(before.total())));
+  }
+  EXPECT_GT(change, 15.0);
+}
+
 TEST(CameraColour, EveryMosaicGivesItsColoursBack) {
   const cv::Mat before = chart();
   for (int bayer = 0; bayer < 4; ++bayer) {

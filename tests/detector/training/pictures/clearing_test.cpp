@@ -60,7 +60,7 @@ cv::Mat soft_step(double sigma) {
   return step;
 }
 
-int steepest(const cv::Mat& colour) {
+int steepest_step(const cv::Mat& colour) {
   int most = 0;
   for (int x = 1; x < colour.cols; ++x) {
     most = std::max(most, colour.at<cv::Vec3b>(10, x)[1] - colour.at<cv::Vec3b>(10, x - 1)[1]);
@@ -69,12 +69,12 @@ int steepest(const cv::Mat& colour) {
 }
 
 TEST(Sharpened, ASoftEdgeGetsSteeperWithSharpness) {
-  const int as_taught = steepest(soft_step(1.5));
-  const int half = steepest(sharpened(soft_step(1.5), 0.75));
-  const int full = steepest(sharpened(soft_step(1.5), 1.5));
+  const int as_taught = steepest_step(soft_step(1.5));
+  const int half = steepest_step(sharpened(soft_step(1.5), 0.75));
+  const int full = steepest_step(sharpened(soft_step(1.5), 1.5));
   EXPECT_GT(half, 1.1 * as_taught);
   EXPECT_GT(full, 1.1 * half);
-  EXPECT_LT(full, steepest(soft_step(0.0)));
+  EXPECT_LT(full, steepest_step(soft_step(0.0)));
 }
 
 TEST(Sharpened, WhatIsEvenStaysAndZeroChangesNothing) {

@@ -9,10 +9,10 @@
 namespace houghstream::training {
 namespace {
 
-struct Toys {
+struct TilesAndRooms {
   std::vector<TrainingView> views = toy::training_views();
   std::vector<const TrainingView*> objects;
-  Toys() {
+  TilesAndRooms() {
     for (const TrainingView& view : views) {
       if (view.class_id != 0) objects.push_back(&view);
     }
@@ -22,7 +22,8 @@ struct Toys {
 constexpr ComposedThings kThings = {4, 2};
 
 /// By the camera that taught: another one's depth has other holes and lies a few pixels beside.
-ValidationFrame compose(const Toys& toys, std::uint64_t seed, double occluded_share, double camera_share = 0.0) {
+ValidationFrame compose(const TilesAndRooms& toys, std::uint64_t seed, double occluded_share,
+                        double camera_share = 0.0) {
   TrainingSettings settings = toy::quick_profile().training;
   settings.occluded_share = occluded_share;
   settings.camera_share = camera_share;
@@ -31,7 +32,7 @@ ValidationFrame compose(const Toys& toys, std::uint64_t seed, double occluded_sh
 }
 
 TEST(ValidationFrames, NameWhatTheyShowAndWhere) {
-  const Toys toys;
+  const TilesAndRooms toys;
   const RgbdFrame room = toy::room(9);
   int objects = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
@@ -53,7 +54,7 @@ TEST(ValidationFrames, NameWhatTheyShowAndWhere) {
 }
 
 TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
-  const Toys toys;
+  const TilesAndRooms toys;
   double open = 0.0;
   double occluded = 0.0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
@@ -64,12 +65,12 @@ TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
 }
 
 TEST(ValidationFrames, AsManyLookAlikesOfEachSortAsAskedForStandThereToo) {
-  const Toys toys;
+  const TilesAndRooms toys;
   EXPECT_EQ(compose(toys, 1, 0.0).look_alikes.size(), 4U);
 }
 
 TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
-  const Toys toys;
+  const TilesAndRooms toys;
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const ValidationFrame same = compose(toys, seed, 0.0, 0.0);
     const ValidationFrame other = compose(toys, seed, 0.0, 1.0);
@@ -85,8 +86,8 @@ TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
 }
 
 TEST(ValidationFrames, TheRoomAndTheViewsStayAsTheyAre) {
-  const Toys toys;
-  const Toys untouched;
+  const TilesAndRooms toys;
+  const TilesAndRooms untouched;
   const RgbdFrame room = toy::room(9);
   const cv::Mat colour = room.colour.clone();
   TrainingSettings settings = toy::quick_profile().training;

@@ -9,7 +9,7 @@ namespace {
 constexpr std::chrono::seconds kPatience(5);
 using Sensor = SensorImage::Sensor;
 
-std::filesystem::path record(const VirtualCamera& camera, int images, bool jpeg) {
+std::filesystem::path recorded_file(const VirtualCamera& camera, int images, bool jpeg) {
   CameraOptions options;
   options.mode = {320, 240, 30};
   options.record = (camera.folder() / "recorded.oni").string();
@@ -65,13 +65,13 @@ void expect_apart(const std::filesystem::path& file, std::int64_t apart_us) {
 TEST(OpenniRecording, ColourKeepsItsDistanceFromItsDepthHoweverLateItComes) {
   for (const bool jpeg : {false, true}) {
     const VirtualCamera late("recording_late", "size 320x240\ncan_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n");
-    expect_apart(record(late, 50, jpeg), 8000);
+    expect_apart(recorded_file(late, 50, jpeg), 8000);
   }
 }
 
 TEST(OpenniRecording, ColourThatComesAtOnceIsAtItsDepthsTime) {
   const VirtualCamera camera("recording_prompt", "size 320x240\n");
-  expect_apart(record(camera, 50, false), 0);
+  expect_apart(recorded_file(camera, 50, false), 0);
 }
 
 /// A recorder and a driver that hands over an image must not wait for each other: images come all the time here.

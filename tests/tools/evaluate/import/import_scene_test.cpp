@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kBoxes = R"({"image_size": [64, 48], "camera": {"fx": 60, "fy": 61, "cx": 31.5, "cy": 23.5},
+const std::string kBoxesFile = R"({"image_size": [64, 48], "camera": {"fx": 60, "fy": 61, "cx": 31.5, "cy": 23.5},
  "frames": [{"frame": "a_10", "objects": [{"object": "pack", "bbox_xyxy": [10, 5, 30, 25]},
                                           {"object": "can", "bbox_xyxy": [40, 5, 50, 40]}]},
             {"frame": "a_9", "objects": []}]})";
@@ -25,7 +25,7 @@ fs::path write_source(const std::string& name) {
     write_png(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(number)), folder / (stem + "_color.png"));
     write_png(cv::Mat(48, 64, CV_16UC1, cv::Scalar(700)), folder / (stem + "_depth.png"));
   }
-  write_text(folder / "boxes.json", kBoxes);
+  write_text(folder / "boxes.json", kBoxesFile);
   return folder;
 }
 

@@ -9,7 +9,7 @@ namespace houghstream {
 namespace {
 
 const std::vector<Eigen::Isometry3d> kNoSymmetry = {Eigen::Isometry3d::Identity()};
-const Camera kCamera = {100, 80, 100.0, 100.0, 49.5, 39.5};
+const Camera kHundredWide = {100, 80, 100.0, 100.0, 49.5, 39.5};
 
 /// A square of 0.2 m, facing a camera that looks along z.
 Mesh square() {
@@ -26,8 +26,8 @@ Eigen::Isometry3d at(double x, double y, double z) {
 /// Measured depth everywhere the same, metres.
 RgbdFrame wall(float depth) {
   RgbdFrame frame;
-  frame.camera = kCamera;
-  frame.depth = cv::Mat(kCamera.height, kCamera.width, CV_32FC1, cv::Scalar(depth));
+  frame.camera = kHundredWide;
+  frame.depth = cv::Mat(kHundredWide.height, kHundredWide.width, CV_32FC1, cv::Scalar(depth));
   return frame;
 }
 
@@ -41,11 +41,11 @@ TEST(BopErrors, TheFarthestVertexCounts) {
 
 TEST(BopErrors, InTheImageADistanceIsSmallerTheFartherItIs) {
   const auto vertices = square().vertices;
-  EXPECT_NEAR(mspd_error(vertices, kNoSymmetry, at(0.02, 0, 2), at(0, 0, 2), kCamera), 1.0, 1e-6);
+  EXPECT_NEAR(mspd_error(vertices, kNoSymmetry, at(0.02, 0, 2), at(0, 0, 2), kHundredWide), 1.0, 1e-6);
   // Nearer by half: the corners go from 5 to 10 pixels off the centre, along both axes.
-  EXPECT_NEAR(mspd_error(vertices, kNoSymmetry, at(0, 0, 1), at(0, 0, 2), kCamera), 5.0 * std::sqrt(2.0), 1e-5);
-  EXPECT_TRUE(std::isinf(mspd_error(vertices, kNoSymmetry, at(0, 0, -1), at(0, 0, 2), kCamera)));
-  EXPECT_TRUE(std::isinf(mspd_error(vertices, kNoSymmetry, at(0, 0, 1), at(0, 0, 0), kCamera)));
+  EXPECT_NEAR(mspd_error(vertices, kNoSymmetry, at(0, 0, 1), at(0, 0, 2), kHundredWide), 5.0 * std::sqrt(2.0), 1e-5);
+  EXPECT_TRUE(std::isinf(mspd_error(vertices, kNoSymmetry, at(0, 0, -1), at(0, 0, 2), kHundredWide)));
+  EXPECT_TRUE(std::isinf(mspd_error(vertices, kNoSymmetry, at(0, 0, 1), at(0, 0, 0), kHundredWide)));
 }
 
 TEST(BopErrors, TheBestOfTheEquivalentPosesCounts) {
@@ -55,7 +55,7 @@ TEST(BopErrors, TheBestOfTheEquivalentPosesCounts) {
   const Eigen::Isometry3d turned = at(0.01, 0, 1) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
   EXPECT_NEAR(mssd_error(vertices, kNoSymmetry, turned, at(0, 0, 1)), 0.21, 2e-3) << "a corner goes to the next, 0.2 m";
   EXPECT_NEAR(mssd_error(vertices, quarters, turned, at(0, 0, 1)), 0.01, 1e-7);
-  EXPECT_NEAR(mspd_error(vertices, quarters, turned, at(0, 0, 1), kCamera), 1.0, 1e-4);
+  EXPECT_NEAR(mspd_error(vertices, quarters, turned, at(0, 0, 1), kHundredWide), 1.0, 1e-4);
 }
 
 TEST(BopErrors, VsdOfATruePoseIsNothing) {

@@ -33,8 +33,8 @@ ShowProgress tracked(std::int64_t utime) {
 }
 
 /// A bus that remembers what was said of teachings.
-struct Heard {
-  Heard() {
+struct HeardTeaching {
+  HeardTeaching() {
     bus.subscribe(channel::kTeaching, [this](const Arrival& arrival) {
       teachings.push_back(teaching_from_message(decode_message<houghstream::teaching_t>(arrival.bytes)));
     });
@@ -71,7 +71,7 @@ TEST(TeachingPublisher, SaysOnTheBusWhatTheObserverIsTold) {
 }
 
 TEST(TeachingPublisher, ManyFramesAreFewMessagesAndTheLastOneIsSaidAgain) {
-  Heard heard;
+  HeardTeaching heard;
   TeachingPublisher publisher(heard.bus, all_up());
   for (std::int64_t i = 1; i <= 50; ++i) publisher.progress(tracked(i));
   heard.listen(milliseconds(500));

@@ -4,10 +4,10 @@
 
 #include <limits>
 
+#include "pipeline/base/no_value.hpp"
+
 namespace houghstream::view {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 ViewedFrame small_frame() {
   ViewedFrame viewed;
@@ -20,7 +20,7 @@ ViewedFrame small_frame() {
 }
 
 TEST(FrameView, DepthIsWarmNearColdFarAndBlackWhereMissing) {
-  const cv::Mat depth = (cv::Mat_<float>(1, 3) << 0.6F, 3.2F, kNone);
+  const cv::Mat depth = (cv::Mat_<float>(1, 3) << 0.6F, 3.2F, kNoValue);
   const cv::Mat image = colour_depth(depth, 0.4F, 3.5F);
   const auto near = image.at<cv::Vec3b>(0, 0);
   const auto far = image.at<cv::Vec3b>(0, 1);

@@ -4,18 +4,19 @@
 
 #include <limits>
 
+#include "pipeline/base/no_value.hpp"
+
 namespace houghstream::view {
 namespace {
 
 const cv::Vec3b kRed(0, 0, 250);
-const cv::Vec3b kGrey(120, 120, 120);
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+const cv::Vec3b kWall(120, 120, 120);
 
 /// A grey wall at 2 m, and before its middle a red square of 21 pixels at 1.5 m.
 RgbdFrame wall_and_square() {
   RgbdFrame frame;
   frame.camera = Camera{160, 120, 130.0, 130.0, 79.5, 59.5};
-  frame.colour = cv::Mat(120, 160, CV_8UC3, cv::Scalar(kGrey));
+  frame.colour = cv::Mat(120, 160, CV_8UC3, cv::Scalar(kWall));
   frame.depth = cv::Mat(120, 160, CV_32FC1, cv::Scalar(2.0));
   const cv::Rect square(70, 50, 21, 21);
   frame.colour(square).setTo(cv::Scalar(kRed));
@@ -64,7 +65,7 @@ TEST(TurnedView, WhatIsNearHidesWhatIsFar) {
 
 TEST(TurnedView, WhereNothingWasMeasuredThereIsNothing) {
   RgbdFrame frame = wall_and_square();
-  frame.depth.setTo(kNone);
+  frame.depth.setTo(kNoValue);
   const cv::Mat image = draw_turned_view(frame, std::nullopt, {});
   EXPECT_EQ(cv::norm(image, cv::Mat(image.size(), CV_8UC3, cv::Scalar(image.at<cv::Vec3b>(0, 0)))), 0.0);
 }

@@ -5,12 +5,12 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/base/no_value.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kMostIncidence = 1.45;  // radians; the model's terms grow without bound towards pi/2
 
 // Normal noise, deviation 1, that neighbours share: the sensor matches windows, not pixels.
@@ -61,7 +61,7 @@ class Sensor {
     const int from_x = shifted(x, lateral * shift_x_.at<float>(y, x), size_.width);
     const int from_y = shifted(y, lateral * shift_y_.at<float>(y, x), size_.height);
     const double z = view_.depth.at<float>(from_y, from_x);
-    if (std::isnan(z) || shadow_.at<std::uint8_t>(from_y, from_x) != 0 || lost(from_x, from_y, z)) return kNone;
+    if (std::isnan(z) || shadow_.at<std::uint8_t>(from_y, from_x) != 0 || lost(from_x, from_y, z)) return kNoValue;
     return quantised(z + pre_quantisation_sigma(z, cosine) * axial_noise_.at<float>(y, x));
   }
 
@@ -93,7 +93,7 @@ class Sensor {
   }
 
   float quantised(double z) const {
-    if (z < settings_.near_m || z > settings_.far_m) return kNone;
+    if (z < settings_.near_m || z > settings_.far_m) return kNoValue;
     const double scale = settings_.infrared_focal_px * settings_.baseline_m / settings_.disparity_step_px;
     const double steps = std::round(scale / z);
     return static_cast<float>(std::round(1000.0 * scale / steps) / 1000.0);

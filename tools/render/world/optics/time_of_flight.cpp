@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "pipeline/base/no_value.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 class TimeOfFlight {
  public:
@@ -19,13 +17,13 @@ class TimeOfFlight {
 
   float measure(const cv::Point& pixel) const {
     const double z = depth(pixel);
-    if (std::isnan(z)) return kNone;
+    if (std::isnan(z)) return kNoValue;
     const double amplitude = returned_amplitude(view_, pixel);
-    if (amplitude < settings_.least_amplitude) return kNone;
+    if (amplitude < settings_.least_amplitude) return kNoValue;
     const auto index = static_cast<std::uint64_t>(pixel.y) * 4096U + static_cast<std::uint64_t>(pixel.x);
     const double noise = time_of_flight_sigma(amplitude, settings_) * pixel_normal(seed_ + 1, index);
     const double seen = mixed(pixel, index).value_or(z + multipath_bias(pixel, z)) + noise;
-    if (seen < settings_.near_m || seen > settings_.far_m) return kNone;
+    if (seen < settings_.near_m || seen > settings_.far_m) return kNoValue;
     return static_cast<float>(std::round(1000.0 * seen) / 1000.0);
   }
 
