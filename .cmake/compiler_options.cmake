@@ -105,7 +105,7 @@ function(houghstream_prepare_unity target)
       set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   endforeach()
-  if(CMAKE_UNITY_BUILD) # which takes a source's own types for those of a header
+  if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU) # which takes a source's own types for those of a header
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
 endfunction()

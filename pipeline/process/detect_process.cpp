@@ -11,7 +11,7 @@
 namespace houghstream {
 namespace {
 
-struct EncodedFrame {
+struct WaitingFrame {
   std::string channel;
   std::vector<std::uint8_t> bytes;
   std::chrono::steady_clock::time_point arrival;
@@ -20,7 +20,7 @@ struct EncodedFrame {
 /// What the receiving thread does.
 class Reception {
  public:
-  Reception(const LcmBus& bus, StatusReporter& status, NewestOfEach<EncodedFrame>& newest, double looks_per_second)
+  Reception(const LcmBus& bus, StatusReporter& status, NewestOfEach<WaitingFrame>& newest, double looks_per_second)
       : is_log_(bus.is_log()), status_(status), newest_(newest), budget_(looks_per_second) {}
 
   void receive_frame(const Arrival& arrival) {
@@ -51,18 +51,18 @@ class Reception {
   /// Whether another frame is passed over for it, or it for another.
   bool put(const Arrival& arrival, FrameOrder order) {
     const ByteView& bytes = arrival.bytes;
-    EncodedFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
+    WaitingFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
     return order == FrameOrder::kLate ? newest_.put_late(arrival.channel, std::move(frame))
                                       : newest_.put(arrival.channel, std::move(frame));
   }
 
   const bool is_log_;
   StatusReporter& status_;
-  NewestOfEach<EncodedFrame>& newest_;
+  NewestOfEach<WaitingFrame>& newest_;
   LookBudget budget_;
 };
 
-RgbdFrame decode(const EncodedFrame& encoded, const std::optional<Camera>& camera) {
+RgbdFrame decode(const WaitingFrame& encoded, const std::optional<Camera>& camera) {
   StageClock clock;
   const auto message = decode_message<images_t>({encoded.bytes.data(), encoded.bytes.size()});
   RgbdFrame frame = frame_from_message(message, encoded.channel, camera);
@@ -79,7 +79,7 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   const ChannelPattern channels(options.frame_channels);
   StatusReporter status(options.process);
   status.tell_objects(options.objects);
-  NewestOfEach<EncodedFrame> newest;
+  NewestOfEach<WaitingFrame> newest;
   Reception reception(bus, status, newest, options.looks_per_second);
   catch_stop_signals();
   bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
@@ -92,7 +92,7 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   }
   log_info("ready: frames from {} at {}", options.frame_channels, bus.url());
   run_process_loop(bus, status, [&](std::chrono::milliseconds timeout) {
-    const std::optional<EncodedFrame> encoded = newest.take(timeout);
+    const std::optional<WaitingFrame> encoded = newest.take(timeout);
     if (!encoded) return false;
     try {
       const RgbdFrame frame = decode(*encoded, options.camera);
