@@ -11,13 +11,14 @@ namespace houghstream {
 namespace {
 
 constexpr std::int64_t kFrameUs = 33'333;
+constexpr std::int64_t kFramesOfADay = 2'592'000;  // forged numbers are as large as they can be, times are not
 
 /// Frames as they arrive, 30 a second; a frame's utime goes with its number and `start`.
 class Arrivals {
  public:
   FrameOrder come(std::int64_t number, std::int64_t run = 0, std::int64_t start = 0) {
     now_us_ += kFrameUs;
-    const FrameOrder order = count.note({number, start + 1000 * number, run}, now_us_);
+    const FrameOrder order = count.note({number, start + 1000 * (number % kFramesOfADay), run}, now_us_);
     if (order != FrameOrder::kDuplicate) ++received;
     return order;
   }
