@@ -42,7 +42,7 @@ function(houghstream_compile_options target)
   # goes without them, as precompiled headers have one set of options.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                            -Wno-float-conversion ${HOUGHSTREAM_WERROR} -ffp-contract=off -fno-strict-aliasing)
-  set(sanitized -fno-omit-frame-pointer -g1 $<$<CONFIG:Release>:-O1>) # more takes minutes and gigabytes a source
+  set(sanitized -fno-omit-frame-pointer -g1 $<$<CONFIG:Release>:-O1>) # -O3 takes minutes and gigabytes
   if(HOUGHSTREAM_FUZZ) # by clang, whose warnings are others
     target_compile_options(${target} PRIVATE -Wno-error -fsanitize=fuzzer-no-link,address,undefined
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
@@ -93,8 +93,8 @@ function(houghstream_use_shared_headers target shared)
   endif()
 endfunction()
 
-# With CMAKE_UNITY_BUILD eight sources of a target are compiled as one, which reads PCL's and OpenCV's headers once: a third
-# of the time where everything is built, more where one source changes. Names of anonymous namespaces are then those of
+# With CMAKE_UNITY_BUILD eight sources of a target are compiled as one, which reads their headers once: less time
+# where everything is built, more where one source changes. Names of anonymous namespaces are then those of
 # the whole target. A source that Highway compiles for each instruction set includes itself and stays alone.
 function(houghstream_prepare_unity target)
   get_target_property(sources ${target} SOURCES)

@@ -12,9 +12,11 @@
 
 namespace houghstream::openni {
 
-inline constexpr std::chrono::milliseconds kGlance(
-    50);  ///< how long a stop request or an unplugged camera may go unnoticed
-inline constexpr std::chrono::seconds kFilePatience(5);  ///< how long a file's image is waited for: disks may be asleep
+/// How long a stop request or an unplugged camera may go unnoticed.
+inline constexpr std::chrono::milliseconds kGlance(50);
+
+/// How long a file's image is waited for: disks may be asleep.
+inline constexpr std::chrono::seconds kFilePatience(5);
 
 /// The cameras that OpenNI2's drivers have found. `closely` also opens each for its serial number and modes, which
 /// stay empty where it cannot be opened, for instance because another process uses it. Throws InputError where
