@@ -67,8 +67,8 @@ std::vector<Estimation> begin_estimations(const Detections& detections,
   return begun;
 }
 
-void look_at_region(const RgbdFrame& frame, const PoseSettings& settings, Estimation& it) {
-  it.seen.emplace(see_object(frame, it.detection, it.model, settings.region, settings.noise));
+void look_at_region(const SeenFrame& frame, const PoseSettings& settings, Estimation& it) {
+  it.seen.emplace(see_object(frame, it.detection, it.model, settings.region));
   if (it.seen->region.points < settings.region.min_points) it.pose.status = PoseStatus::kTooFewPoints;
 }
 
@@ -143,7 +143,8 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
     });
   };
 
-  for_each_undecided([&](Estimation& it) { look_at_region(frame, settings, it); });
+  const SeenFrame seen = see_frame(frame, settings.region, settings.noise);
+  for_each_undecided([&](Estimation& it) { look_at_region(seen, settings, it); });
   clock.mark("pose.region");
   for_each_undecided([&](Estimation& it) { find_candidates(earlier, settings, it); });
   clock.mark("pose.candidates");
@@ -162,12 +163,13 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
 std::vector<FollowedPose> PoseEstimator::follow(const RgbdFrame& frame,
                                                 const std::vector<ExpectedObject>& expected) const {
   check_frame(frame, "pose estimation");
+  const SeenFrame seen = see_frame(frame, state_->settings.region, state_->settings.noise);
   std::vector<FollowedPose> followed(expected.size());
   parallel_for(state_->settings.threads, static_cast<int>(expected.size()), [&](int i) {
     const ExpectedObject& object = expected[i];
     const auto model = state_->models.find(object.class_name);
     if (model != state_->models.end()) {
-      followed[i] = follow_object(frame, model->second, object, state_->settings);
+      followed[i] = follow_object(seen, model->second, object, state_->settings);
     } else {
       followed[i].pose.class_id = object.class_id;
       followed[i].pose.class_name = object.class_name;

@@ -51,19 +51,24 @@ std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRe
   return points;
 }
 
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneRange& tone) {
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneCurve& tone) {
   LabRegion region{{}, part_px.tl()};
   cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
-  apply_tone(tone_curve(frame.colour, tone), region.lab, region.lab);
+  if (tone.changes()) apply_tone(tone, region.lab, region.lab);
   cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);
   return region;
 }
 
-SeenObject see_object(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
-                      const RegionSettings& settings, const DepthNoise& noise) {
-  SeenObject seen{frame, model, detection.centre_camera, noise, find_region(frame, detection, model, settings), {}};
-  if (seen.region.points >= settings.min_points) seen.colours = lab_region(frame, seen.region.box_px, settings.tone);
-  return seen;
+SeenFrame see_frame(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise) {
+  return {frame, noise, tone_curve(frame.colour, settings.tone)};
+}
+
+SeenObject see_object(const SeenFrame& seen, const Detection& detection, const ObjectModel& model,
+                      const RegionSettings& settings) {
+  const DepthRegion region = find_region(seen.frame, detection, model, settings);
+  SeenObject object{seen.frame, model, detection.centre_camera, seen.noise, region, {}};
+  if (region.points >= settings.min_points) object.colours = lab_region(seen.frame, region.box_px, seen.tone);
+  return object;
 }
 
 double distance_from_detected(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object) {

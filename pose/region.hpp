@@ -52,8 +52,16 @@ struct LabRegion {
   cv::Mat lab;          ///< CV_8UC3, 8-bit CIE L*a*b*, of the part; neighbouring pixels averaged against noise
   cv::Point origin_px;  ///< its first pixel in the frame
 };
-/// Brought into the tone by what the whole frame looks like. `part_px` must lie inside the image and not be empty.
-LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneRange& tone);
+/// `tone` is that of the whole frame. `part_px` must lie inside the image and not be empty.
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneCurve& tone);
+
+/// A frame in which objects are looked at. The frame must outlive it.
+struct SeenFrame {
+  const RgbdFrame& frame;
+  DepthNoise noise;  ///< of its depth
+  ToneCurve tone;    ///< brings its colours into RegionSettings::tone
+};
+SeenFrame see_frame(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise);
 
 /// What is seen of a detected object, and the model that it is compared with: what every later stage looks at. Frame
 /// and model must outlive it.
@@ -65,8 +73,8 @@ struct SeenObject {
   DepthRegion region;
   LabRegion colours;  ///< of the region's box; empty where the region has too few points
 };
-SeenObject see_object(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
-                      const RegionSettings& settings, const DepthNoise& noise);
+SeenObject see_object(const SeenFrame& seen, const Detection& detection, const ObjectModel& model,
+                      const RegionSettings& settings);
 
 /// Metres from where the object was detected to where it is at this pose.
 double distance_from_detected(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object);

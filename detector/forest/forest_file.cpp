@@ -224,10 +224,8 @@ void check_settings(const Forest& forest, const std::string& source) {
       f.fill_distance_px >= 0.0F && f.fill_distance_px <= 1000.0F && f.fill_distance >= 0.0F && f.fill_distance <= 1.0F,
       "{}: holes filled over {} pixels or {} m, expected up to 1000 pixels and 1 m", source, f.fill_distance_px,
       f.fill_distance);
-  require(f.tone.least_mean >= 0.0F && f.tone.least_mean <= f.tone.most_mean && f.tone.most_mean <= 255.0F &&
-              f.tone.most_deviation >= 1.0F && f.tone.most_deviation <= 255.0F,
-          "{}: a tone of means {} to {}, deviation up to {}, expected grey values of 0 to 255", source,
-          f.tone.least_mean, f.tone.most_mean, f.tone.most_deviation);
+  require(f.tone.is_sound(), "{}: a tone of means {} to {}, deviation up to {}, expected grey values of 0 to 255",
+          source, f.tone.least_mean, f.tone.most_mean, f.tone.most_deviation);
   require(
       forest.patch.radius >= 1 && forest.patch.radius <= 127 && forest.patch.unit > 0.0F && forest.patch.unit <= 1.0F,
       "{}: patch of {} steps of {} m, expected 1 to 127 steps below 1 m", source, forest.patch.radius,

@@ -49,9 +49,7 @@ ToneRange parse_tone(const nlohmann::json& json, const std::string& file) {
   tone.least_mean = static_cast<float>(json_number(*found, "least_mean", file));
   tone.most_mean = static_cast<float>(json_number(*found, "most_mean", file));
   tone.most_deviation = static_cast<float>(json_number(*found, "most_deviation", file));
-  require(tone.least_mean >= 0.0F && tone.least_mean <= tone.most_mean && tone.most_mean <= 255.0F &&
-              tone.most_deviation >= 1.0F && tone.most_deviation <= 255.0F,
-          "{}: 'tone' is {}, expected grey values of 0 to 255", file, found->dump());
+  require(tone.is_sound(), "{}: 'tone' is {}, expected grey values of 0 to 255", file, found->dump());
   return tone;
 }
 

@@ -10,6 +10,11 @@ struct ToneRange {
   float least_mean = 0.0F;
   float most_mean = 255.0F;
   float most_deviation = 255.0F;
+  /// Whether these are grey values that a picture can be brought to.
+  bool is_sound() const {
+    return least_mean >= 0.0F && least_mean <= most_mean && most_mean <= 255.0F && most_deviation >= 1.0F &&
+           most_deviation <= 255.0F;
+  }
 };
 
 /// What brings a picture into a range: the same for all coded values of all its channels, value * gain + offset.

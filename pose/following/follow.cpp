@@ -31,12 +31,12 @@ cv::Rect2f expected_box(const RgbdFrame& frame, const ObjectModel& model, const 
   return box;
 }
 
-SeenObject see_expected(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+SeenObject see_expected(const SeenFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                         const PoseSettings& settings) {
   Detection expected;
-  expected.box_px = expected_box(frame, model, T_camera_object);
+  expected.box_px = expected_box(frame.frame, model, T_camera_object);
   expected.centre_camera = T_camera_object.cast<float>() * model.vote_centre;
-  return see_object(frame, expected, model, settings.region, settings.noise);
+  return see_object(frame, expected, model, settings.region);
 }
 
 RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
@@ -81,7 +81,7 @@ void judge_followed(const SeenObject& seen, const ExpectedObject& expected, cons
   judge(evidence, T, settings, followed.pose);
 }
 
-FollowedPose follow_from(const RgbdFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+FollowedPose follow_from(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
                          const Eigen::Isometry3d& start, const PoseSettings& settings) {
   FollowedPose followed;
   ObjectPose& pose = followed.pose;
@@ -109,10 +109,10 @@ FollowedPose follow_from(const RgbdFrame& frame, const ObjectModel& model, const
 }
 
 /// Whether something stands before the object, and what can be seen of it is not seen through.
-bool is_hidden(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+bool is_hidden(const SeenFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                const PoseSettings& settings) {
-  const DepthTolerance tolerance{settings.verification.tolerance_m, settings.noise};
-  const Verification seen = verify_pose(frame, model.mesh, T_camera_object, tolerance);
+  const DepthTolerance tolerance{settings.verification.tolerance_m, frame.noise};
+  const Verification seen = verify_pose(frame.frame, model.mesh, T_camera_object, tolerance);
   const auto rendered = static_cast<float>(seen.rendered);
   const auto hidden = static_cast<float>(seen.occluded);
   return hidden > settings.follow.hidden_share * rendered &&
@@ -121,7 +121,7 @@ bool is_hidden(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Is
 
 }  // namespace
 
-FollowedPose follow_object(const RgbdFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
                            const PoseSettings& settings) {
   FollowedPose best;
   for (std::size_t i = 0; i < expected.starts.size(); ++i) {

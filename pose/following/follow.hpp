@@ -34,7 +34,7 @@ struct FollowedPose {
 /// model costs most: with an outline of an earlier frame, points of the view take its place as long as they suffice.
 /// What is withheld has always been rendered. Where nothing suffices and the object is hidden where it was expected
 /// first, its status is kOccluded.
-FollowedPose follow_object(const RgbdFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
                            const PoseSettings& settings);
 
 }  // namespace houghstream

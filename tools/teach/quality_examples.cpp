@@ -63,12 +63,12 @@ std::vector<std::optional<QualityTerms>> PoseFinder::find_in(const RgbdFrame& fr
 std::vector<std::optional<QualityTerms>> PoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,
                                                               const ObjectPoses& poses) const {
   std::vector<std::optional<QualityTerms>> all;
+  const SeenFrame seen_frame = see_frame(frame, settings_.region, settings_.noise);
   for (const ObjectPose& pose : poses.poses) {
     std::optional<QualityTerms>& terms = all.emplace_back();
     if (!pose.T_camera_object) continue;
     const Detection& detection = detections.detections[pose.detection_index];
-    const SeenObject seen =
-        see_object(frame, detection, models_.at(pose.class_name), settings_.region, settings_.noise);
+    const SeenObject seen = see_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
     terms = quality_terms(gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification),
                           settings_.quality);
     if (pose_quality(*terms, settings_.quality) != pose.quality) {
