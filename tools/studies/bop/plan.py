@@ -125,16 +125,15 @@ class Plan:
         units.add(self.place(one, "default", scene), "", *evaluate, of=known, **facts)
         if one.seed > 1:
             return  # rivals and pictures are of the first
-        files = ("--forest", one.store / "forest")
-        models = ("--models", one.store / "models")
+        store = ("--objects", one.store)
         limit = (
             ("--rivals-every", 1, "--rivals-seconds", self.seconds_a_scene(dataset))
             if self.options.rivals
             else ("--no-rivals",)
         )
-        units.add(self.place(one, "poses", scene), "", "hs-bench-pose", *files, *models, *of_scene, "--min-mass", "0.05",
+        units.add(self.place(one, "poses", scene), "", "hs-bench-pose", *store, *of_scene, "--min-mass", "0.05",
                   *limit, of=known, **facts)  # fmt: skip
-        units.add(self.place(one, "failures", scene) + ".png", "", "hs-failures", *files, *of_scene, of=known, **facts)
+        units.add(self.place(one, "failures", scene) + ".png", "", "hs-failures", *store, *of_scene, of=known, **facts)
 
     def add_linemod(self, units, one):
         """One training for all scenes of a dataset."""

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/image_file.hpp"
+#include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
@@ -14,10 +17,11 @@ namespace {
 using namespace houghstream;
 
 struct FailureOptions {
+  std::string objects;  ///< a store, instead of the forest
   std::string forest;
   std::vector<std::string> scenes;
   std::string out;
-  float operating_score = EvidenceSettings{}.threshold;
+  std::optional<float> operating_score;  ///< default: what hs-detect publishes
   int every = 1;
   int count = 8;
   int columns = 4;
@@ -36,7 +40,7 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
   for (const ObjectClass& known : detector.forest().classes) classes.push_back(known.name);
   constexpr std::size_t kPartsOfTheWay = 6;
   const std::vector<Failure> chosen =
-      choose_failures(frames, classes, DetectionRules{}, options.operating_score,
+      choose_failures(frames, classes, DetectionRules{}, *options.operating_score,
                       static_cast<std::size_t>(options.count), frames.size() / kPartsOfTheWay);
   std::vector<cv::Mat> tiles;
   for (const Failure& failure : chosen) {
@@ -58,20 +62,32 @@ void run(const FailureOptions& options) {
   fmt::print("{} failures in {}\n", tiles.size(), options.out);
 }
 
+/// The store's forest, where one is named, and what hs-detect publishes unless told otherwise.
+FailureOptions with_store(FailureOptions options) {
+  require(options.objects.empty() == !options.forest.empty(), "expected either --objects STORE or --forest FILE");
+  const float published = options.objects.empty() ? EvidenceSettings{}.threshold : kStoreThreshold;
+  if (!options.operating_score) options.operating_score = published;
+  if (options.objects.empty()) return options;
+  if (!options.search.threshold) options.search.threshold = kStoreThreshold;
+  options.forest = store::read_store(options.objects).forest_file().string();
+  return options;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CommandLine app("Shows the gravest failures of a forest in scenes: false detections and missed objects",
                   "hs-failures");
   FailureOptions options;
-  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--objects", options.objects, "object store of hs-teach, instead of --forest");
+  app.add_option("--forest", options.forest, "forest file");
   app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
   app.add_option("--out", options.out, "picture to write, PNG").required();
   app.add_option("--count", options.count, "failures of each scene").range(1, 100).capture_default_str();
   app.add_option("--columns", options.columns, "pictures in a row").range(1, 20).capture_default_str();
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
-  app.add_option("--operating-score", options.operating_score, "score from which a detection counts")
-      .capture_default_str();
+  app.add_option("--operating-score", options.operating_score,
+                 "score from which a detection counts; default: what hs-detect publishes");
   add_search_options(app, options.search);
-  return houghstream::run_tool(app, argc, argv, [&] { run(options); });
+  return houghstream::run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

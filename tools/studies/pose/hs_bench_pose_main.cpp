@@ -11,6 +11,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pose/baseline/register_pcl.hpp"
 #include "tools/common/search_options.hpp"
+#include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/studies/pose/bench_report.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 using namespace houghstream;
 
 struct BenchOptions {
+  std::string objects;  ///< a store, instead of forest and models
   std::string forest;
   std::vector<std::string> scenes;
   std::string models;
@@ -28,20 +30,22 @@ struct BenchOptions {
   double rivals_s = 0.0;
   bool no_rivals = false;
   SearchOptions search;
+  PoseSettings pose;  ///< what a store knows
 };
 
-BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, bool with_rivals) {
+BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, const BenchOptions& options) {
   BenchedMakers makers;
-  PoseSettings settings;
+  PoseSettings settings = options.pose;
   makers.each_frame[kOurs] = estimator_maker(meshes, settings);
   settings.registration.engine = register_pcl;
   makers.each_frame[kPcl] = estimator_maker(meshes, settings);
-  settings = PoseSettings{};
+  settings = options.pose;
   settings.quality.least = 0.0F;
+  for (auto& [name, learnt] : settings.class_quality) learnt.least = 0.0F;
   makers.each_frame[kUnchecked] = estimator_maker(meshes, settings);
-  if (!with_rivals) return makers;
-  makers.rivals[kPrerejective] = rival_maker(make_prerejective_rival(meshes, PoseSettings{}, PrerejectiveSettings{}));
-  makers.rivals[kPpf] = rival_maker(make_ppf_rival(meshes, PoseSettings{}, PpfSettings{}));
+  if (options.no_rivals) return makers;
+  makers.rivals[kPrerejective] = rival_maker(make_prerejective_rival(meshes, options.pose, PrerejectiveSettings{}));
+  makers.rivals[kPpf] = rival_maker(make_ppf_rival(meshes, options.pose, PpfSettings{}));
   return makers;
 }
 
@@ -88,7 +92,7 @@ void run(const BenchOptions& options) {
       models_folder = wanted;
       models = load_scene_models(wanted, classes);
       meshes.insert(models.meshes.begin(), models.meshes.end());
-      makers = make_makers(models.meshes, !options.no_rivals);
+      makers = make_makers(models.meshes, options);
     }
     const DetectedScene detected = detect_scene(name, scene, detector, options.every);
     bench_scene(detected, models, makers, {options.rivals_every, options.rivals_s, settings.threads}, bench);
@@ -98,6 +102,19 @@ void run(const BenchOptions& options) {
   fmt::print("{}", bench_summary(bench));
 }
 
+/// The store's forest, models, and what its objects' poses are judged by, where one is named.
+BenchOptions with_store(BenchOptions options) {
+  require(options.objects.empty() == !options.forest.empty() && (options.objects.empty() || options.models.empty()),
+          "expected either --objects STORE or --forest FILE and --models FOLDER");
+  if (options.objects.empty()) return options;
+  const store::ObjectStore objects = store::read_store(options.objects);
+  options.forest = objects.forest_file().string();
+  options.models = objects.models_folder().string();
+  options.pose.quality.least = kStoreQuality;
+  take_from_store(objects, options.pose);
+  return options;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -105,7 +122,8 @@ int main(int argc, char** argv) {
                   "hs-bench-pose");
   BenchOptions options;
   options.search.threshold = PoseSettings{}.min_score;
-  app.add_option("--forest", options.forest, "forest file").required();
+  app.add_option("--objects", options.objects, "object store of hs-teach, instead of --forest and --models");
+  app.add_option("--forest", options.forest, "forest file");
   app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
   app.add_option("--models", options.models, "models/ of a BOP dataset; default: that of each scene");
   app.add_option("--out", options.out, "folder for results.json, poses.csv and worst_N.png").required();
@@ -122,5 +140,5 @@ int main(int argc, char** argv) {
   app.add_option("--min-mass", options.search.min_mass_share,
                  "vote mass, over a whole object's, from which a maximum counts; default: the profile's");
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
-  return run_tool(app, argc, argv, [&] { run(options); });
+  return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }
