@@ -175,6 +175,8 @@ class Teach(unittest.TestCase):
         found = teach.found_in(frames)
         self.assertEqual([utime for utime, _ in found], [2, 3, 4])
         self.assertEqual([utime for utime, _ in teach.posed_in(found)], [4])
+        shares = teach.shares(frames, found + found[:1], teach.posed_in(found), 2)
+        self.assertEqual(shares, {"frames": 2, "found": 1.0, "posed": 0.5})
 
     def test_what_was_lost_is_told_apart_around_the_change_of_the_store(self):
         class Told:
