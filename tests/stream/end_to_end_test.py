@@ -9,13 +9,16 @@ import subprocess
 import sys
 
 from folders import read_arguments
+from heard import detections_by_utime, poses_of
+from houghstream import object_pose_t
+from houghstream.event_log import read_log
+from studies.encoded import utime_of
 from studies.stream import Process, enter_private_network
-from studies.lcm_log import detections_by_utime, poses_of, read_log, utime_of
 from live_stream import check_live_stream
 
 FRAMES = 24
 REPLAYED = 120  # the scene again and again
-VALID = 1  # object_pose_t
+VALID = object_pose_t.VALID
 CLASSES = {1: "bowl", 4: "soda_can"}
 THRESHOLD = 0.5  # one room and six trees cannot teach scores what they are worth
 

@@ -8,11 +8,13 @@ import sys
 import time
 
 from folders import read_arguments
+from houghstream import images_t, status_t
+from houghstream.event_log import read_log
+from studies.encoded import utime_of
 from studies.stream import Process, enter_private_network
-from studies.lcm_log import images_of, read_log, status_of, utime_of
 
 LIVE_FRAMES = 90
-LEFT, DEPTH_MM_ZIPPED = 0, 6
+LEFT, DEPTH_MM_ZIPPED = images_t.LEFT, images_t.DEPTH_MM_ZIPPED
 LATE_COLOUR = "can_sync no\ncolour_phase_ms 8\ncolour_late_ms 60\n"
 
 
@@ -85,7 +87,8 @@ def check_unplugging(tools, camera, folder):
         for process in processes:
             process.kill()
     check_gap(folder, replugged)
-    errors = [status.last_error for status in (status_of(data) for _, _, data in read_log(recorded)) if status.process == "hs-capture"]
+    statuses = [status_t.decode(data) for _, _, data in read_log(recorded)]
+    errors = [status.last_error for status in statuses if status.process == "hs-capture"]
     assert errors[0] == "" and any("the camera is gone" in e for e in errors) and any("was away for" in e for e in errors), errors
 
 
@@ -101,6 +104,12 @@ def check_gap(folder, replugged):
     assert len(rows) > 100, "two and a half seconds twice"
     late = [arrival - int(row["utime"]) * 1e-6 for arrival, row in zip(arrivals, rows)]
     assert min(late) > -0.01 and sorted(late)[len(late) // 2] < 0.3, "utimes are capture times on this machine's clock"
+
+
+def images_of(data):
+    """{image type: bytes} of an encoded images_t."""
+    message = images_t.decode(data)
+    return {kind: image.data for kind, image in zip(message.image_types, message.images)}
 
 
 def places_of(sent, replayed):

@@ -6,8 +6,9 @@ import os
 import subprocess
 import time
 
+from heard import detections_by_utime
+from houghstream.event_log import read_log
 from studies.stream import Process
-from studies.lcm_log import detections_by_utime, read_log
 
 
 def camera_option(scene):

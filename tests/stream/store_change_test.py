@@ -15,7 +15,8 @@ import time
 from PIL import Image
 
 from folders import read_arguments
-from studies.lcm_log import detections_of, known_objects_of, read_log, status_of
+from houghstream import detections_t, known_objects_t, status_t
+from houghstream.event_log import read_log
 from studies.stream import Process, enter_private_network
 from end_to_end_test import CLASSES, THRESHOLD
 
@@ -71,9 +72,9 @@ class Log:
         self.logger = subprocess.Popen(["lcm-logger", "-f", "-q", "--flush-interval=1", "-c", "HOUGHSTREAM_.*", str(file)],
                                        stderr=subprocess.DEVNULL)
 
-    def read(self, channel, decode):
+    def read(self, channel, message):
         try:
-            return [decode(data) for _, name, data in read_log(self.file) if name == channel]
+            return [message.decode(data) for _, name, data in read_log(self.file) if name == channel]
         except (FileNotFoundError, ValueError):
             return []  # not there yet, or its end is just being written
 
@@ -84,15 +85,18 @@ class Log:
             time.sleep(0.2)
 
     def known(self, process):
-        said = [k for k in self.read("HOUGHSTREAM_KNOWN_OBJECTS", known_objects_of) if k.process == process]
+        said = [k for k in self.read("HOUGHSTREAM_KNOWN_OBJECTS", known_objects_t) if k.process == process]
         return said[-1] if said else None
 
     def wait_for_known(self, name):
         for process in ("hs-detect", "hs-pose"):
-            self.wait(lambda: (known := self.known(process)) and name in known.objects, f"{process} does not know {name}")
+            self.wait(lambda: (known := self.known(process)) and name in known.object_names, f"{process} does not know {name}")
 
     def wait_for_found(self, name):
-        found = lambda: any(d.name == name for some in self.read("HOUGHSTREAM_DETECTIONS", detections_of)[-10:] for d in some)
+        def found():
+            last = self.read("HOUGHSTREAM_DETECTIONS", detections_t)[-10:]
+            return any(detection.class_name == name for some in last for detection in some.detections)
+
         self.wait(found, f"{name} is not found")
 
 
@@ -111,27 +115,29 @@ def check_stream(tools, made, folder, store):
         log.wait_for_known("dish")
         log.wait_for_found("dish")
         second = log.known("hs-detect")
-        assert "bowl" not in second.objects and second.objects["soda_can"] == first.objects["soda_can"] < second.objects["dish"]
+        since = dict(zip(second.object_names, second.object_since_utimes))
+        assert "bowl" not in since and since["soda_can"] < since["dish"], since
+        assert since["soda_can"] == dict(zip(first.object_names, first.object_since_utimes))["soda_can"], since
         check_torn(log, store)
         assert hs_teach(tools, "remove", store, "soda_can").returncode == 0
-        log.wait(lambda: set(log.known("hs-detect").objects) == {"dish"}, "soda_can is still known")
+        log.wait(lambda: log.known("hs-detect").object_names == ["dish"], "soda_can is still known")
         for process in reversed(processes):
             process.stop()
-        log.wait(lambda: last_of(log, "hs-detect").received == last_of(log, "hs-capture").processed, "the last word is missing", 10)
+        log.wait(lambda: last_of(log, "hs-detect").frames_received == last_of(log, "hs-capture").frames_processed, "the last word is missing", 10)
     finally:
         for process in processes:
             process.kill()
         log.logger.terminate()
         log.logger.wait()
     last = last_of(log, "hs-detect")
-    print(f"{last.received} frames received, {last.lost} lost, {last.skipped} passed over; the store changed four times")
-    assert last.lost == 0 and last.received == last.processed + last.skipped, last
+    print(f"{last.frames_received} frames received, {last.frames_lost} lost, {last.frames_skipped} passed over; the store changed four times")
+    assert last.frames_lost == 0 and last.frames_received == last.frames_processed + last.frames_skipped
     words = processes[0].log.read_text()
     assert words.count("what was known stays") == 1, words
 
 
 def last_of(log, process):
-    return [status for status in log.read("HOUGHSTREAM_STATUS", status_of) if status.process == process][-1]
+    return [status for status in log.read("HOUGHSTREAM_STATUS", status_t) if status.process == process][-1]
 
 
 def check_torn(log, store):
@@ -139,9 +145,9 @@ def check_torn(log, store):
     whole = (store / "forest").read_bytes()
     (store / "forest").write_bytes(whole[: len(whole) // 2])
     log.wait(lambda: log.known("hs-detect").problem, "nobody says that the forest is torn")
-    assert str(store / "forest") in log.known("hs-detect").problem, log.known("hs-detect")
+    assert str(store / "forest") in log.known("hs-detect").problem, log.known("hs-detect").problem
     assert log.known("hs-detect").problem == last_of(log, "hs-detect").last_error
-    assert "dish" in log.known("hs-detect").objects
+    assert "dish" in log.known("hs-detect").object_names
     log.wait_for_found("dish")
     (store / "forest").write_bytes(whole)
     log.wait(lambda: not log.known("hs-detect").problem, "the forest is whole again, expected that it is taken")

@@ -13,7 +13,9 @@ import sys
 import zlib
 
 from folders import read_arguments
-from studies.lcm_log import HEADER, SYNC, Wire, detections_of, poses_of, read_log
+from heard import detections_of, poses_of
+from houghstream.event_log import read_log, write_event
+from studies.encoded import frame_of, utime_of, with_utime
 from studies.stream import Process, enter_private_network
 from end_to_end_test import THRESHOLD, VALID
 
@@ -30,9 +32,8 @@ def run(*command):
 def write_log(path, events):
     """Events (timestamp, channel, data) as an LCM log."""
     with open(path, "wb") as log:
-        for number, (timestamp, channel, data) in enumerate(events):
-            name = channel.encode()
-            log.write(HEADER.pack(SYNC, number, timestamp, len(name), len(data)) + name + data)
+        for number, event in enumerate(events):
+            write_event(log, number, event)
 
 
 def make_twin_forest(source, target):
@@ -63,19 +64,14 @@ def two_camera_frames(log):
     frames = [data for _, _, data in read_log(log)]
     for i, data in enumerate(frames):
         later = frames[(i + LATER) % len(frames)]
-        seen = {"LEFT": data, "RIGHT": later[:8] + data[8:16] + later[16:]}  # the time stands behind the fingerprint
+        seen = {"LEFT": data, "RIGHT": with_utime(later, utime_of(data))}
         for camera in CAMERAS:
             yield i * 1_000_000 // RATE, camera, seen[camera]
 
 
 def results_of(events, channel, read):
     """[((camera, utime), result)] of the results among the events."""
-    found = []
-    for data in (data for _, name, data in events if name == channel):
-        wire = Wire(data)
-        utime = wire.read("q")
-        found.append(((wire.text(), utime), read(data)))
-    return found
+    return [(frame_of(data), read(data)) for _, name, data in events if name == channel]
 
 
 def original(result):
@@ -85,7 +81,7 @@ def original(result):
 
 
 def named_detections(data):
-    return [(found.name, found.class_id, found.score, found.box, found.centre) for found in detections_of(data)]
+    return [(found.name, found.class_id, found.score, found.box) for found in detections_of(data)]
 
 
 def is_twin(result):
@@ -113,18 +109,13 @@ def add_second_detector(events, more):
     for event in events:
         yield event
         if event[1] == "HOUGHSTREAM_DETECTIONS":
-            wire = Wire(event[2])
-            utime = wire.read("q")
-            yield event[0], event[1], second[wire.text(), utime]
+            yield event[0], event[1], second[frame_of(event[2])]
 
 
 def of_camera(events, camera):
-    def source(name, data):
-        wire = Wire(data)
-        wire.read("q")
-        return name if name in CAMERAS else wire.text()
-
-    return [(time, name, data) for time, name, data in events if source(name, data) == camera]
+    return [
+        (time, name, data) for time, name, data in events if (name if name in CAMERAS else frame_of(data)[0]) == camera
+    ]
 
 
 def near(a, b):

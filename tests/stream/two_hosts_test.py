@@ -10,10 +10,12 @@ import sys
 import time
 
 from folders import read_arguments
+from heard import detections_by_utime, detections_of
+from houghstream.event_log import read_log
+from studies.encoded import frame_of
 from studies.network import URL, Network
 from studies.stream import Process
 from end_to_end_test import THRESHOLD
-from studies.lcm_log import Wire, detections_by_utime, detections_of, read_log, utime_of
 
 CHANNELS = {"A": "CAMERA_A", "B": "CAMERA_B"}
 RATE = 4
@@ -57,9 +59,8 @@ def heard_of(recorded):
     heard = {channel: {} for channel in CHANNELS.values()}
     for _, channel, data in read_log(recorded):
         if channel == "HOUGHSTREAM_DETECTIONS":
-            wire = Wire(data)
-            wire.read("q")
-            heard[wire.text()][utime_of(data)] = detections_of(data)
+            camera, utime = frame_of(data)
+            heard[camera][utime] = detections_of(data)
     return heard
 
 

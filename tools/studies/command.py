@@ -63,17 +63,29 @@ def prepare(options, targets):
     """Installs what is missing and builds the targets. Returns the folder of the programs."""
     commit_name()  # figures are of what is built, whatever is checked out meanwhile
     if options.bin:
-        return os.path.realpath(options.bin)
+        return know_messages(os.path.realpath(options.bin))
     if (
         "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ
     ):  # else this has been done before the command started itself again
         if subprocess.run(["tools/setup"], cwd=REPOSITORY, check=False).returncode != 0:
             die("tools/setup failed")
         step("build")
-        build = ["bash", "-c", 'source tools/common.sh && configure_and_build build Release -- "$@"', "build", *targets]
+        build = ["bash", "-c", 'source tools/common.sh && configure_and_build build Release -- "$@"', "build", "houghstream_python", *targets]
         if subprocess.run(build, cwd=REPOSITORY, check=False).returncode != 0:
             die("the build failed")
-    return str(REPOSITORY / "build" / "bin")
+    return know_messages(str(REPOSITORY / "build" / "bin"))
+
+
+def know_messages(programs):
+    """The Python package houghstream that was built or installed with the programs is the one that is imported, by what is
+    started from here too. Returns `programs`."""
+    for package in ("../python", "../lib/python3/dist-packages"):
+        folder = os.path.realpath(os.path.join(programs, package))
+        if os.path.isfile(os.path.join(folder, "houghstream", "__init__.py")):
+            sys.path.insert(0, folder)
+            os.environ["PYTHONPATH"] = ":".join([folder, *filter(None, [os.environ.get("PYTHONPATH")])])
+            break
+    return programs
 
 
 def call(*words, into=None):

@@ -1,7 +1,7 @@
 """How fast hs-pose --follow is: frame to pose at several rates, what is lost, and what it costs. tools/bench tracks asks
 measure(); by itself:
 
-    cd tools && python3 -m studies.following --scene SCENE --forest FOREST --models MODELS --out OUT
+    cd tools && PYTHONPATH=../build/python python3 -m studies.following --scene SCENE --forest FOREST --models MODELS --out OUT
 
 SCENE is a folder in BOP format whose frames follow one another closely (hs-render scene NAME --frames 300)."""
 
@@ -9,10 +9,10 @@ import argparse
 import json
 import pathlib
 import statistics
-import struct
 
+from houghstream.event_log import read_log, write_event
 from studies.command import call, step
-from studies.lcm_log import HEADER, SYNC, read_log
+from studies.encoded import with_utime
 from studies.measured import about, read_json, write_json
 from studies.stream import Stream, enter_private_network
 
@@ -46,10 +46,8 @@ def restamp(source, target, rate):
     """Copies a log of images_t whose utimes become those of a camera of that rate; a dataset's are of 30 Hz."""
     with open(target, "wb") as out:
         for number, (timestamp, channel, data) in enumerate(read_log(source)):
-            utime = struct.pack(">q", FIRST_UTIME + round(number * 1e6 / rate))
-            data = data[:8] + utime + data[16:]  # behind the fingerprint
-            name = channel.encode()
-            out.write(HEADER.pack(SYNC, number, timestamp, len(name), len(data)) + name + data)
+            utime = FIRST_UTIME + round(number * 1e6 / rate)
+            write_event(out, number, (timestamp, channel, with_utime(data, utime)))
 
 
 def make_log(programs, scene, rate, seconds, log):

@@ -1,12 +1,12 @@
-"""Tests of the demo's report: accounting for frames, latencies, its page. Usage: PYTHONPATH=tools demo_test.py"""
+"""Tests of the demo's report: accounting for frames, latencies, its page. Usage: PYTHONPATH=tools:build/python demo_test.py"""
 
 import math
 import pathlib
 import tempfile
 import unittest
 
+from houghstream import status_t, teaching_t
 from studies.demo import live, report, teach
-from studies.lcm_log import Status, Teaching
 from studies.measured import write_json
 
 
@@ -179,10 +179,16 @@ class Teach(unittest.TestCase):
         self.assertEqual(shares, {"frames": 2, "found": 1.0, "posed": 0.5})
 
     def test_what_was_lost_is_told_apart_around_the_change_of_the_store(self):
+        def status(received, skipped, lost):
+            message = status_t()
+            message.process, message.frames_received = "hs-detect", received
+            message.frames_skipped, message.frames_lost = skipped, lost
+            return message
+
         class Told:
             known_us = 10_000_000
             of_process = staticmethod(lambda _: [
-                (1_000_000 * second, Status(0, "hs-detect", 30 * second, 0, second // 5, 1 if second > 11 else 0, ""))
+                (1_000_000 * second, status(30 * second, second // 5, 1 if second > 11 else 0))
                 for second in range(1, 20)
             ])  # fmt: skip
 
@@ -192,10 +198,12 @@ class Teach(unittest.TestCase):
 
     def test_a_state_that_was_never_told_ends_the_demo(self):
         story = teach.Story.__new__(teach.Story)
-        story.teaching = [(5, Teaching(1, "mug", "tracking", "", 0.5, 3, 1, (), ()))]
-        self.assertEqual(story.begin("tracking", "lost")[0], 5)
-        with self.assertRaises(SystemExit):
-            story.begin("fusing")
+        said = teaching_t()
+        said.state = teaching_t.TRACKING
+        story.teaching = [(5, said)]
+        self.assertEqual(story.begin(teaching_t.TRACKING)[0], 5)
+        with self.assertRaisesRegex(SystemExit, "no word of FUSING"):
+            story.begin(teaching_t.FUSING)
 
 
 if __name__ == "__main__":

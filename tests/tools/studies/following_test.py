@@ -1,4 +1,4 @@
-"""Tests of what is measured of hs-pose --follow. Usage: PYTHONPATH=tools following_test.py"""
+"""Tests of what is measured of hs-pose --follow. Usage: PYTHONPATH=tools:build/python following_test.py"""
 
 import json
 import pathlib
@@ -6,8 +6,9 @@ import struct
 import tempfile
 import unittest
 
+from houghstream.event_log import read_log, write_event
 from studies import following
-from studies.lcm_log import HEADER, SYNC, read_log, utime_of
+from studies.encoded import utime_of
 
 
 def observed(p50, p99, received, skipped):
@@ -45,7 +46,7 @@ class Figures(unittest.TestCase):
         with open(source, "wb") as log:
             for i in range(3):
                 data = struct.pack(">qq", 42, 33333 * i) + b"pixels"
-                log.write(HEADER.pack(SYNC, i, 16667 * i, 5, len(data)) + b"FRAME" + data)
+                write_event(log, i, (16667 * i, "FRAME", data))
         following.restamp(source, target, 60)
         events = list(read_log(target))
         self.assertEqual([utime_of(data) - following.FIRST_UTIME for _, _, data in events], [0, 16667, 33333])

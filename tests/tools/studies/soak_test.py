@@ -1,11 +1,11 @@
-"""Tests of what tools/soak sends and counts. Usage: PYTHONPATH=tools soak_test.py"""
+"""Tests of what tools/soak sends and counts. Usage: PYTHONPATH=tools:build/python soak_test.py"""
 
 import pathlib
 import struct
 import tempfile
 import unittest
 
-from studies.lcm_log import utime_of
+from studies.encoded import utime_of
 from studies.soak import __main__ as soak
 from studies.soak import faults, frames, relay, wire
 from studies.stream import ProcessFailed

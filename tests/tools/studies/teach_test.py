@@ -1,4 +1,4 @@
-"""Tests of tools/bench teach with stand-ins for the programs that it runs. Usage: PYTHONPATH=tools teach_test.py"""
+"""Tests of tools/bench teach with stand-ins for the programs that it runs. Usage: PYTHONPATH=tools:build/python teach_test.py"""
 
 import json
 import os
@@ -9,9 +9,11 @@ import sys
 import tempfile
 import unittest
 
-from studies.lcm_log import HEADER, SYNC, read_log, utime_of
+from houghstream import detection_t, detections_t, teaching_t
+from houghstream.event_log import read_log, write_event
+from studies.encoded import utime_of
 from studies.teach.joined_log import FIRST_UTIME, frames_of, write_joined
-from studies.teach.live_teaching import events, state_of, times_of
+from studies.teach.live_teaching import events, times_of
 from studies.teach.report import faults
 from studies.teach.taught_truth import in_taught_frame
 from teach_fakes import MOVED, install
@@ -123,9 +125,8 @@ class Parts(unittest.TestCase):
     def write_log(self, events):
         file = self.folder / "log"
         with open(file, "wb") as log:
-            for number, (stamp, channel, data) in enumerate(events):
-                name = channel.encode()
-                log.write(HEADER.pack(SYNC, number, stamp, len(name), len(data)) + name + data)
+            for number, event in enumerate(events):
+                write_event(log, number, event)
         return file
 
     def test_a_joined_log_repeats_frames_but_no_utime(self):
@@ -142,27 +143,29 @@ class Parts(unittest.TestCase):
         self.assertEqual([stamp for stamp, _, _ in found], utimes)
 
     def test_times_of_a_teaching(self):
-        def text(words):
-            return struct.pack(">i", len(words) + 1) + words.encode() + b"\0"
-
         def teaching(state, name="mug"):
-            return bytes(8) + struct.pack(">q", 5) + text("OPENNI_FRAME") + text(name) + bytes([state]) + text("words")
+            message = teaching_t()
+            message.name, message.state = name, state
+            return message.encode()
 
         def detections(name):
-            head = bytes(8) + struct.pack(">q", 5) + text("OPENNI_FRAME") + struct.pack(">i", 1)
-            return head + struct.pack(">i", 1) + text(name) + struct.pack(">8fii", *[0.0] * 8, 0, 0)[: 4 * 8 + 12]
+            message = detections_t()
+            message.n_detections, message.detections = 1, [detection_t()]
+            message.detections[0].class_name = name
+            return message.encode()
 
-        self.assertEqual(state_of(teaching(4)), ("mug", 4, "words"))
         log = self.write_log([
-            (1_000_000, "HOUGHSTREAM_TEACHING", teaching(2)),
-            (2_000_000, "HOUGHSTREAM_TEACHING", teaching(4, "cup")),
-            (3_000_000, "HOUGHSTREAM_TEACHING", teaching(4)),
-            (5_000_000, "HOUGHSTREAM_TEACHING", teaching(6)),
+            (1_000_000, "HOUGHSTREAM_TEACHING", teaching(teaching_t.TRACKING)),
+            (2_000_000, "HOUGHSTREAM_TEACHING", teaching(teaching_t.FUSING, "cup")),
+            (3_000_000, "HOUGHSTREAM_TEACHING", teaching(teaching_t.FUSING)),
+            (5_000_000, "HOUGHSTREAM_TEACHING", teaching(teaching_t.DONE)),
+            (6_000_000, "HOUGHSTREAM_DETECTIONS", detections("cup")),
+            (7_000_000, "HOUGHSTREAM_DETECTIONS", detections("mug")),
         ])  # fmt: skip
         with open(log, "ab") as more:
             more.write(b"half")  # as it is while lcm-logger writes
         times = times_of(events(log), "mug")
-        self.assertEqual(times, {"take_over": 3.0, "done": 5.0, "failed": None, "found": None})
+        self.assertEqual(times, {"take_over": 3.0, "done": 5.0, "failed": None, "found": 7.0})
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import contextlib
 import io
 import unittest
 
+from houghstream import tracked_object_t
 from studies.tracks import hosts
 from studies.tracks.__main__ import SEQUENCES, parse
 from studies.tracks.plan import Plan
@@ -23,13 +24,13 @@ class Heard:
         self.poses = [(when + 0.05, number, {"mug"}) for number, when in self.frames.items()]
         self.poses += [(when + 0.1, number, {"can"}) for number, when in self.frames.items() if number % 2 == 0]
         self.poses += [(when + 0.01, number, set()) for number, when in self.frames.items()]  # a host without the model
-        self.worlds = [(when + 0.06, number, {"mug": (hosts.VISIBLE, 1.0), "can": self.can(number)})
+        self.worlds = [(when + 0.06, number, {"mug": (tracked_object_t.VISIBLE, 1.0), "can": self.can(number)})
                        for number, when in self.frames.items()]  # fmt: skip
 
     @staticmethod
     def can(number):
         """State and probability after a frame."""
-        return (hosts.VISIBLE, 1.0) if number < 4 else (hosts.UNRECOGNISED, 0.5) if number < 8 else (hosts.GONE, 0.1)
+        return (tracked_object_t.VISIBLE, 1.0) if number < 4 else (tracked_object_t.UNRECOGNISED, 0.5) if number < 8 else (tracked_object_t.GONE, 0.1)
 
 
 class HostsTest(unittest.TestCase):

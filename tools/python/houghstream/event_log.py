@@ -1,4 +1,4 @@
-"""Reads LCM event logs, with or without the lcm module."""
+"""Reads and writes LCM event logs, with or without the lcm module."""
 
 import struct
 from typing import NamedTuple
@@ -30,3 +30,10 @@ def read_log(path):
             if len(channel) < channel_size or len(data) < data_size:
                 raise DamagedLog(f"{path}: cut within event {number}")
             yield Event(timestamp, channel.decode(), data)
+
+
+def write_event(log, number, event):
+    """Appends (timestamp, channel, data) to an open binary file. Events are numbered from 0 in their order."""
+    timestamp, channel, data = event
+    name = channel.encode()
+    log.write(HEADER.pack(SYNC, number, timestamp, len(name), len(data)) + name + data)

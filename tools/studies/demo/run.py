@@ -5,9 +5,9 @@ import shutil
 import threading
 import time
 
+from houghstream.event_log import read_log
 from studies.command import RECORDED_CAMERA, call, die, recorded_views, step
 from studies.demo import live, report, teach
-from studies.lcm_log import count_events
 from studies.measured import threads, write_json
 from studies.stream import Stream, virtual_camera_of
 from studies.work import Store, Units, make
@@ -54,7 +54,7 @@ class Demo:
     def replay(self, name, log, scene, models=None):
         """The log through the stream, and what came out beside the truth of the scene. Returns how many frames were sent."""
         file = self.store.path(log)
-        sent = count_events(file, "OPENNI_FRAME")
+        sent = sum(event.channel == "OPENNI_FRAME" for event in read_log(file))
         step(f"{name}: {sent} frames through the stream")
         self.stream(name, sent, models).play("lcm-logplayer", file)
         step(f"{name}: evaluation")

@@ -7,9 +7,10 @@ import shutil
 import statistics
 import time
 
+from houghstream import known_objects_t, status_t, teaching_t
+from houghstream.event_log import read_log
 from studies.command import call, die, step
 from studies.demo.live import HALF_PERIOD_US
-from studies.lcm_log import known_objects_of, read_log, status_of, teaching_of
 from studies.measured import about, read_json, threads, write_json
 from studies.report.page import embedded, render, show
 from studies.stream import Processes, virtual_camera_of
@@ -161,20 +162,21 @@ class Story:
         self.known_us, self.practised_us = None, None  # since when hs-detect knows it, and has its last forest of it
         for arrival, channel, data in read_log(log):
             if channel == "HOUGHSTREAM_TEACHING":
-                self.teaching.append((arrival, teaching_of(data)))
+                self.teaching.append((arrival, teaching_t.decode(data)))
             elif channel == "HOUGHSTREAM_STATUS":
-                self.statuses.append((arrival, status_of(data)))
+                self.statuses.append((arrival, status_t.decode(data)))
             elif channel == "HOUGHSTREAM_KNOWN_OBJECTS":
-                known = known_objects_of(data)
-                if known.process == "hs-detect" and NAME in known.objects:
-                    self.known_us = self.known_us or known.objects[NAME]
-                    self.practised_us = known.since
+                known = known_objects_t.decode(data)
+                if known.process == "hs-detect" and NAME in known.object_names:
+                    self.known_us = self.known_us or known.since_utime
+                    self.practised_us = known.since_utime
 
-    def begin(self, *states):
-        """When a state began: (arrival, what was said)."""
-        found = first(self.teaching, lambda said: said[1].state in states)
+    def begin(self, state):
+        """When a state of teaching_t began: (arrival, what was said)."""
+        found = first(self.teaching, lambda said: said[1].state == state)
         if found is None:
-            die(f"no word of {' or '.join(states)} on the bus, expected that of an object that is taught")
+            name = next(name for name, value in vars(teaching_t).items() if name.isupper() and value == state)
+            die(f"no word of {name} on the bus, expected that of an object that is taught")
         return found
 
     def last(self, state):
@@ -191,8 +193,9 @@ def stream_figures(story):
     before = [status for arrival, status in statuses if arrival < story.known_us - AROUND_US] or [statuses[0][1]]
     after = first(statuses, lambda said: said[0] > story.known_us + AROUND_US) or statuses[-1]
     return {
-        "frames": last.received, "lost": last.lost, "skipped": last.skipped,
-        "lost_at_change": after[1].lost - before[-1].lost, "skipped_at_change": after[1].skipped - before[-1].skipped,
+        "frames": last.frames_received, "lost": last.frames_lost, "skipped": last.frames_skipped,
+        "lost_at_change": after[1].frames_lost - before[-1].frames_lost,
+        "skipped_at_change": after[1].frames_skipped - before[-1].frames_skipped,
     }  # fmt: skip
 
 
@@ -234,7 +237,7 @@ def summarise(out, scene, story):
     if story.known_us is None or not found or not posed:
         die(f"{NAME}: taught, but {len(found)} times found and {len(posed)} times posed in the stream, expected more")
     take, fusing, training, done = (
-        story.begin(*states)[0] for states in (("tracking",), ("fusing",), ("training",), ("done",))
+        story.begin(state)[0] for state in ((teaching_t.TRACKING, teaching_t.FUSING, teaching_t.TRAINING, teaching_t.DONE))
     )
     seconds = {"take": fusing - take, "fusing": training - fusing, "training": done - training,
                "found": found[0][0] - fusing, "posed": posed[0][0] - fusing}  # fmt: skip
@@ -262,9 +265,9 @@ def steps(out, story, found, posed):
     pictures = drawn(out)
     found = [one for one in found if one[0] in pictures] or found
     posed = [one for one in posed if one[0] in pictures] or posed
-    take, fused = story.begin("tracking")[1], story.begin("fusing")[1]
+    take, fused = story.begin(teaching_t.TRACKING)[1], story.begin(teaching_t.FUSING)[1]
     half = take.utime + (fused.utime - take.utime) // 2
-    training = story.begin("training")[0] // 2 + story.last("training")[0] // 2
+    training = (story.begin(teaching_t.TRAINING)[0] + story.last(teaching_t.TRAINING)[0]) // 2
     surest = max(posed, key=lambda one: one[1]["pose"]["quality"])
     views = [
         ("Nobody has seen the object: nothing is found", min(pictures)),

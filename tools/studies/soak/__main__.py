@@ -6,16 +6,17 @@ import pathlib
 import subprocess
 import sys
 
-from studies.command import Options, die, positive, step
+from studies.command import Options, die, know_messages, positive, step
 from studies.measured import REPOSITORY
-from studies.soak.frame_faults import FrameFaults
 from studies.soak.long_run import long_run
-from studies.soak.store_faults import StoreFaults
-from studies.soak.stream_faults import StreamFaults
 from studies.stream import ProcessFailed, enter_private_network
 
 
 def run_faults(options, out):
+    from studies.soak.frame_faults import FrameFaults  # needs the messages' package
+    from studies.soak.store_faults import StoreFaults
+    from studies.soak.stream_faults import StreamFaults
+
     faults = [fault for kind in (FrameFaults, StreamFaults, StoreFaults) for fault in kind(options, out).all()]
     summary = {}
     for name, fault in faults:
@@ -80,6 +81,7 @@ def read_options():
                    options.data / "stream.lcmlog", options.programs / "hs-stream"):  # fmt: skip
         if not needed.exists():
             die(f"{needed}: missing, expected what tools/demo makes; run it first, or give --data and --bin")
+    know_messages(str(options.programs))
     return options
 
 

@@ -3,7 +3,8 @@
 import struct
 import time
 
-from studies.lcm_log import read_log, utime_of
+from houghstream.event_log import read_log
+from studies.encoded import utime_of, with_utime
 from studies.soak.wire import Sender
 
 FRAME = "OPENNI_FRAME"
@@ -19,10 +20,6 @@ def with_metadata(payload, key, value):
     size = struct.unpack_from(">i", payload, at)[0]
     text = str(value).encode()
     return payload[:at] + struct.pack(">i", len(text)) + text + payload[at + 4 + size :]
-
-
-def with_utime(payload, utime):
-    return payload[:8] + struct.pack(">q", utime) + payload[16:]
 
 
 def with_number(payload, number):

@@ -7,7 +7,7 @@ import struct
 import threading
 import time
 
-from studies.lcm_log import Wire
+from studies.encoded import frame_of, utime_of
 
 GROUP = "239.255.76.67"
 SHORT, LONG = 0x4C433032, 0x4C433033
@@ -98,10 +98,8 @@ class Listener:
             channel = name.decode(errors="replace")
             if channel not in self.heard or len(payload) < 16:
                 continue
-            wire = Wire(payload)
-            utime = wire.read("q")
-            source = wire.text() if channel in self.RESULTS else channel
-            self.heard[channel].append(Heard(time.monotonic(), address, utime, source))
+            source = frame_of(payload)[0] if channel in self.RESULTS else channel
+            self.heard[channel].append(Heard(time.monotonic(), address, utime_of(payload), source))
 
     def senders(self, channel):
         return {one.sender for one in list(self.heard[channel])}

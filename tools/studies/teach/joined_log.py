@@ -1,16 +1,10 @@
 """LCM logs of frames, one behind the other and again and again, as one recording at an even rate: a frame is known by its
 utime, which must not repeat."""
 
-import struct
-
-from studies.lcm_log import HEADER, SYNC, read_log
+from houghstream.event_log import read_log, write_event
+from studies.encoded import with_utime
 
 FIRST_UTIME = 1_500_000_000_000_000
-
-
-def with_utime(data, utime):
-    """An encoded images_t with another utime; those of its pictures stay."""
-    return data[:8] + struct.pack(">q", utime) + data[16:]
 
 
 def frames_of(log, channel):
@@ -25,9 +19,8 @@ def there_and_back(frames):
 def write_joined(file, take, after, count_after, rate_hz, channel):
     """`take` once, then `count_after` frames of `after` there and back. Lists of encoded frames."""
     rest = there_and_back(after)
-    name = channel.encode()
     with open(file, "wb") as log:
         for number in range(len(take) + count_after):
             data = take[number] if number < len(take) else rest[(number - len(take)) % len(rest)]
             utime = FIRST_UTIME + round(1e6 * number / rate_hz)
-            log.write(HEADER.pack(SYNC, number, utime, len(name), len(data)) + name + with_utime(data, utime))
+            write_event(log, number, (utime, channel, with_utime(data, utime)))

@@ -11,7 +11,8 @@ import shutil
 import sys
 import time
 
-from studies.lcm_log import DamagedLog, Wire, detections_of, read_log
+from houghstream import detections_t, teaching_t
+from houghstream.event_log import DamagedLog, read_log
 from studies.measured import read_csv, read_json, threads
 from studies.stream import ProcessFailed, Processes, Stream
 from studies.teach.joined_log import FIRST_UTIME, frames_of, write_joined
@@ -19,15 +20,6 @@ from studies.teach.joined_log import FIRST_UTIME, frames_of, write_joined
 CHANNEL, RATE_HZ = "OPENNI_FRAME", 30.0
 LONGEST_S = 180.0  # after the take
 AFTERWARDS_S = 20.0  # after hs-teach has ended: all frames of the scene have gone by
-FUSING, DONE, FAILED = 4, 6, 7  # states of teaching_t
-
-
-def state_of(data):
-    """(name, state, message) of an encoded teaching_t."""
-    wire = Wire(data)
-    wire.read("q")
-    wire.text()
-    return wire.text(), wire.read("b"), wire.text()
 
 
 def events(log):
@@ -47,16 +39,21 @@ def first_time(found, wanted):
 
 
 def times_of(found, name):
-    def in_state(*states):
+    def in_state(state):
         def wanted(channel, data):
-            return channel == "HOUGHSTREAM_TEACHING" and state_of(data)[0] == name and state_of(data)[1] in states
+            if channel != "HOUGHSTREAM_TEACHING":
+                return False
+            said = teaching_t.decode(data)
+            return said.name == name and said.state == state
         return wanted
 
     def is_found(channel, data):
-        return channel == "HOUGHSTREAM_DETECTIONS" and any(it.name == name for it in detections_of(data))
+        return channel == "HOUGHSTREAM_DETECTIONS" and any(
+            it.class_name == name for it in detections_t.decode(data).detections
+        )
 
-    return {"take_over": first_time(found, in_state(FUSING)), "done": first_time(found, in_state(DONE)),
-            "failed": first_time(found, in_state(FAILED)), "found": first_time(found, is_found)}  # fmt: skip
+    return {"take_over": first_time(found, in_state(teaching_t.FUSING)), "done": first_time(found, in_state(teaching_t.DONE)),
+            "failed": first_time(found, in_state(teaching_t.FAILED)), "found": first_time(found, is_found)}  # fmt: skip
 
 
 def teach(options, log):

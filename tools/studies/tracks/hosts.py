@@ -2,7 +2,7 @@
 own, feed one hs-track on a third host, where the camera is too. Forty taught objects on two hosts beside twenty on one,
 and what happens when a host's cable is pulled. tools/bench tracks asks measure(); by itself, when all is built:
 
-    cd tools && python3 -m studies.tracks.hosts --out OUT
+    cd tools && PYTHONPATH=../build/python python3 -m studies.tracks.hosts --out OUT
 """
 
 import argparse
@@ -12,9 +12,11 @@ import pathlib
 import shutil
 import time
 
+from houghstream import object_pose_t, object_poses_t, objects_t, tracked_object_t
+from houghstream.event_log import read_log
 from studies.command import step
+from studies.encoded import utime_of
 from studies.following import make_log
-from studies.lcm_log import objects_of, poses_of, read_log, utime_of
 from studies.measured import about, percentiles, read_json, threads, write_json
 from studies.network import URL, Network
 from studies.stream import Processes, UsageWatch, enter_private_network
@@ -27,7 +29,6 @@ RATE = 10  # Hz
 ALONE_S, TOGETHER_S, CUT_S, AGAIN_S = 20, 20, 15, 10
 WARM_UP_S = 3.0
 HOSTS = ("a", "b")
-VALID, VISIBLE, UNRECOGNISED, GONE = 1, 1, 2, 5  # of object_pose_t and tracked_object_t
 HOW = (
     "Forty taught objects, twenty a host, in a table's scene that holds six of each twenty: one rendered picture, shown again "
     "and again. Network namespaces at a bridge, ttl=1; each host's hs-detect and hs-pose have one core of the machine, the "
@@ -160,10 +161,12 @@ class Record:
             if channel == "OPENNI_FRAME":
                 self.frames[utime_of(data)] = timestamp * 1e-6
             elif channel == "HOUGHSTREAM_POSES":
-                valid = {name for name, _, status, _ in poses_of(data) if status == VALID}
+                poses = object_poses_t.decode(data).poses
+                valid = {pose.class_name for pose in poses if pose.status == object_pose_t.VALID}
                 self.poses.append((timestamp * 1e-6, utime_of(data), valid))
             elif channel == "HOUGHSTREAM_OBJECTS":
-                objects = {name: (state, probability) for _, name, state, probability in objects_of(data)}
+                world = objects_t.decode(data).objects
+                objects = {one.class_name: (one.state, one.probability) for one in world}
                 self.worlds.append((timestamp * 1e-6, utime_of(data), objects))
 
 
@@ -188,7 +191,7 @@ def figures(record, begin, end, parts):
     out["world"] = told(record.worlds)
     last = world_at(record, end)
     for host, objects in parts.items():
-        out[host]["objects"] = sum(state == VISIBLE for name, (state, _) in last.items() if name in objects)
+        out[host]["objects"] = sum(state == tracked_object_t.VISIBLE for name, (state, _) in last.items() if name in objects)
     return out
 
 
@@ -212,12 +215,12 @@ def lost_host(record, times, parts, said):
     objects = {name for name in world_at(record, cut) if name in parts["b"]}
     aged = [probability for name, (_, probability) in world_at(record, joined).items() if name in objects]
     back = next((when for when, _, names in record.poses if when >= joined and names & set(parts["b"])), None)
-    visible = seconds_until(record, back, objects, lambda states: VISIBLE in states) if back else None
+    visible = seconds_until(record, back, objects, lambda states: tracked_object_t.VISIBLE in states) if back else None
     return {
         "objects": len(objects),
         "said_s": said,
-        "unseen_s": seconds_until(record, cut, objects, lambda states: VISIBLE not in states),
-        "gone_s": seconds_until(record, cut, objects, lambda states: all(state == GONE for state in states)),
+        "unseen_s": seconds_until(record, cut, objects, lambda states: tracked_object_t.VISIBLE not in states),
+        "gone_s": seconds_until(record, cut, objects, lambda states: all(state == tracked_object_t.GONE for state in states)),
         "probability_in_the_end": round(min(aged), 3) if aged else None,
         "others": figures(record, cut, joined, parts)["a"],
         "back_s": round(back - joined, 2) if back else None,
