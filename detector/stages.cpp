@@ -39,7 +39,7 @@ std::vector<Hypothesis> find_hypotheses(const Search& search, DetectorWorkspace&
 
 std::vector<Candidate> weigh_evidence(const Search& search, const RgbdFrame& frame,
                                       const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace) {
-  const LabFrame in_lab{frame, workspace.images.lab, search.forest.features.image_scale};
+  const LabFrame in_lab{frame, workspace.images.lab, workspace.images.levels.at(0).scale};
   return weigh_evidence({search.forest, in_lab, workspace.patches, search.settings.evidence, search.excluded_views},
                         hypotheses, search.settings.threads, workspace.evidence_memory);
 }

@@ -104,7 +104,8 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   candidate.evidence.certainty =
       hypothesis.weight / static_cast<float>(std::max<std::size_t>(hypothesis.patches.size(), 1));
   candidate.evidence.distance = hypothesis.centre_camera.norm();
-  candidate.evidence.radius_px = static_cast<float>(camera.fx) * object.radius / candidate.evidence.distance;
+  candidate.evidence.radius_px =
+      octaves_scale(camera) * static_cast<float>(camera.fx) * object.radius / candidate.evidence.distance;
   detection.box_px = backprojected_box(input.forest, hypothesis, input.patches, camera, own.box);
   detection.score = vote_score(candidate.evidence.mass_share);
   if (input.forest.scoring == Scoring::kEvidence) {

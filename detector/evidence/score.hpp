@@ -10,7 +10,7 @@ struct Evidence {
   float mass_share = 0.0F;   ///< vote mass over the class's expected_mass
   float certainty = 1.0F;    ///< weight of the votes over the number of patches that cast them
   float distance = 1.0F;     ///< of the centre from the camera, metres
-  float radius_px = 40.0F;   ///< of the object at that distance
+  float radius_px = 40.0F;   ///< of the object at that distance, at about the usual focal length: see octaves_scale
   ViewFit fit;               ///< of the remembered view that fits best
   float other_size = -0.4F;  ///< see gain_of_other_size; about what objects have, where it was not looked for
 };

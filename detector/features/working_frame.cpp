@@ -148,6 +148,20 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
   return levels;
 }
 
+float octaves_scale(const Camera& camera) {
+  constexpr double kUsualFocal = 525.0;
+  constexpr double kMostOctaves = 3.0;
+  const double octaves = std::round(std::log2(kUsualFocal / camera.fx));
+  return static_cast<float>(std::exp2(std::clamp(octaves, -kMostOctaves, 1.0)));
+}
+
+std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera) {
+  std::vector<FeatureLevel> levels = feature_levels(settings);
+  if (settings.handling == ScaleHandling::kScaleSpace) return levels;
+  for (FeatureLevel& level : levels) level.scale *= octaves_scale(camera);
+  return levels;
+}
+
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings) {
   WorkingFrame out;
   HoleMemory holes;
@@ -173,7 +187,7 @@ void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab) {
 }
 
 void make_working_images(const RgbdFrame& frame, const FeatureSettings& settings, int threads, WorkingImages& images) {
-  images.levels = feature_levels(settings);
+  images.levels = feature_levels(settings, frame.camera);
   images.frames.resize(images.levels.size());
   images.holes.resize(images.levels.size());
   const ToneCurve tone = tone_curve(frame.colour, settings.tone);

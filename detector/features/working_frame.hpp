@@ -29,7 +29,15 @@ struct FeatureLevel {
 
   bool holds(float depth) const { return depth > min_distance && depth <= max_distance; }  // false for NaN
 };
+/// Of the cameras whose frames supports in pixels were chosen for.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
+/// Of any camera: a tele lens shows an object in more pixels, of which supports in pixels would cover less. Sizes are
+/// an octave smaller, or larger, for each that its focal length is longer, or shorter. The paper's cameras are all
+/// alike.
+std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera);
+
+/// The power of two that brings a camera's focal length nearest to 525 pixels, for which those supports were chosen.
+float octaves_scale(const Camera& camera);
 
 /// Resizes (paper, Section 5.1.1) and closes small holes. Of each 2x2 block the nearest surface counts, so that
 /// foreground and background are never averaged into a surface that is not there.
@@ -47,7 +55,7 @@ void averaged_lab(const cv::Mat& colour, cv::Mat& blurred, LabLevels& lab);
 
 /// The images that the stages of a search look at, with the memory that is kept for the next frame's.
 struct WorkingImages {
-  std::vector<FeatureLevel> levels;
+  std::vector<FeatureLevel> levels;  ///< for the frame's camera
   std::vector<WorkingFrame> frames;  ///< one for each level
   LabLevels lab;                     ///< averaged_lab of the first level
   std::vector<HoleMemory> holes;     ///< one for each level

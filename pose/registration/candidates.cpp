@@ -74,7 +74,8 @@ PoseCandidate best_place(const SeenObject& seen, const Eigen::Isometry3d& T_came
     for (int i = -settings.steps; i <= settings.steps; ++i) {
       Eigen::Isometry3d T = Eigen::Translation3d(i * settings.step_m, j * settings.step_m, 0.0) * T_camera_object;
       const DepthShift found = best_depth_shift(seen.frame, seen.model, T, along);
-      T.translation() *= 1.0 + found.shift_m / T.translation().z();
+      // Along the ray of where it was detected: its origin may lie anywhere.
+      T.pretranslate(found.shift_m / seen.centre_camera.z() * seen.centre_camera.cast<double>());
       const bool first = i == -settings.steps && j == -settings.steps;
       if (first || found.score.value > best.score) best = {T, found.score.value};
     }

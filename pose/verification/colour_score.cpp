@@ -81,7 +81,7 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   constexpr int kFewest = 30;
   constexpr float kNormalUnits = 100.0F;  // brings normals to the size of the other terms
   if (seen.view.colours.empty()) return std::nullopt;
-  const auto width = static_cast<float>(tolerance.at(seen.T.translation().z()));
+  const auto width = static_cast<float>(tolerance.at(seen.depth));
   const cv::Rect part(cv::Point(), colours.lab.size());
   ColourSums sums;
   std::array<ComparedPoint, 64> points;

@@ -44,7 +44,8 @@ float densest_mean(const std::vector<float>& sorted, float width) {
 
 ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                       int points) {
-  ViewLook result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), {}};
+  const double depth = (T_camera_object * model.centre.cast<double>()).z();
+  ViewLook result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), depth, {}};
   const auto columns = static_cast<float>(frame.depth.cols);
   const auto rows = static_cast<float>(frame.depth.rows);
   result.looks.resize(std::min<std::size_t>(static_cast<std::size_t>(std::max(0, points)), result.view.points.size()));
@@ -62,7 +63,7 @@ ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Ei
 }
 
 DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance) {
-  return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.T.translation().z())));
+  return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.depth)));
 }
 
 DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
@@ -73,7 +74,7 @@ DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Ei
 DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
                             const ShiftSearch& search) {
   const ViewLook seen = look_at_view(frame, model, T_camera_object, search.points);
-  const auto width = static_cast<float>(search.tolerance.at(T_camera_object.translation().z()));
+  const auto width = static_cast<float>(search.tolerance.at(seen.depth));
   std::vector<float> within;
   within.reserve(seen.looks.size());
   for (const Look& look : seen.looks) {

@@ -22,6 +22,7 @@ struct Look {
 struct ViewLook {
   const ModelView& view;    ///< nearest to the pose
   Eigen::Isometry3f T;      ///< camera from object
+  double depth = 0.0;       ///< of the model's middle, metres: tolerances are those of there
   std::vector<Look> looks;  ///< of the first points of the view
 };
 ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,

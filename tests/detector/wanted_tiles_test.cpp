@@ -44,7 +44,7 @@ void see(const RgbdFrame& frame, const DetectionSettings& settings, DetectorWork
 /// The patches' levels, with features of whole images, whoever looks at them.
 std::vector<FeatureImage> whole_images(const RgbdFrame& frame) {
   std::vector<FeatureImage> images;
-  for (const FeatureLevel& level : feature_levels(toy::forest().features)) {
+  for (const FeatureLevel& level : feature_levels(toy::forest().features, frame.camera)) {
     const WorkingFrame working = make_working_frame(frame, level.scale, toy::forest().features);
     images.push_back(compute_features(working, toy::forest().features, 1));
   }
@@ -78,7 +78,7 @@ TEST(WantedTiles, EveryLeafOfEveryTreeIsFoundInWantedTilesAlone) {
   DetectorWorkspace workspace;
   see(frame, curious(), workspace);
   const PatchGrid& patches = workspace.patches;
-  const std::vector<FeatureLevel> levels = feature_levels(forest.features);
+  const std::vector<FeatureLevel> levels = feature_levels(forest.features, frame.camera);
   const std::vector<FeatureImage> whole = whole_images(frame);
   std::vector<FeatureImage> wanted(levels.size());
   for (std::size_t l = 0; l < levels.size(); ++l) {

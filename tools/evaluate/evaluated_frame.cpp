@@ -83,6 +83,8 @@ void add_results(std::vector<EvaluatedFrame>& frames, const PublishedResults& pu
       frame->second->poses = std::move(all->poses);
     } else if (!results.unmatched().empty()) {
       frame->second->poses = results.unmatched().front();
+    } else if (results.followed()) {
+      frame->second->poses = results.followed();  // no detector looked
     }
   }
 }

@@ -42,7 +42,7 @@ std::size_t column(const std::vector<std::string>& header, const std::string& na
 
 void append_difference(const std::optional<double>& from, const std::optional<double>& to,
                        std::vector<double>& out_ms) {
-  if (from && to) out_ms.push_back((*to - *from) * 1e3);
+  if (from && to && *from <= *to) out_ms.push_back((*to - *from) * 1e3);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ from studies.command import call, step
 from studies.encoded import with_utime
 from studies.measured import about, read_json, write_json
 from studies.stream import Stream, enter_private_network
+from studies.work import sha256_of
 
 RATES = (30, 60, 90)  # Hz
 LOOKS = 5  # of the detector, a second
@@ -51,14 +52,16 @@ def restamp(source, target, rate):
 
 
 def make_log(programs, scene, rate, seconds, log):
-    """The scene's frames over and over, with the times of a camera of that rate; made once."""
-    if not log.exists():
+    """The scene's frames over and over, with the times of a camera of that rate; made once of each scene and length."""
+    stamp, made_of = log.with_suffix(".of"), f"{rate} Hz, {seconds} s, {sha256_of(pathlib.Path(scene))}\n"
+    if not (log.exists() and stamp.is_file() and stamp.read_text() == made_of):
         captured, part = log.with_suffix(".captured"), log.with_suffix(".part")
         call(programs / "hs-capture", "--source", f"bop:{scene}", "--rate", rate, "--loop", "--frames", rate * seconds, "--log",
              captured, into=log.with_suffix(".txt"))  # fmt: skip
         restamp(captured, part, rate)
         captured.unlink()
         part.rename(log)
+        stamp.write_text(made_of)
     return log
 
 

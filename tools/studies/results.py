@@ -117,7 +117,7 @@ def speed_gains(summary):
     return (
         f"`realtime` against the original, same fast engine, one thread each: "
         f"{show(summary['speedup_over_gall_same_engine'], '{:.0f}')}-fold. Whole systems, the original in its reference engine "
-        f"on one thread against `realtime` as it runs: {show(summary['speedup_over_gall_whole_system'], '{:.0f}')}-fold. As it "
+        f"on one thread against `realtime` on all, both ranking every maximum: {show(summary['speedup_over_gall_whole_system'], '{:.0f}')}-fold. As it "
         f"runs, from its default score on: {show(default['ms'], '{:.2f}')} ms, precision {show(default['precision'])}, recall "
         f"{show(default['recall'])}."
     )

@@ -116,7 +116,7 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
   const double view_distance = view.T_camera_object.translation().z();
   Composite out;
-  out.scale = view_distance / distance;
+  out.scale = view_distance / distance * background.camera.fx / view.frame.camera.fx;
   out.depth_shift = static_cast<float>(distance - view_distance);
   const bool sharpen = settings.sharpened_share > 0.0 && random.uniform() < settings.sharpened_share;
   const Patchwork part = resized_object(view, out.scale, sharpen ? kMostSharpness * random.uniform() : 0.0);
@@ -128,7 +128,9 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   out.frame.depth = background.depth(place).clone();
   out.frame.camera = background.camera.cropped(place.x, place.y, place.width, place.height);
   out.mask = cv::Mat::zeros(window, CV_8UC1);
-  out.origin_px = cv::Point2d(kMargin - part.box_px.x * out.scale, kMargin - part.box_px.y * out.scale);
+  const double half_px = 0.5 * (out.scale - 1.0);  // resizing leaves the first pixel's edge where it is, not its centre
+  out.origin_px =
+      cv::Point2d(kMargin - part.box_px.x * out.scale + half_px, kMargin - part.box_px.y * out.scale + half_px);
 
   Patchwork lit = part;
   if (random.uniform() < settings.cleared_share) clear_haze(lit.mask, lit.colour, random);

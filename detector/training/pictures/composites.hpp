@@ -20,7 +20,8 @@ struct Composite {
   float depth_shift = 0.0F;  ///< metres added to the view's depth
 };
 
-/// Nothing where the object would not fit the frame. `background` is a whole frame of the same camera.
+/// Nothing where the object would not fit the frame. `background` is a whole frame, of any camera: the composite is as
+/// that camera would see it.
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
                                         const TrainingSettings& settings, Random& random);
 

@@ -39,9 +39,9 @@ double draw_distance(const TrainingView& view, const Profile& profile, Random& r
 }
 
 /// The level that sees an object at this distance; either one near the limit between them.
-FeatureLevel level_for(double distance, const Profile& profile, Random& random) {
+FeatureLevel level_for(double distance, const Camera& camera, const Profile& profile, Random& random) {
   if (in_scale_space(profile)) return {profile.features.image_scale, 1.0F, 0.0F, 0.0F};
-  const std::vector<FeatureLevel> levels = feature_levels(profile.features);
+  const std::vector<FeatureLevel> levels = feature_levels(profile.features, camera);
   return distance * random.uniform(0.9, 1.1) > levels[0].max_distance ? levels.back() : levels[0];
 }
 
@@ -175,7 +175,7 @@ TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& backgr
     const double farthest = *std::max_element(profile.features.scales.begin(), profile.features.scales.end());
     add_far_noise(distance, std::exp(random.uniform(0.0, std::log(farthest))), composite->frame.depth, random);
   }
-  const FeatureLevel level = level_for(distance, profile, random);
+  const FeatureLevel level = level_for(distance, composite->frame.camera, profile, random);
   const Canvas canvas = make_canvas(*composite, level, profile);
   const bool needs_depth = !in_scale_space(profile);
   const auto known = [&](int x, int y) { return teaches(level, profile, canvas.frame.filled_depth.at<float>(y, x)); };

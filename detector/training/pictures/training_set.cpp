@@ -118,7 +118,6 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     labels.push_back(static_cast<int>(index) + 1);
     set.views.push_back(trained_view(*view, static_cast<std::uint32_t>(index), profile.features.handling));
   }
-  const std::vector<FeatureLevel> levels = feature_levels(profile.features);
   const int copies = settings.composites_per_view;
   const std::vector<std::size_t> pictured = views_in_pictures(labels, settings.views_per_picture);
   const int object_count = static_cast<int>(pictured.size()) * copies;
@@ -136,9 +135,10 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
                                random, workspaces[worker]);
     } else {
       const int b = i - object_count;
+      const RgbdFrame& background = backgrounds[static_cast<std::size_t>(b / kBackgroundPictures)]->frame;
+      const std::vector<FeatureLevel> levels = feature_levels(profile.features, background.camera);
       const FeatureLevel& level = levels[static_cast<std::size_t>(b) % levels.size()];
-      picture = background_picture(backgrounds[static_cast<std::size_t>(b / kBackgroundPictures)]->frame, level,
-                                   profile, random, workspaces[worker]);
+      picture = background_picture(background, level, profile, random, workspaces[worker]);
     }
   });
   measure_classes(pictures, set);

@@ -36,12 +36,14 @@ TEST(WorkingImages, MemoryIsUsedAgainButNeverThatOfTheFrameItself) {
   whole.far_distance = whole.max_distance;
   FeatureSettings half = whole;
   half.image_scale = 0.5F;
-  const RgbdFrame small = flat_frame(8, 8, 2.0F);
+  RgbdFrame small = flat_frame(8, 8, 2.0F);
+  small.camera.fx = 525.0;  // the usual lens: sizes are as the settings say
   WorkingImages images;
   make_working_images(small, whole, 1, images);
   ASSERT_EQ(images.frames.size(), 1U);
   EXPECT_EQ(images.frames[0].colour.data, small.colour.data);
   RgbdFrame large = flat_frame(16, 16, 1.0F);
+  large.camera.fx = 525.0;
   large.colour.setTo(cv::Scalar(90, 90, 90));
   make_working_images(large, half, 1, images);
   EXPECT_EQ(small.colour.at<cv::Vec3b>(3, 3), cv::Vec3b(10, 20, 30));
@@ -76,11 +78,27 @@ TEST(WorkingImages, AreBroughtIntoTheToneAndTheFrameStays) {
   }
 }
 
+TEST(WorkingImages, ShowAsMuchOfASurfaceInAPixelWhateverTheLens) {
+  const Camera usual{640, 480, 525.0, 525.0, 319.5, 239.5};
+  EXPECT_EQ(octaves_scale(usual), 1.0F);
+  EXPECT_EQ(octaves_scale({640, 480, 615.0, 615.0, 319.5, 239.5}), 1.0F);
+  EXPECT_EQ(octaves_scale({640, 480, 1066.8, 1067.5, 319.5, 239.5}), 0.5F);
+  EXPECT_EQ(octaves_scale({320, 240, 262.5, 262.5, 159.5, 119.5}), 2.0F);
+  EXPECT_EQ(octaves_scale({160, 120, 60.0, 60.0, 79.5, 59.5}), 2.0F) << "there is nothing more to see in it";
+  FeatureSettings settings;
+  const Camera tele = usual.scaled(2.0);
+  ASSERT_EQ(feature_levels(settings, tele).size(), feature_levels(settings).size());
+  EXPECT_EQ(feature_levels(settings, tele)[0].scale, 0.5F * feature_levels(settings)[0].scale);
+  settings.handling = ScaleHandling::kScaleSpace;
+  settings.scales = {1.0F, 0.5F};
+  EXPECT_EQ(feature_levels(settings, tele)[0].scale, feature_levels(settings)[0].scale);
+}
+
 TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
   RgbdFrame frame = flat_frame(64, 48, 1.0F);
   frame.depth.colRange(20, 30).setTo(kNoValue);
   frame.colour.colRange(0, 13).setTo(cv::Scalar(200, 90, 10));
-  const std::vector<FeatureLevel> levels = feature_levels({});
+  const std::vector<FeatureLevel> levels = feature_levels({}, frame.camera);
   for (const int threads : {1, 3}) {
     WorkingImages images;
     make_working_images(frame, {}, threads, images);

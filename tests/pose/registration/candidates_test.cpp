@@ -125,6 +125,25 @@ TEST(Candidates, VotesMayBeForAPointThatIsNotTheOrigin) {
   expect_best_placed_first({0.3F, -0.2F, 0.1F});
 }
 
+TEST(Candidates, TheOriginMayLieBesideTheLineOfSight) {
+  const Eigen::Vector3f offset(0.5F, 0.0F, -0.4F);  // the box stands there in the frame of its mesh
+  Mesh object = cereal_box();
+  for (Eigen::Vector3f& vertex : object.vertices) vertex += offset;
+  const Mesh ground = table();
+  const Eigen::Isometry3d box = standing(60.0, 30.0, 0.9);
+  const Eigen::Isometry3d truth = box * Eigen::Translation3d(-offset.cast<double>());
+  const RgbdFrame frame = noisy_frame({{&object, truth, 1}, {&ground, box * Eigen::Translation3d(0, 0, -0.13), 2}}, 1);
+  ModelSettings of_model;
+  of_model.vote_centres["box"] = offset;
+  const ObjectModel model = make_object_model("box", object, of_model);
+  const Eigen::Vector3f centre = box.translation().cast<float>() + Eigen::Vector3f(0.01F, -0.01F, 0.04F);
+  const SeenObject seen{frame, model, centre, {}, {}, {}};
+  const RotationCandidate rotation{Eigen::Quaternionf(truth.linear().cast<float>()), 1.0F};
+  const std::vector<PoseCandidate> found = place_candidates(seen, {rotation}, {});
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT((found[0].T_camera_object.translation() - truth.translation()).norm(), 0.015);
+}
+
 TEST(Candidates, OfEarlierPosesOnlyThoseOfTheClassNearInTimeAndPlaceCount) {
   const Eigen::Isometry3d truth = standing(60.0, 30.0, 0.9);
   RgbdFrame frame;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/types/frame_results.hpp"
 #include "tools/evaluate/latency.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
 #include "tools/evaluate/metrics/pose_metrics.hpp"
@@ -85,6 +86,8 @@ TEST(DetectionMetrics, OtherClassesDoNotCount) {
   EXPECT_TRUE(std::isnan(can.auc));
   EXPECT_EQ(count_verdicts(can, Verdict::kFalse, 0.0F), 1);
   EXPECT_EQ(count_verdicts(can, Verdict::kFalse, 0.95F), 0);
+  ASSERT_EQ(can.curve.size(), 1U) << "it counts where another scene has cans";
+  EXPECT_EQ(can.curve[0].recall, 0.0);
 }
 
 TEST(DetectionMetrics, HardlyVisibleObjectsAreNeitherRequiredNorFalse) {
@@ -142,6 +145,17 @@ TEST(EvaluatedFrames, ResultsFindTheirFrameOrAreRefused) {
   pose.class_name = "mug";
   pose.detection_index = 1;
   EXPECT_THROW(add_results(frames, {{mug}, {{{"", 20}, {pose}, {}}}}, "test"), InputError) << "no such detection";
+}
+
+TEST(EvaluatedFrames, PosesThatWereFollowedCountWhereNoDetectorLooked) {
+  std::vector<EvaluatedFrame> frames(1);
+  ObjectPose pose;
+  pose.class_name = "mug";
+  pose.detection_index = -1;
+  add_results(frames, {{}, {{{"", 0}, {pose}, {{kFollowingStage, 1000}}}}}, "test");
+  ASSERT_TRUE(frames[0].poses.has_value());
+  EXPECT_EQ(frames[0].poses->poses.size(), 1U);
+  EXPECT_FALSE(frames[0].detections.has_value());
 }
 
 TEST(EvaluatedFrames, DetectorsOfDifferentObjectsAreJoined) {
@@ -294,11 +308,11 @@ fs::path write_csv(const std::string& text) {
 
 TEST(Latency, ObserverFileGivesDifferencesAndSkipsWhatNeverCame) {
   const Latencies latencies =
-      read_latencies(write_csv("utime,t_frame,t_detections,t_poses\n1,0.5,0.625,0.875\n2,1,1.25,\n3,2,,\n"));
+      read_latencies(write_csv("utime,t_frame,t_detections,t_poses\n1,0.5,0.625,0.875\n2,1,1.25,1.125\n3,2,,\n"));
   EXPECT_EQ(latencies.frames, 3);
   EXPECT_EQ(latencies.detect_ms, (std::vector<double>{125.0, 250.0}));
-  EXPECT_EQ(latencies.pose_ms, (std::vector<double>{250.0}));
-  EXPECT_EQ(latencies.total_ms, (std::vector<double>{375.0}));
+  EXPECT_EQ(latencies.pose_ms, (std::vector<double>{250.0})) << "poses that were followed come before the detections";
+  EXPECT_EQ(latencies.total_ms, (std::vector<double>{375.0, 125.0}));
 }
 
 TEST(Latency, BadObserverFilesAreRefused) {

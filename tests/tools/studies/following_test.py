@@ -53,12 +53,19 @@ class Figures(unittest.TestCase):
         self.assertEqual({(name, data[:8], data[16:]) for _, name, data in events}, {("FRAME", struct.pack(">q", 42), b"pixels")})
         self.assertEqual([timestamp for timestamp, _, _ in events], [0, 16667, 33334])
 
-    def test_a_log_is_made_once(self):
+    def test_a_log_is_made_once_of_each_scene_and_length(self):
         place = tempfile.TemporaryDirectory()
         self.addCleanup(place.cleanup)
-        log = pathlib.Path(place.name) / "following_30.lcmlog"
-        log.write_text("frames")
-        self.assertEqual(following.make_log(pathlib.Path("/nowhere"), "scene", 30, 60, log), log)
+        folder = pathlib.Path(place.name)
+        capture, scene, log = folder / "hs-capture", folder / "scene", folder / "following_30.lcmlog"
+        capture.write_text('#!/bin/sh\necho "$7" >>"$(dirname "$0")/calls"\n: >"$9"\n')
+        capture.chmod(0o755)
+        scene.mkdir()
+        for picture, seconds in (("a", 60), ("a", 60), ("a", 20), ("b", 20)):
+            (scene / "picture").write_text(picture)
+            self.assertEqual(following.make_log(folder, scene, 30, seconds, log), log)
+            self.assertTrue(log.exists())
+        self.assertEqual((folder / "calls").read_text().split(), ["1800", "600", "600"])
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from studies.tracks.report import longest, pooled
 
 
 def figures(name, required, recall, wrong, switches=0, hota=0.9):
-    return {"name": name, "required": required, "recall": recall, "wrong": wrong, "id_switches": switches, "hota": hota,
+    return {"name": name, "required": required, "recall": recall, "wrong": wrong, "id_switches": switches, "hota": hota, "kept": 10,
             "error": {"moving": {"mm_p95": None}}}  # fmt: skip
 
 
@@ -66,9 +66,10 @@ class TracksTest(unittest.TestCase):
         both = pooled([figures("pushed", 300, 0.9, {"can": 10}, 1, 0.8), figures("cans", 100, 0.5, {}, 2, 0.4)])
         self.assertEqual(both["sequences"], ["pushed", "cans"])
         self.assertAlmostEqual(both["recall"], (270 + 50) / 400)
-        self.assertAlmostEqual(both["precision"], 320 / 330)
+        self.assertAlmostEqual(both["precision"], 340 / 350)
         self.assertEqual(both["id_switches"], 3)
         self.assertAlmostEqual(both["hota"], 0.7)
+        self.assertIsNone(both["moving_mm_p95"], "nothing moved")
 
     def test_what_was_never_found_has_no_longest_time(self):
         self.assertEqual(longest([[0.1, 0.4], [0.2]]), 0.4)

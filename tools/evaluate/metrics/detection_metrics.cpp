@@ -84,7 +84,7 @@ std::vector<CurvePoint> precision_recall_curve(const std::vector<JudgedDetection
     if (detection.verdict == Verdict::kIgnored) continue;
     true_count += detection.verdict == Verdict::kTrue ? 1 : 0;
     const double precision = static_cast<double>(true_count) / static_cast<double>(curve.size() + 1);
-    curve.push_back({detection.score, precision, static_cast<double>(true_count) / required});
+    curve.push_back({detection.score, precision, required > 0 ? static_cast<double>(true_count) / required : 0.0});
   }
   return curve;
 }
@@ -108,9 +108,8 @@ ClassResult evaluate_class(const std::vector<EvaluatedFrame>& frames, const std:
   result.required = count_required(frames, class_name, rules);
   result.judged = judge_detections(frames, class_name, rules);
   result.auc = std::numeric_limits<double>::quiet_NaN();
-  if (result.required == 0) return result;
-  result.auc = average_precision(result.judged, result.required);
   result.curve = precision_recall_curve(result.judged, result.required);
+  if (result.required > 0) result.auc = average_precision(result.judged, result.required);
   return result;
 }
 

@@ -42,7 +42,8 @@ struct CurvePoint {
   double recall = 0.0;
 };
 
-/// One point per detection that counts.
+/// One point per detection that counts. Of a class that stands nowhere all are false: precision and recall are 0, so
+/// that they count where several scenes are pooled.
 std::vector<CurvePoint> precision_recall_curve(const std::vector<JudgedDetection>& judged, int required);
 
 /// Area under the precision/recall curve, un-interpolated: the sum of the precision at each true positive over the

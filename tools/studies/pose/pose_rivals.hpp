@@ -22,9 +22,9 @@ class PoseRival {
   virtual ~PoseRival() = default;
 
   /// T_camera_object of the detection, metres; uses its class, box and centre, not its votes. Nothing where the class
-  /// has no model, the centre is unknown, the region holds too few points, or no pose was found whose origin is within
-  /// RegistrationSettings::max_shift_m of the centre. The same input gives the same bits. Throws InputError for a frame
-  /// that is none.
+  /// has no model, the centre is unknown, the region holds too few points, or no pose was found whose
+  /// ObjectModel::vote_centre is within RegistrationSettings::max_shift_m of the centre. The same input gives the same
+  /// bits. Throws InputError for a frame that is none.
   virtual std::optional<Eigen::Isometry3d> estimate(const RgbdFrame& frame, const Detection& detection) const = 0;
 };
 

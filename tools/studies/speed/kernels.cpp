@@ -31,12 +31,12 @@ void register_codecs(const RgbdFrame& frame) {
 /// Each level of the working frame, all of it.
 void register_features(const RgbdFrame& frame, const Forest& forest) {
   add("working_frame", [&frame, &forest] {
-    for (const FeatureLevel& level : feature_levels(forest.features)) {
+    for (const FeatureLevel& level : feature_levels(forest.features, frame.camera)) {
       benchmark::DoNotOptimize(make_working_frame(frame, level, forest.features));
     }
   });
   std::vector<WorkingFrame> working;
-  for (const FeatureLevel& level : feature_levels(forest.features)) {
+  for (const FeatureLevel& level : feature_levels(forest.features, frame.camera)) {
     working.push_back(make_working_frame(frame, level, forest.features));
   }
   add("features", [working, &forest] {

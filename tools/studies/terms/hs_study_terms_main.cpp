@@ -98,6 +98,8 @@ terms::Group study(const StudyOptions& options, const SceneGroup& scenes, const 
 }
 
 void run(const StudyOptions& options) {
+  if (options.search.threshold)
+    fail("--threshold {}: every candidate is looked at, expected --score or --false-score", *options.search.threshold);
   std::vector<terms::Group> groups;
   const std::vector<SceneGroup> wanted = parse_groups(options);
   for (std::size_t i = 0; i < wanted.size(); ++i)
@@ -121,7 +123,9 @@ int main(int argc, char** argv) {
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--min-visible", options.rules.min_visible, "less visible objects are passed over")
       .capture_default_str();
-  app.add_option("--score", options.rules.score, "score from which an object counts as reported").capture_default_str();
+  app.add_option("--score", options.rules.score,
+                 "score from which an object counts as reported; of stores hs-detect publishes from 0.65 on")
+      .capture_default_str();
   app.add_option("--false-score", options.rules.false_score, "score from which false candidates are looked at")
       .capture_default_str();
   add_search_options(app, options.search);

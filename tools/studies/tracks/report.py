@@ -20,14 +20,15 @@ def pooled(figures):
     """Of several sequences: counts are added up, shares follow the counts."""
     required = sum(one["required"] for one in figures)
     found = sum(one["recall"] * one["required"] for one in figures)
+    right = found + sum(one["kept"] for one in figures)
     wrong = sum(sum(one["wrong"].values()) for one in figures)
     return {
         "sequences": [one["name"] for one in figures],
         "recall": found / required,
-        "precision": found / (found + wrong),
+        "precision": right / (right + wrong),
         "id_switches": sum(one["id_switches"] for one in figures),
         "hota": sum(one["hota"] * one["required"] for one in figures) / required,
-        "moving_mm_p95": max((one["error"]["moving"]["mm_p95"] or 0.0 for one in figures), default=None),
+        "moving_mm_p95": max((p95 for one in figures if (p95 := one["error"]["moving"]["mm_p95"]) is not None), default=None),
     }
 
 

@@ -116,7 +116,7 @@ struct Life {
   bool there = false;
   std::optional<std::size_t> taken;  // frame from which on it is away, and its number still published
   std::vector<Vector6> window;       // differences from the true pose while it stands
-  std::optional<Eigen::Isometry3d> T_before;
+  std::size_t window_begin = 0;      // frame
 };
 
 class Comparison {
@@ -149,6 +149,7 @@ class Comparison {
     }
     return {{"frames", frames_},
             {"required", required_},
+            {"kept", kept_},
             {"recall", finite_or_null(static_cast<double>(found_) / required_)},
             {"precision", finite_or_null(static_cast<double>(found_ + kept_) / (found_ + kept_ + false_))},
             {"id_switches", switches_},
@@ -188,8 +189,7 @@ class Comparison {
       to_find_.push_back(seconds(*life.since, frame.index));
       life.since.reset();
     }
-    const bool stands = truth.T_world_object && life.T_before &&
-                        tracks::difference(*truth.T_world_object, *life.T_before).norm() < 1e-9;
+    const bool stands = stood(truth, frame.index);
     if (stands && !required && life.last_id != 0) {
       ++hidden_;
       kept_hidden_ += object != nullptr ? 1 : 0;
@@ -197,26 +197,37 @@ class Comparison {
     if (object != nullptr) {
       if (life.last_id != 0 && object->track_id != life.last_id) ++switches_;
       life.last_id = object->track_id;
-      if (required) add_error(truth, *object, stands, life);
+      if (required) add_error(truth, *object, stands, frame.index);
     }
-    if (!stands || object == nullptr) close_window(life);
-    life.T_before = truth.T_world_object;
+    if (!stands || object == nullptr) life.window.clear();
+  }
+
+  /// Whether it was in the same place a frame before: several publications may be of one frame.
+  bool stood(const TrueInstance& truth, std::size_t index) const {
+    if (!truth.T_world_object || index == 0) return false;
+    const std::vector<TrueInstance>& before = sequence_.frames[index - 1];
+    const auto same = std::find_if(before.begin(), before.end(),
+                                   [&](const TrueInstance& other) { return other.instance == truth.instance; });
+    return same != before.end() && same->T_world_object &&
+           tracks::difference(*truth.T_world_object, *same->T_world_object).norm() < 1e-9;
   }
 
   void follow_presence(const TrueInstance& truth, const PublishedFrame& frame, Life& life) {
     if (life.there && !truth.T_world_object) {
       life.there = false;
+      if (life.since) to_find_.push_back(nullptr);  // it never was
+      life.since.reset();
       if (life.last_id != 0) life.taken = frame.index;
     }
     if (!life.taken) return;
     const bool told = std::any_of(frame.objects.begin(), frame.objects.end(),
                                   [&](const PublishedObject& object) { return object.track_id == life.last_id; });
     if (told && !truth.T_world_object) return;
-    to_gone_.push_back(seconds(*life.taken, frame.index));
+    to_gone_.push_back(told ? OrderedJson() : OrderedJson(seconds(*life.taken, frame.index)));  // or back before that
     life.taken.reset();
   }
 
-  void add_error(const TrueInstance& truth, const PublishedObject& object, bool stands, Life& life) {
+  void add_error(const TrueInstance& truth, const PublishedObject& object, bool stands, std::size_t index) {
     const auto known = symmetries_.find(truth.class_name);
     const Symmetries none;
     const Eigen::Isometry3d T = nearest_equivalent(object.T_world_object, *truth.T_world_object,
@@ -225,27 +236,32 @@ class Comparison {
     Errors& errors = stands ? standing_ : moving_;
     errors.mm.push_back(1e3 * error.head<3>().norm());
     errors.deg.push_back(kDegrees * error.tail<3>().norm());
-    if (!stands) return;
-    life.window.push_back(error);
-    if (static_cast<double>(life.window.size()) >= 5.0 * sequence_.fps * static_cast<double>(sequence_.cameras.size()))
-      close_window(life);
+    if (stands) add_to_window(error, index, lives_[truth.instance]);
   }
 
-  void close_window(Life& life) {
-    const double full = 5.0 * sequence_.fps * static_cast<double>(sequence_.cameras.size());
-    if (static_cast<double>(life.window.size()) >= full) {
-      Vector6 mean = Vector6::Zero();
-      for (const Vector6& error : life.window) mean += error / static_cast<double>(life.window.size());
-      double mm = 0.0;
-      double deg = 0.0;
-      for (const Vector6& error : life.window) {
-        mm += (error - mean).head<3>().squaredNorm() / static_cast<double>(life.window.size());
-        deg += (error - mean).tail<3>().squaredNorm() / static_cast<double>(life.window.size());
-      }
-      jitter_.mm.push_back(1e3 * std::sqrt(mm));
-      jitter_.deg.push_back(kDegrees * std::sqrt(deg));
+  /// A window is closed by the first publication that is 5 s after its first one, which begins the next.
+  void add_to_window(const Vector6& error, std::size_t index, Life& life) {
+    constexpr double kWindowS = 5.0;
+    if (life.window.empty()) life.window_begin = index;
+    if (seconds(life.window_begin, index) >= kWindowS) {
+      add_jitter(life.window);
+      life.window.clear();
+      life.window_begin = index;
     }
-    life.window.clear();
+    life.window.push_back(error);
+  }
+
+  void add_jitter(const std::vector<Vector6>& errors) {
+    Vector6 mean = Vector6::Zero();
+    for (const Vector6& error : errors) mean += error / static_cast<double>(errors.size());
+    double mm = 0.0;
+    double deg = 0.0;
+    for (const Vector6& error : errors) {
+      mm += (error - mean).head<3>().squaredNorm() / static_cast<double>(errors.size());
+      deg += (error - mean).tail<3>().squaredNorm() / static_cast<double>(errors.size());
+    }
+    jitter_.mm.push_back(1e3 * std::sqrt(mm));
+    jitter_.deg.push_back(kDegrees * std::sqrt(deg));
   }
 
   const SequenceFile& sequence_;

@@ -130,7 +130,8 @@ BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const C
     detection.class_name = pose.class_name;
     detection.score = pose.detection_score;
     detection.box_px = region;
-    detection.centre_camera = pose.T_camera_object->translation().cast<float>();
+    // Where votes of a store are for; the origin of a mesh may lie anywhere.
+    detection.centre_camera = pose.T_camera_object->cast<float>() * mesh_bounds(model->second).center();
     all.poses.poses.push_back(pose);
     all.poses.poses.back().detection_index = static_cast<int>(all.detections.detections.size());
     all.detections.detections.push_back(std::move(detection));

@@ -58,8 +58,18 @@ TEST(Composites, TheOriginLeadsBackToTheView) {
   const cv::Rect box = cv::boundingRect(composite->mask);
   const cv::Point2d middle(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
   const cv::Point2d in_view = (middle - composite->origin_px) / composite->scale;
-  EXPECT_NEAR(in_view.x, 159.5, 1.0);
-  EXPECT_NEAR(in_view.y, 119.5, 1.0);
+  const cv::Rect seen = cv::boundingRect(tile_view().mask);
+  EXPECT_NEAR(in_view.x, seen.x + 0.5 * (seen.width - 1), 0.25);
+  EXPECT_NEAR(in_view.y, seen.y + 0.5 * (seen.height - 1), 0.25);
+}
+
+TEST(Composites, AreAsTheRoomsCameraWouldSeeThem) {
+  TrainingView view = tile_view();
+  view.frame.camera.fx *= 2.0;  // a tele lens: the tile is half as large
+  view.frame.camera.fy *= 2.0;
+  const auto composite = compose(view, 0.7, 3, plain());
+  ASSERT_TRUE(composite);
+  EXPECT_NEAR(cv::boundingRect(composite->mask).width, 0.5 * cv::boundingRect(view.mask).width, 1.0);
 }
 
 TEST(Composites, AtTheViewsDistanceTheObjectIsPastedAsItIs) {

@@ -35,19 +35,21 @@ Table with_box() {
   return {cereal_box(), -0.13, standing(35.0, 30.0, 1.1)};
 }
 
-using Make = std::unique_ptr<PoseRival> (*)(const std::map<std::string, Mesh>&);
+using Make = std::unique_ptr<PoseRival> (*)(const std::map<std::string, Mesh>&, const PoseSettings&);
 
-std::unique_ptr<PoseRival> prerejective(const std::map<std::string, Mesh>& models) {
-  return make_prerejective_rival(models, PoseSettings(), PrerejectiveSettings());
+std::unique_ptr<PoseRival> prerejective(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
+  return make_prerejective_rival(models, settings, PrerejectiveSettings());
 }
 
-std::unique_ptr<PoseRival> point_pairs(const std::map<std::string, Mesh>& models) {
-  return make_ppf_rival(models, PoseSettings(), PpfSettings());
+std::unique_ptr<PoseRival> point_pairs(const std::map<std::string, Mesh>& models, const PoseSettings& settings) {
+  return make_ppf_rival(models, settings, PpfSettings());
 }
 
 class PoseRivals : public testing::TestWithParam<Make> {
  protected:
-  static std::unique_ptr<PoseRival> rival(const Table& table) { return GetParam()({{"it", table.object}}); }
+  static std::unique_ptr<PoseRival> rival(const Table& table, const PoseSettings& settings = {}) {
+    return GetParam()({{"it", table.object}}, settings);
+  }
 };
 
 TEST_P(PoseRivals, FindAnObjectOnATableWithoutItsVotes) {
@@ -58,6 +60,16 @@ TEST_P(PoseRivals, FindAnObjectOnATableWithoutItsVotes) {
     EXPECT_LT(SurfaceError(table.object)(table.truth, *T_camera_object), 0.006);
     EXPECT_NEAR(T_camera_object->linear().determinant(), 1.0, 1e-9);
   }
+}
+
+TEST_P(PoseRivals, FindItWhereVotesAreNotForItsOrigin) {
+  Table table = with_box();
+  PoseSettings settings;
+  settings.model.vote_centres["it"] = {0.0F, 0.0F, 0.1F};
+  table.detection.centre_camera = table.truth.cast<float>() * settings.model.vote_centres["it"];
+  const auto T_camera_object = rival(table, settings)->estimate(table.frame, table.detection);
+  ASSERT_TRUE(T_camera_object);
+  EXPECT_LT(SurfaceError(table.object)(table.truth, *T_camera_object), 0.006);
 }
 
 TEST_P(PoseRivals, GiveTheSameBitsAgain) {
