@@ -80,19 +80,16 @@ void shrink_depth(const cv::Mat& depth, cv::Size size, cv::Mat& out) {
 }
 
 /// Between the pixels of one surface the depth is interpolated, between two surfaces it is that of the nearest pixel.
-cv::Mat enlarge_depth(const cv::Mat& depth, cv::Size size) {
-  cv::Mat nearest;
-  cv::Mat smooth;
-  cv::resize(depth, nearest, size, 0, 0, cv::INTER_NEAREST);
-  cv::resize(depth, smooth, size, 0, 0, cv::INTER_LINEAR);
+void enlarge_depth(const cv::Mat& depth, cv::Size size, cv::Mat& out) {
+  cv::resize(depth, out, size, 0, 0, cv::INTER_LINEAR);
   for (int y = 0; y < size.height; ++y) {
-    const auto* from = nearest.ptr<float>(y);
-    auto* to = smooth.ptr<float>(y);
+    const auto* from = depth.ptr<float>(y * depth.rows / size.height);
+    auto* to = out.ptr<float>(y);
     for (int x = 0; x < size.width; ++x) {
-      if (!(std::abs(to[x] - from[x]) < 0.01F * from[x])) to[x] = from[x];  // also where either is NaN
+      const float nearest = from[x * depth.cols / size.width];
+      if (!(std::abs(to[x] - nearest) < 0.01F * nearest)) to[x] = nearest;  // also where either is NaN
     }
   }
-  return smooth;
 }
 
 HoleReach hole_reach(const FeatureSettings& settings, const Camera& camera) {
@@ -116,7 +113,7 @@ void resize_into(const RgbdFrame& frame, float scale, const FeatureSettings& set
     if (scale < 1.0F) {
       shrink_depth(frame.depth, size, out.filled_depth);
     } else {
-      out.filled_depth = enlarge_depth(frame.depth, size);
+      enlarge_depth(frame.depth, size, out.filled_depth);
     }
   }
   fill_holes(out.filled_depth, hole_reach(settings, out.camera), holes);

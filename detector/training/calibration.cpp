@@ -1,5 +1,7 @@
 #include "detector/training/calibration.hpp"
 
+#include <map>
+
 #include "detector/training/tree_trainer.hpp"
 #include "detector/voting/hough_space.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -43,6 +45,29 @@ std::vector<Tally> out_of_bag_support(const TrainingSet& set, const TrainingSett
   return tallies;
 }
 
+/// By class id: the probability that a leaf gives to the class, mean over the class's own patches.
+std::map<int, double> mean_probabilities(const Forest& forest) {
+  struct Sum {
+    double patches = 0.0;
+    double probability = 0.0;
+  };
+  std::vector<Sum> sums(forest.classes.size());
+  for (std::size_t l = 0; l + 1 < forest.leaves.size(); ++l) {
+    for (std::uint32_t e = forest.leaves[l]; e < forest.leaves[l + 1]; ++e) {
+      const auto probability = static_cast<double>(forest.leaf_classes[e].probability);
+      const double patches = probability * static_cast<double>(forest.leaf_weights[l]);
+      Sum& sum = sums[forest.leaf_classes[e].class_index];
+      sum.patches += patches;
+      sum.probability += patches * probability;
+    }
+  }
+  std::map<int, double> means;
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    if (sums[c].patches > 0.0) means[forest.classes[c].class_id] = sums[c].probability / sums[c].patches;
+  }
+  return means;
+}
+
 }  // namespace
 
 void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma, Forest& forest) {
@@ -60,6 +85,17 @@ void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, 
     // Where nothing was left out, or nothing found its centre, the visible area alone is the measure.
     const double mean_support = sum.support > 0.0 ? sum.support / sum.count : 1.0;
     forest.classes[set.first_class + c].expected_mass = static_cast<float>(set.visible_areas[c] * mean_support);
+  }
+}
+
+void carry_masses(const Forest& before, Forest& after) {
+  const std::map<int, double> earlier = mean_probabilities(before);
+  const std::map<int, double> now = mean_probabilities(after);
+  for (ObjectClass& object : after.classes) {
+    const auto was = earlier.find(object.class_id);
+    const auto is = now.find(object.class_id);
+    if (was == earlier.end() || is == now.end()) continue;
+    object.expected_mass *= static_cast<float>(is->second / was->second);
   }
 }
 

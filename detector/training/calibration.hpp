@@ -10,4 +10,8 @@ namespace houghstream::training {
 /// for every class and at every distance. `forest` must be that of the set and the settings.
 void calibrate_masses(const TrainingSet& set, const TrainingSettings& settings, float vote_sigma, Forest& forest);
 
+/// Expected masses of the objects that both forests know, where others were added or removed: what their votes bring
+/// together has changed as their probabilities in the leaves have, mean over the patches that the leaves were made of.
+void carry_masses(const Forest& before, Forest& after);
+
 }  // namespace houghstream::training

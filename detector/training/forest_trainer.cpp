@@ -184,6 +184,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   note_leaf_heads(forest);
   note_view_neighbours(forest);
   pack_trees(forest);
+  carry_masses(old, forest);
   calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
   if (learns_scores(profile.training)) learn_scores(rooms, profile, forest);
   return forest;

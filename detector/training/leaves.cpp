@@ -96,21 +96,35 @@ std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>
   return static_cast<std::int32_t>(forest.leaves.size()) - 2;
 }
 
+Mixture mixture_of(float known_classes, float added_classes, float most_background) {
+  const auto background = [&](float classes) {
+    return std::min(classes, most_background);
+  };  // over one object's weight
+  const float classes = known_classes + added_classes;
+  const float whole = classes + background(classes);
+  Mixture mixture;
+  mixture.added = (added_classes + background(added_classes)) / whole;
+  mixture.known = (known_classes + background(known_classes)) / whole;
+  mixture.background = mixture.known * background(classes) / background(known_classes);
+  return mixture;
+}
+
 void mix_in(const KnownLeaf& known, float part, Forest& forest) {
   const Forest& old = *known.forest;
   const auto leaf = static_cast<std::size_t>(known.leaf);
   const float weight = part * old.leaf_weights[leaf];
   const std::size_t first = forest.leaves[forest.leaves.size() - 2];
-  float total = weight;  // the background's share is what remains when the objects' are taken off
+  // The background is what remains when the objects are taken off.
+  float total = weight * known.mixture.background;
   for (std::size_t e = first; e < forest.leaf_classes.size(); ++e) {
     LeafClass& entry = forest.leaf_classes[e];
-    entry.probability *= forest.leaf_weights.back() * (1.0F - known.old_share);
+    entry.probability *= forest.leaf_weights.back() * known.mixture.added;
     total += entry.probability;
   }
   for (std::uint32_t e = old.leaves[leaf]; e < old.leaves[leaf + 1]; ++e) {
     const float before = weight * old.leaf_classes[e].probability;
-    copy_entry(old, old.leaf_classes[e], before * known.old_share, forest);
-    total -= before * (1.0F - known.old_share);
+    copy_entry(old, old.leaf_classes[e], before * known.mixture.known, forest);
+    total += before * (known.mixture.known - known.mixture.background);
   }
   for (std::size_t e = first; e < forest.leaf_classes.size(); ++e) {
     forest.leaf_classes[e].probability = total > 0.0F ? forest.leaf_classes[e].probability / total : 0.0F;

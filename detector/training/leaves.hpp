@@ -20,16 +20,25 @@ struct LeafSource {
 /// start with a single 0.
 std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>& samples, Forest& forest);
 
+/// What becomes of a leaf's weight when objects are added.
+struct Mixture {
+  float added = 0.0F;       ///< of the new objects' leaf
+  float known = 1.0F;       ///< of what the known leaf holds of objects
+  float background = 1.0F;  ///< of what it holds of the background
+};
+
+/// Each object weighs the same, and the background as TrainingSettings::most_background says.
+Mixture mixture_of(float known_classes, float added_classes, float most_background);
+
 /// A leaf of a forest to which objects are being added.
 struct KnownLeaf {
   const Forest* forest = nullptr;
   std::int32_t leaf = 0;
-  float old_share = 1.0F;  ///< of the classes that there will be: those that the forest knew
+  Mixture mixture;
 };
 
 /// Adds to the last leaf of `forest`, which was made of new samples only, what `part` of the known leaf's samples say.
-/// Probabilities become those that all classes have when each object weighs the same and the background as much
-/// as all of them; the background is the known leaf's.
+/// The background is the known leaf's.
 void mix_in(const KnownLeaf& known, float part, Forest& forest);
 
 /// Appends the known leaf as it is, but for the smaller weight of each object, and returns its number.

@@ -140,8 +140,9 @@ class TreeGrower {
   }
 
   std::int32_t follow_leaf(const Forest& old, std::int32_t leaf, const Samples& samples, int depth) {
-    const auto known_classes = static_cast<float>(old.classes.size());
-    known_ = KnownLeaf{&old, leaf, known_classes / (known_classes + static_cast<float>(set_.classes.size()))};
+    known_ = KnownLeaf{&old, leaf,
+                       mixture_of(static_cast<float>(old.classes.size()), static_cast<float>(set_.classes.size()),
+                                  settings_.most_background)};
     known_samples_ = std::max<std::size_t>(samples.size(), 1);
     if (samples.empty()) return -1 - copy_leaf(*known_, forest_);
     return grow_node(samples, depth);

@@ -80,6 +80,10 @@ void require_other_file(const fs::path& output, const fs::path& input) {
   std::error_code missing;
   require(!fs::equivalent(output, input, missing), "{}: is the source itself, expected another place to write",
           output.string());
+  fs::path partial = followed(output);
+  partial += kPartialEnding;
+  require(!fs::equivalent(partial, input, missing), "{}: is first written to {}, the source, expected another place",
+          output.string(), partial.string());
 }
 
 WholeFile::WholeFile(const fs::path& file, const std::string& ending) : file_(followed(file)), partial_(file_) {
@@ -114,9 +118,8 @@ void WholeFile::publish() {
   good = good && std::rename(partial_.c_str(), file_.c_str()) == 0;
   const int error = errno;
   close(written);
-  if (!good) unlink(partial_.c_str());
-  release();
   require(good, "{}: cannot be written: {}", file_.string(), std::strerror(error));
+  release();
 }
 
 void WholeFile::keep() {

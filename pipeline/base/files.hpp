@@ -15,7 +15,11 @@ void require_regular_file(const std::filesystem::path& file, const char* expecte
 /// All bytes of an ordinary file. Throws InputError where it is none, or cannot be read to its end.
 std::string read_file(const std::filesystem::path& file, const char* expected);
 
-/// Throws InputError where the output is the input itself, by whatever name.
+/// What the name of a file that is being written ends with.
+inline constexpr const char* kPartialEnding = ".partial";
+
+/// Throws InputError where the output, or the FILE.partial that it is first written to, is the input itself, by
+/// whatever name.
 void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input);
 
 /// An output that is there as a whole or not at all: it is written as FILE.partial beside FILE and takes FILE's place
@@ -26,7 +30,7 @@ class WholeFile {
  public:
   /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
   /// another program is writing FILE.
-  explicit WholeFile(const std::filesystem::path& file, const std::string& ending = ".partial");
+  explicit WholeFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding);
   WholeFile(WholeFile&& other) noexcept;
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
@@ -38,7 +42,7 @@ class WholeFile {
   const std::filesystem::path& partial() const { return partial_; }
 
   /// What was written, and has been closed by who wrote it, becomes FILE. An older FILE goes only once the new one is
-  /// on the disk. Throws InputError.
+  /// on the disk. Throws InputError; what was written can then still be kept.
   void publish();
   /// What was written stays as FILE.partial: what cannot be had again, like a recording on a full disk.
   void keep();

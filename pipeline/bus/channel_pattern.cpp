@@ -3,6 +3,7 @@
 #include <regex>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
 
 namespace houghstream {
 namespace {
@@ -10,8 +11,10 @@ namespace {
 std::function<bool(const std::string&)> matcher_of(const std::string& text, bool is_name) {
   if (is_name) return [text](const std::string& channel) { return channel == text; };
   try {
-    return
-        [expression = std::regex(text)](const std::string& channel) { return std::regex_match(channel, expression); };
+    // std::regex goes a step deeper into the stack for each character, and a message may name any channel.
+    return [expression = std::regex(text)](const std::string& channel) {
+      return channel.size() <= channel::kMostBytes && std::regex_match(channel, expression);
+    };
   } catch (const std::regex_error& error) {
     fail("channels '{}': {}, expected a regular expression", text, error.what());
   }

@@ -7,7 +7,8 @@ namespace houghstream {
 
 /// Channels as the option -c means them everywhere, on the bus and in a log: a regular expression (ECMAScript's, which
 /// LCM's own agree with as far as channels go) that a channel's whole name has to match, for instance OPENNI_FRAME,
-/// "LEFT|RIGHT" or "CAMERA_.*". May be used from any thread.
+/// "LEFT|RIGHT" or "CAMERA_.*". An expression matches no name that is longer than channel::kMostBytes. May be used from
+/// any thread.
 class ChannelPattern {
  public:
   /// Throws InputError where `text` is no regular expression.

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
 namespace houghstream::channel {
+
+/// The longest name: LCM's reader of logs refuses longer ones, and on a network LCM itself those of more than 63.
+inline constexpr std::size_t kMostBytes = 999;
 
 inline const std::string kFrame = "OPENNI_FRAME";                      ///< images_t
 inline const std::string kDetections = "HOUGHSTREAM_DETECTIONS";       ///< detections_t

@@ -8,6 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/printable.hpp"
+#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/log_seal.hpp"
 
 namespace houghstream {
@@ -15,8 +16,6 @@ namespace {
 
 constexpr std::int32_t kSync = static_cast<std::int32_t>(0xEDA1DA01U);
 constexpr std::size_t kHeaderBytes = 28;
-// LCM's reader refuses longer ones.
-constexpr std::size_t kMaxChannelBytes = 999;
 
 }  // namespace
 
@@ -43,9 +42,12 @@ void LogWriter::write(std::int64_t timestamp, const std::string& channel, ByteVi
 
 void LogWriter::close() {
   if (!log_) return;
+  // An event whose writing failed has left the buffer: flushing what came after it says nothing of it.
+  const bool torn = std::ferror(log_->f) != 0;
   const bool flushed = std::fflush(log_->f) == 0;
   const int error = errno;
   log_.reset();
+  require(!torn, "{}: an event could not be written, the log is torn", file_);
   require(flushed, "{}: the end of the log could not be written: {}", file_, std::strerror(error));
   whole_.publish();
 }
@@ -86,9 +88,9 @@ LogReader::Header LogReader::read_header() {
   header.timestamp = reader.read_int64();
   header.channel_bytes = static_cast<std::uint32_t>(reader.read_int32());
   header.data_bytes = static_cast<std::uint32_t>(reader.read_int32());
-  require(header.channel_bytes >= 1 && header.channel_bytes <= kMaxChannelBytes,
+  require(header.channel_bytes >= 1 && header.channel_bytes <= channel::kMostBytes,
           "{}: event {} has a channel of {} bytes, expected 1 to {}", file_, events_, header.channel_bytes,
-          kMaxChannelBytes);
+          channel::kMostBytes);
   const std::uint64_t event_bytes = kHeaderBytes + std::uint64_t{header.channel_bytes} + header.data_bytes;
   require(event_bytes <= left, "{}: cut in event {}: {} of its {} bytes are there", file_, events_, left, event_bytes);
   return header;

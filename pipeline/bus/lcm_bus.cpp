@@ -8,6 +8,7 @@
 #include <cstring>
 #include <list>
 #include <mutex>
+#include <thread>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/limited_lines.hpp"
@@ -70,6 +71,7 @@ struct LcmBus::State {
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
   std::optional<LogReader> input_log;
   std::mutex output_mutex;
+  std::mutex publish_mutex;  // over tcpq LCM sends a message in several parts
   std::optional<LogWriter> output_log;
   std::unique_ptr<lcm_t, LcmCloser> lcm;
 };
@@ -132,6 +134,11 @@ bool LcmBus::handle(std::chrono::milliseconds timeout) {
     }
     return true;
   }
+  // LCM would wait on no socket, which ends the process. Who publishes connects again.
+  if (lcm_get_fileno(state_->lcm.get()) < 0) {
+    std::this_thread::sleep_for(timeout);
+    fail("{}: not connected, nothing can be received", state_->url);
+  }
   const int handled = lcm_handle_timeout(state_->lcm.get(), static_cast<int>(timeout.count()));
   require(handled >= 0 || errno == EINTR, "{}: receiving failed: {}", state_->url, std::strerror(errno));
   return true;
@@ -144,6 +151,7 @@ void LcmBus::publish(const std::string& channel, ByteView bytes, std::int64_t ut
     state_->output_log->write(utime, channel, bytes);
     return;
   }
+  const std::lock_guard<std::mutex> lock(state_->publish_mutex);
   const int failed = lcm_publish(state_->lcm.get(), channel.c_str(), bytes.data, static_cast<unsigned int>(bytes.size));
   require(failed == 0, "{}: {} bytes could not be published on {}", state_->url, bytes.size, channel);
 }

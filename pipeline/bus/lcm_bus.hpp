@@ -38,10 +38,11 @@ class LcmBus {
   void subscribe(const std::string& channels, Handler handler);
 
   /// Network: waits for one message and handles it, or for `timeout`. Log: handles the next event. False at the end
-  /// of a log. Throws InputError where the log is damaged.
+  /// of a log. Throws InputError where the log is damaged, or, after `timeout`, where the network is not connected.
   bool handle(std::chrono::milliseconds timeout);
 
-  /// May be called from any thread. `utime` is the time of the event where the message goes to a log.
+  /// May be called from any thread. `utime` is the time of the event where the message goes to a log. Throws InputError
+  /// where the message cannot be sent or written.
   void publish(const std::string& channel, ByteView bytes, std::int64_t utime);
 
   template <typename Message>

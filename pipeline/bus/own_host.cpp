@@ -13,20 +13,30 @@
 namespace houghstream {
 namespace {
 
-const std::string kScheme = "udpm://";
+const std::string kMulticast = "udpm://";
+const std::string kTcp = "tcpq://";
 
-/// Of udpm://ADDRESS:PORT?...; LCM's own where the URL states none.
-int port_of(const std::string& url) {
-  constexpr int kDefaultPort = 7667;
-  const std::string place = url.substr(kScheme.size(), url.find('?') - kScheme.size());
+std::optional<BusPlace> place_of(const std::string& url, const std::string& scheme, const BusPlace& usual) {
+  if (url.rfind(scheme, 0) != 0) return std::nullopt;
+  const std::string place = url.substr(scheme.size(), url.find('?') - scheme.size());
   const std::size_t colon = place.find(':');
-  return colon == std::string::npos ? kDefaultPort : std::atoi(place.c_str() + colon + 1);
+  const std::string address = place.substr(0, colon);
+  const std::string port = colon == std::string::npos ? "" : place.substr(colon + 1);
+  return BusPlace{address.empty() ? usual.address : address, port.empty() ? usual.port : port};
 }
 
 }  // namespace
 
+std::optional<BusPlace> multicast_group(const std::string& url) {
+  return place_of(url, kMulticast, {"239.255.76.67", "7667"});
+}
+
+std::optional<BusPlace> tcp_server(const std::string& url) {
+  return place_of(url, kTcp, {"127.0.0.1", "7700"});
+}
+
 bool is_of_own_host(const std::string& url) {
-  if (url.rfind(kScheme, 0) != 0) return false;
+  if (url.rfind(kMulticast, 0) != 0) return false;
   const std::size_t options = url.find('?');
   const std::size_t ttl = options == std::string::npos ? std::string::npos : url.find("ttl=", options);
   return ttl == std::string::npos || std::atoi(url.c_str() + ttl + 4) == 0;
@@ -34,6 +44,9 @@ bool is_of_own_host(const std::string& url) {
 
 std::vector<int> receiving_sockets(const std::string& url) {
   std::vector<int> found;
+  const std::optional<BusPlace> group = multicast_group(url);
+  if (!group) return found;
+  const int port = std::atoi(group->port.c_str());
   std::error_code error;
   for (std::filesystem::directory_iterator entry("/proc/self/fd", error), end; !error && entry != end;
        entry.increment(error)) {
@@ -44,7 +57,7 @@ std::vector<int> receiving_sockets(const std::string& url) {
     socklen_t type_size = sizeof type;
     const bool is_udp = getsockopt(number, SOL_SOCKET, SO_TYPE, &type, &type_size) == 0 && type == SOCK_DGRAM &&
                         getsockname(number, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
-                        address.sin_family == AF_INET && ntohs(address.sin_port) == port_of(url);
+                        address.sin_family == AF_INET && ntohs(address.sin_port) == port;
     if (is_udp) found.push_back(number);
   }
   return found;

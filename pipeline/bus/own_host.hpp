@@ -1,9 +1,22 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace houghstream {
+
+/// Where an LCM URL leads, with LCM's own where it states none.
+struct BusPlace {
+  std::string address;
+  std::string port;
+};
+
+/// The group of udpm://ADDRESS:PORT?...; nothing for other URLs.
+std::optional<BusPlace> multicast_group(const std::string& url);
+
+/// The server of tcpq://ADDRESS:PORT?...; nothing for other URLs.
+std::optional<BusPlace> tcp_server(const std::string& url);
 
 /// Whether an LCM URL is of multicast that stays on this machine: udpm with ttl=0, which is also LCM's default.
 bool is_of_own_host(const std::string& url);
@@ -12,7 +25,7 @@ bool is_of_own_host(const std::string& url);
 /// UDP, whatever the ttl. These two keep others out: what does not come from this machine is dropped by the kernel
 /// (socket(7), SO_ATTACH_FILTER), before it reaches the process.
 
-/// Sockets of this process that receive UDP at the URL's port.
+/// Sockets of this process that receive UDP at the port of a udpm URL; none for other URLs.
 std::vector<int> receiving_sockets(const std::string& url);
 
 /// From here on the socket takes datagrams of this machine only. False where the kernel refuses.

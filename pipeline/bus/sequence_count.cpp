@@ -126,13 +126,13 @@ void SequenceCount::jump(Run& run, std::int64_t low, std::int64_t high) {
 }
 
 bool RepeatedMessages::is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size,
-                                   std::int64_t now_us) {
-  while (!heard_.empty() && (now_us - heard_.front().arrival_us > kRepeatUs || heard_.size() >= kHeard))
-    heard_.pop_front();
+                                   Clock::time_point arrival) {
+  constexpr std::chrono::microseconds kRepeat(kRepeatUs);
+  while (!heard_.empty() && (arrival - heard_.front().arrival > kRepeat || heard_.size() >= kHeard)) heard_.pop_front();
   const std::size_t hash = std::hash<std::string_view>()(std::string_view(reinterpret_cast<const char*>(bytes), size));
   const bool found = std::any_of(heard_.begin(), heard_.end(),
                                  [&](const Heard& heard) { return heard.hash == hash && heard.frame == frame; });
-  if (!found) heard_.push_back({frame, hash, now_us});
+  if (!found) heard_.push_back({frame, hash, arrival});
   return found;
 }
 

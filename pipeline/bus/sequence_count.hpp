@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -80,13 +81,15 @@ class SequenceCount {
 /// thread-safe.
 class RepeatedMessages {
  public:
-  bool is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size, std::int64_t now_us);
+  using Clock = std::chrono::steady_clock;
+
+  bool is_repeated(const FrameId& frame, const std::uint8_t* bytes, std::size_t size, Clock::time_point arrival);
 
  private:
   struct Heard {
     FrameId frame;
     std::size_t hash = 0;
-    std::int64_t arrival_us = 0;
+    Clock::time_point arrival;
   };
   std::deque<Heard> heard_;
 };

@@ -127,6 +127,16 @@ bool StatusReporter::publish_if_due(LcmBus& bus) {
   return true;
 }
 
+bool StatusReporter::try_publish_if_due(LcmBus& bus) {
+  try {
+    return publish_if_due(bus);
+  } catch (const std::exception& error) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    complain("status", fmt::format("no status: {}", error.what()));
+    return false;
+  }
+}
+
 std::string StatusReporter::summary() const {
   const status_t status = message();
   const std::string lost = status.frames_lost < 0 ? "unknown" : std::to_string(status.frames_lost);

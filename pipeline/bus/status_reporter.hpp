@@ -47,10 +47,13 @@ class StatusReporter {
 
   status_t message() const;
 
-  /// Publishes the status, and the objects that are known where it was told of any.
+  /// Publishes the status, and the objects that are known where it was told of any. Throws InputError where the bus
+  /// does not take it.
   void publish(LcmBus& bus);
   /// The same when a second has passed since the last time; whether it has.
   bool publish_if_due(LcmBus& bus);
+  /// The same in a thread that must not end where the bus does not take it: that is logged, and false.
+  bool try_publish_if_due(LcmBus& bus);
 
   /// The account in one line.
   std::string summary() const;

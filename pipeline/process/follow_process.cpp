@@ -3,9 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <deque>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "pipeline/base/log_line.hpp"
@@ -17,41 +15,17 @@
 #include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/pose_output.hpp"
 #include "pipeline/process/process_loop.hpp"
+#include "pipeline/process/recent_frames.hpp"
 
 namespace houghstream {
 namespace {
 
 using std::chrono::milliseconds;
-using Decoded = std::shared_ptr<const DecodedFrame>;
 
 struct EncodedFrame {
   FrameId id;
   std::vector<std::uint8_t> bytes;
   std::chrono::steady_clock::time_point arrival;
-};
-
-/// The last decoded frames of all cameras, for the detections that come a little later.
-class RecentFrames {
- public:
-  void keep(Decoded frame) {
-    constexpr std::size_t kFrames = 12;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    frames_.push_back(std::move(frame));
-    if (frames_.size() > kFrames) frames_.pop_front();
-  }
-
-  /// Null where it is not there any more.
-  Decoded find(const FrameId& id) const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (const Decoded& decoded : frames_) {
-      if (decoded->frame.id == id) return decoded;
-    }
-    return nullptr;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::deque<Decoded> frames_;
 };
 
 class FollowProcess {
@@ -136,6 +110,8 @@ class FollowProcess {
     try {
       check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
+      if (!bus_.is_log() && repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, arrival.time))
+        return status_.note_duplicate();
       if (channels_.matches(frame.channel)) {
         detections_.put_detections(frame, {arrival.bytes.data, arrival.bytes.data + arrival.bytes.size});
       } else {
@@ -152,7 +128,7 @@ class FollowProcess {
     try {
       DecodedFrame decoded = decode_for_poses(encoded->bytes, encoded->id.channel, options_.camera);
       decoded.frame.stages.push_back(decoded.decoding);
-      const Decoded frame = std::make_shared<const DecodedFrame>(std::move(decoded));
+      const RecentFrames::Decoded frame = std::make_shared<const DecodedFrame>(std::move(decoded));
       recent_.keep(frame);
       ObjectPoses poses = poses_.follow(frame->frame);
       poses.frame = encoded->id;
@@ -182,7 +158,7 @@ class FollowProcess {
   ObjectPoses answer(const PairedMessages& pair) {
     Detections detections =
         detections_from_message(decode_message<detections_t>({pair.detections.data(), pair.detections.size()}));
-    Decoded decoded = recent_.find(pair.id);
+    RecentFrames::Decoded decoded = recent_.find(pair.id);
     if (!decoded) {
       decoded = std::make_shared<const DecodedFrame>(decode_for_poses(pair.frame, pair.id.channel, options_.camera));
     }
@@ -214,6 +190,7 @@ class FollowProcess {
   RecentFrames recent_;
   ModelCheck models_;  // of who answers
   TransformOutput transforms_;
+  RepeatedMessages repeats_;
 };
 
 }  // namespace

@@ -7,11 +7,15 @@ bool LookBudget::is_due(const FrameId& frame) {
   constexpr double kSlack = 0.002;  // seconds, for times that tremble
   if (!(looks_per_second_ > 0.0)) return true;
   Camera& camera = cameras_[frame.channel];
-  const double passed_s = 1e-6 * static_cast<double>(frame.utime - camera.last_utime);
+  const double passed_s = seconds_between(camera.last_utime, frame.utime);
   const double wait_s = (camera.hurried ? kHurry : 1.0) / looks_per_second_;
   if (camera.looked && passed_s >= 0.0 && passed_s + kSlack < wait_s) return false;
   camera = {true, false, frame.utime};
   return true;
+}
+
+void LookBudget::hurry(const std::string& channel) {
+  if (const auto camera = cameras_.find(channel); camera != cameras_.end()) camera->second.hurried = true;
 }
 
 }  // namespace houghstream

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -19,8 +20,12 @@ class LookBudget {
   /// begin anew.
   bool is_due(const FrameId& frame);
 
-  /// The camera's next look comes after a quarter of the time, once.
-  void hurry(const std::string& channel) { cameras_[channel].hurried = true; }
+  /// The camera's next look comes after a quarter of the time, once. One that has had no look is left alone: results
+  /// may name any camera.
+  void hurry(const std::string& channel);
+
+  /// Cameras that have had a look.
+  std::size_t cameras() const { return cameras_.size(); }
 
  private:
   struct Camera {

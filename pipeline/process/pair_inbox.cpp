@@ -7,6 +7,10 @@
 
 namespace houghstream {
 
+void PairInbox::require_size(std::size_t bytes) {
+  require(bytes <= kWaitingBytes, "results of {} bytes, expected at most {}", bytes, kWaitingBytes);
+}
+
 void PairInbox::put_frame(const FrameId& id, std::vector<std::uint8_t> bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -24,6 +28,7 @@ void PairInbox::put_frame(const FrameId& id, std::vector<std::uint8_t> bytes) {
 }
 
 void PairInbox::put_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
+  require_size(bytes.size());
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
@@ -84,15 +89,18 @@ PairInbox::Dropped PairInbox::take_dropped() {
 void PairInbox::give_up_waiting() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (auto& [channel, camera] : cameras_) {
-    for (const Waiting& waiting : camera.waiting) {
-      if (camera.find_frame(waiting.id) == nullptr) {
-        dropped_.without_frame.push_back(waiting.id);
-      } else {
-        ++dropped_.skipped;
-      }
-    }
-    camera.waiting.clear();
+    while (!camera.waiting.empty()) give_up_first(camera);
   }
+}
+
+void PairInbox::give_up_first(Camera& camera) {
+  const FrameId& id = camera.waiting.front().id;
+  if (camera.find_frame(id) == nullptr) {
+    dropped_.without_frame.push_back(id);
+  } else {
+    ++dropped_.skipped;
+  }
+  camera.waiting.pop_front();
 }
 
 const ArrivedFrame* PairInbox::Camera::find_frame(const FrameId& id) const {
@@ -142,9 +150,9 @@ void PairInbox::drop_hopeless(Camera& camera) {
   // The second condition bounds memory where detections come and frames do not.
   while (!camera.waiting.empty() && camera.find_frame(camera.waiting.front().id) == nullptr &&
          (camera.frames_seen - camera.waiting.front().frames_before > kWait || camera.waiting.size() > kHistory)) {
-    dropped_.without_frame.push_back(camera.waiting.front().id);
-    camera.waiting.pop_front();
+    give_up_first(camera);
   }
+  while (camera.waiting.size() > kWaiting) give_up_first(camera);
 }
 
 PairedMessages PairInbox::take_pair(Camera& camera) {

@@ -38,6 +38,10 @@ class PairInbox {
   /// more bytes than this.
   static constexpr std::size_t kHistory = 64;
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
+  /// Detections of each camera that wait, for their frame or their turn; the oldest go. Larger ones (two thousand
+  /// detections have so many bytes) are refused.
+  static constexpr std::size_t kWaiting = 128;
+  static constexpr std::size_t kWaitingBytes = std::size_t{1} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
   /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
@@ -48,9 +52,12 @@ class PairInbox {
   /// used.
   explicit PairInbox(bool newest_first, bool ahead = true) : newest_first_(newest_first), ahead_(ahead) {}
 
+  /// Throws InputError where detections or poses of so many bytes are refused.
+  static void require_size(std::size_t bytes);
+
   /// Throws InputError for one camera too many.
   void put_frame(const FrameId& id, std::vector<std::uint8_t> bytes);
-  /// `id` is the frame that they were found in. Throws InputError for one camera too many.
+  /// `id` is the frame that they were found in. Throws InputError for one camera too many, and for too many bytes.
   void put_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 
   /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
@@ -62,7 +69,7 @@ class PairInbox {
 
   /// What was dropped since the last call.
   struct Dropped {
-    std::int64_t skipped = 0;            ///< passed over for newer ones
+    std::int64_t skipped = 0;            ///< passed over for newer ones, or for too many
     std::vector<FrameId> without_frame;  ///< of detections whose frame never came
   };
   Dropped take_dropped();
@@ -94,6 +101,7 @@ class PairInbox {
   void keep_within_bytes();
   Camera* next_camera();
   void pass_over_older(const std::string& channel, Camera& camera);
+  void give_up_first(Camera& camera);
   void drop_hopeless(Camera& camera);
   PairedMessages take_pair(Camera& camera);
   bool any_fresh() const;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
-#include <map>
+#include <memory>
 #include <set>
 
 #include "pipeline/base/log_line.hpp"
@@ -17,12 +17,10 @@
 #include "pipeline/process/pose_memory.hpp"
 #include "pipeline/process/pose_output.hpp"
 #include "pipeline/process/process_loop.hpp"
+#include "pipeline/process/recent_frames.hpp"
 
 namespace houghstream {
 namespace {
-
-// Of a detections_t: two thousand detections. 64 of each camera wait for their frames.
-constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
 
 std::vector<std::uint8_t> copy(ByteView bytes) {
   return {bytes.data, bytes.data + bytes.size};
@@ -80,11 +78,10 @@ class PoseProcess {
 
   void receive_detections(const Arrival& arrival) {
     try {
-      require(arrival.bytes.size <= kMostBytes, "detections of {} bytes, expected at most {}", arrival.bytes.size,
-              kMostBytes);
       check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
-      if (!bus_.is_log() && is_repeated(frame, arrival)) return status_.note_duplicate();
+      if (!bus_.is_log() && repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, arrival.time))
+        return status_.note_duplicate();
       if (sources_.size() < PairInbox::kCameras) sources_.insert(frame.channel);
       ++detections_;
       if (!channels_.matches(frame.channel)) {
@@ -98,11 +95,6 @@ class PoseProcess {
       status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
     }
-  }
-
-  bool is_repeated(const FrameId& frame, const Arrival& arrival) {
-    const auto now = std::chrono::duration_cast<std::chrono::microseconds>(arrival.time.time_since_epoch());
-    return repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, now.count());
   }
 
   bool step(std::chrono::milliseconds timeout) {
@@ -127,23 +119,25 @@ class PoseProcess {
     const std::optional<ArrivedFrame> fresh = inbox_.take_fresh();
     if (!fresh) return;
     try {
-      ahead_[fresh->id.channel] = decode_for_poses(fresh->bytes, fresh->id.channel, options_.camera);
+      ahead_.keep(decoded(fresh->id, fresh->bytes));
     } catch (const InputError&) {
     }
+  }
+
+  RecentFrames::Decoded decoded(const FrameId& id, const std::vector<std::uint8_t>& bytes) const {
+    return std::make_shared<const DecodedFrame>(decode_for_poses(bytes, id.channel, options_.camera));
   }
 
   ObjectPoses poses_of(const PairedMessages& pair) {
     Detections detections = detections_from_message(decode_message<detections_t>(view(pair.detections)));
     if (detections.detections.empty()) return {detections.frame, {}, detections.stages};
-    const auto ahead = ahead_.find(pair.id.channel);
-    const bool is_ahead = ahead != ahead_.end() && ahead->second.frame.id == pair.id;
-    const DecodedFrame decoded =
-        is_ahead ? ahead->second : decode_for_poses(pair.frame, pair.id.channel, options_.camera);
-    detections.stages.push_back(decoded.decoding);
+    const RecentFrames::Decoded ahead = ahead_.find(pair.id);
+    const RecentFrames::Decoded frame = ahead ? ahead : decoded(pair.id, pair.frame);
+    detections.stages.push_back(frame->decoding);
     note_shared_classes(detections);
     note_models();
     warn(models_.note(detections));
-    ObjectPoses poses = estimate_(decoded.frame, detections, memory_.before(detections));
+    ObjectPoses poses = estimate_(frame->frame, detections, memory_.before(detections));
     poses.frame = pair.id;
     memory_.keep(poses);
     return poses;
@@ -212,7 +206,7 @@ class PoseProcess {
   ChannelPattern channels_;
   StatusReporter status_;
   PairInbox inbox_;
-  std::map<std::string, DecodedFrame> ahead_;  // by channel
+  RecentFrames ahead_;  // decoded before their detections have come
   PoseMemory memory_;
   std::deque<HeardClasses> heard_;
   ModelCheck models_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <tuple>
 
@@ -30,9 +31,16 @@ inline std::string to_string(const FrameId& id) {
   return (id.channel.empty() ? "" : id.channel + " ") + std::to_string(id.utime);
 }
 
+/// `to` - `from`, microseconds; at most what the type holds, as the times of a message or a damaged log may be any.
+inline std::int64_t microseconds_between(std::int64_t from, std::int64_t to) {
+  std::int64_t between = 0;
+  if (!__builtin_sub_overflow(to, from, &between)) return between;
+  return to > from ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
+}
+
 /// From one time in microseconds to another.
 inline double seconds_between(std::int64_t from, std::int64_t to) {
-  return static_cast<double>(to - from) * 1e-6;
+  return static_cast<double>(microseconds_between(from, to)) * 1e-6;
 }
 
 }  // namespace houghstream

@@ -96,14 +96,23 @@ cv::Mat outside_of(const cv::Mat& mask, const cv::Mat& depth) {
   return with_depth > kFewestShare * cv::countNonZero(beside) ? beside : outside_hull(wide);
 }
 
-}  // namespace
-
-std::optional<cv::Point> DepthView::pixel_of(const Eigen::Vector3d& point_camera) const {
+/// Pixel of `area` that shows a point of the camera frame.
+std::optional<cv::Point> pixel_in(const cv::Rect& area, const Camera& camera, const Eigen::Vector3d& point_camera) {
   if (point_camera.z() <= 0.0) return std::nullopt;
   const Eigen::Vector2d at = camera.project(point_camera);
   const cv::Point px(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())));
-  if (!cv::Rect({0, 0}, depth.size()).contains(px)) return std::nullopt;
+  if (!area.contains(px)) return std::nullopt;
   return px;
+}
+
+}  // namespace
+
+std::optional<cv::Point> DepthView::pixel_of(const Eigen::Vector3d& point_camera) const {
+  return pixel_in({{0, 0}, depth.size()}, camera, point_camera);
+}
+
+bool DepthView::in_picture(const Eigen::Vector3d& point_camera) const {
+  return !picture || pixel_in(*picture, camera, point_camera);
 }
 
 DepthView make_depth_view(const TrainingView& view) {

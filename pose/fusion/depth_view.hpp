@@ -18,7 +18,10 @@ struct DepthView {
   cv::Mat depth;    ///< CV_32FC1, metres, NaN off the object and where no normal is
   cv::Mat normals;  ///< CV_32FC3, camera frame, unit length, towards the camera; meaningless where depth is NaN
   cv::Mat outside;  ///< CV_8UC1, 255 where the ray through the pixel misses the object
-  int light = -1;   ///< views of one number, from 0 on, have a light that stands still about the object; -1: who knows
+  /// The whole picture that the images are cut out of, in their pixels: beside it nothing is known. None: the cut keeps
+  /// away from its edges, and all around it is within.
+  std::optional<cv::Rect> picture;
+  int light = -1;  ///< views of one number, from 0 on, have a light that stands still about the object; -1: who knows
 
   Eigen::Vector3d normal(const cv::Point& px) const {
     const cv::Vec3f& n = normals.at<cv::Vec3f>(px);
@@ -27,6 +30,9 @@ struct DepthView {
 
   /// Pixel that shows a point of the camera frame; none where that is not in the image.
   std::optional<cv::Point> pixel_of(const Eigen::Vector3d& point_camera) const;
+
+  /// Whether the whole picture shows a point of the camera frame, though the images may be cut out beside it.
+  bool in_picture(const Eigen::Vector3d& point_camera) const;
 };
 
 /// Normals are those of planes through the pixels around; surface that is seen too flatly, or stands alone, is dropped,

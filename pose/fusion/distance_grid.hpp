@@ -34,10 +34,10 @@ struct GridSettings {
 
 /// Weighted mean of the views' signed distances (Curless & Levoy 1996): along the surface's normal, weighted by how
 /// frontally the surface is seen, less and less behind it (as Bylow et al. 2013: walls have another side); rays beside
-/// the mask carve free space. What no view has seen lies behind surfaces and counts as inside, so that the solid is
-/// closed. Where all views look from one side, it ends at the lowest that was seen, on which the object stands, and
-/// what is unseen at the highest. Throws InputError without views or points, or where they need more than
-/// `most_voxels`.
+/// the mask carve free space, beside the view's images too, unless they miss DepthView::picture. What no view has seen
+/// lies behind surfaces and counts as inside, so that the solid is closed. Where all views look from one side, it ends
+/// at the lowest that was seen, on which the object stands, and what is unseen at the highest. Throws InputError
+/// without views or points, or where they need more than `most_voxels`.
 DistanceGrid fuse_distances(const std::vector<DepthView>& views, const GridSettings& settings);
 
 /// The same in a box of the object frame, metres, whatever else the views show there: what no view has seen is inside,

@@ -18,7 +18,7 @@ namespace houghstream::reconstruction {
 namespace {
 
 /// The part of a view in which the model is, as fusion takes it.
-fusion::DepthView depth_view(const TrainingView& view, const Mesh& known) {
+fusion::DepthView depth_view(const TrainingView& view, const Mesh& known, bool whole_picture) {
   constexpr int kMargin_px = 14;
   constexpr int kUnsure_px = 2;
   const Camera& camera = view.frame.camera;
@@ -38,6 +38,7 @@ fusion::DepthView depth_view(const TrainingView& view, const Mesh& known) {
   fusion::DepthView out = fusion::make_depth_view(cut);
   cv::dilate(outline, outline, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * kUnsure_px + 1, 2 * kUnsure_px + 1}));
   out.outside = outline(region) == 0;
+  if (whole_picture) out.picture = whole - region.tl();
   return out;
 }
 
@@ -119,7 +120,7 @@ ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views
   std::vector<fusion::DepthView> depth_views(views.views.size());
   parallel_for(settings.threads, static_cast<int>(depth_views.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    depth_views[at] = depth_view(views.views[at], known);
+    depth_views[at] = depth_view(views.views[at], known, views.whole_pictures);
     if (!views.lights.empty()) depth_views[at].light = views.lights[at];
   });
   fusion::GridSettings grid_settings;
@@ -150,7 +151,7 @@ bool merge_takes(const Take& first, ShownModel& model, const Take& second, Shown
   moved.T_world_object = moved.T_world_object * T_other_model;
   Mesh both = model.mesh;  // its outline is that of both
   append_mesh(other.mesh, found->T_a_b, both);
-  MaskedViews views{training_views(first, model.views, ""), {}};
+  MaskedViews views{training_views(first, model.views, ""), {}, true};
   views.lights.assign(views.views.size(), light_of(first, 0));
   std::vector<TrainingView> more = training_views(second, moved.views, "");
   std::move(more.begin(), more.end(), std::back_inserter(views.views));

@@ -16,12 +16,14 @@ struct ModelOfViews {
 
 struct MaskedViews {
   std::vector<TrainingView> views;
-  std::vector<int> lights;  ///< DepthView::light of each view; empty: all -1
+  std::vector<int> lights;      ///< DepthView::light of each view; empty: all -1
+  bool whole_pictures = false;  ///< false: cut out of larger ones, which go on around them
 };
 
 /// Fuses masked views from all sides (Curless & Levoy 1996). What hides the object in a view, within the outline of
-/// `known`, says nothing; what is beside that outline is free. Where `foot_m` is set, the object ends there: nobody has
-/// seen it from below. Throws InputError naming `name` where nothing is left.
+/// `known`, says nothing; what is beside that outline is free, but beside whole pictures nothing is known. Where
+/// `foot_m` is set, the object ends there: nobody has seen it from below. Throws InputError naming `name` where nothing
+/// is left.
 ModelOfViews fuse_masked_views(const std::string& name, const MaskedViews& views, const Mesh& known,
                                std::optional<double> foot_m, const ModelMaking& settings);
 

@@ -282,8 +282,9 @@ double seen_through_share(const Mesh& mesh, const Take& take, const std::vector<
     const RgbdFrame& frame = take.keyframes[static_cast<std::size_t>(view.keyframe)].frame;
     const cv::Rect whole(0, 0, frame.camera.width, frame.camera.height);
     const cv::Mat model = render_depth(mesh, view.T_camera_object, frame.camera, whole);
-    cv::Mat nearest = frame.depth.clone();  // about a pixel: the outline may be one off
-    nearest.setTo(0.0F, nearest != nearest);
+    // About a pixel: the outline may be one off.
+    cv::Mat nearest = frame.depth.clone();
+    nearest.setTo(0.0F, ~(nearest == nearest));  // vectorised, != may call two NaN equal
     cv::erode(nearest, nearest, cv::Mat());
     Count& count = counts[static_cast<std::size_t>(i)];
     for (int y = 0; y < model.rows; ++y) {

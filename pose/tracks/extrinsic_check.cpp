@@ -25,11 +25,12 @@ Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
 
 }  // namespace
 
-void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera) {
+void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models) {
   View view{poses.frame.utime, {}};
   for (const ObjectPose& pose : poses.poses) {
     if (pose.T_camera_object)
-      view.objects.push_back({pose.class_name, (T_world_camera * *pose.T_camera_object).translation()});
+      view.objects.push_back(
+          {pose.class_name, T_world_camera * *pose.T_camera_object * centre_of(models, pose.class_name)});
   }
   for (const auto& [channel, other] : last_) {
     if (channel == poses.frame.channel || std::abs(other.utime - view.utime) > kTogetherUs) continue;

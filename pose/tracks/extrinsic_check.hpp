@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/types/object_pose.hpp"
+#include "pose/tracks/track.hpp"
 
 namespace houghstream::tracks {
 
@@ -25,8 +26,8 @@ class ExtrinsicCheck {
   /// Offsets from here on are told: twice what good poses of a can or a mug from two sides differ by.
   static constexpr double kToldM = 0.012;
 
-  /// The poses of a frame, in the world.
-  void add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera);
+  /// The poses of a frame, in the world. Objects with a model are compared by its centre, the others by their origin.
+  void add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models);
 
   /// Pairs of cameras whose median offset over the last samples is too large, by their names.
   std::vector<Contradiction> contradictions() const;

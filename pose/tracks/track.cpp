@@ -23,11 +23,12 @@ PoseMeasurement aligned(const PoseMeasurement& measured, const Eigen::Isometry3d
   return out;
 }
 
-Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera, double radius_m) {
+Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera,
+                          const Eigen::Vector3d& centre, double radius_m) {
   constexpr double kAcross = 0.0015;  // metres a metre of distance, of an object of which all is seen
   constexpr double kAlong = 0.002;
   constexpr double kLeastTurn = 0.008;  // radians
-  const Eigen::Vector3d ray = pose.T_camera_object->translation();
+  const Eigen::Vector3d ray = *pose.T_camera_object * centre;
   const double distance = std::max(0.3, ray.norm());
   const double unclear = 1.0 / std::sqrt(std::clamp(static_cast<double>(pose.visible_fraction), 0.1, 1.0));
   const double across = kAcross * distance * unclear;
@@ -63,6 +64,11 @@ TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map
   return models;
 }
 
+Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name) {
+  const auto model = models.find(name);
+  return model == models.end() ? Eigen::Vector3d(0.0, 0.0, 0.0) : model->second.centre;
+}
+
 std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                  const TrackModels& models) {
   constexpr double kUsualRadius = 0.07;  // of what has no model
@@ -71,12 +77,12 @@ std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry
     if (!pose.T_camera_object) continue;
     const auto model = models.find(pose.class_name);
     const double radius_m = model == models.end() ? kUsualRadius : model->second.radius_m;
-    out.push_back(
-        {poses.frame,
-         pose.class_id,
-         pose.class_name,
-         static_cast<double>(pose.quality),
-         {poses.frame.utime, T_world_camera * *pose.T_camera_object, covariance_of(pose, T_world_camera, radius_m)}});
+    out.push_back({poses.frame,
+                   pose.class_id,
+                   pose.class_name,
+                   static_cast<double>(pose.quality),
+                   {poses.frame.utime, T_world_camera * *pose.T_camera_object,
+                    covariance_of(pose, T_world_camera, centre_of(models, pose.class_name), radius_m)}});
   }
   return out;
 }
@@ -116,11 +122,12 @@ void PoseTrack::predict(std::int64_t utime) {
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.filter.predict(utime);
 }
 
-double PoseTrack::distance(const PoseMeasurement& measured) const {
+double PoseTrack::distance(const PoseMeasurement& measured, const Symmetries& symmetries,
+                           const Eigen::Vector3d& centre) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Hypothesis& hypothesis : hypotheses_) {
-    const Eigen::Vector3d& place = hypothesis.filter.T_world_object().translation();
-    nearest = std::min(nearest, (measured.T_world_object.translation() - place).norm());
+    const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
+    nearest = std::min(nearest, (aligned(measured, T, symmetries).T_world_object * centre - T * centre).norm());
   }
   return nearest;
 }

@@ -27,6 +27,10 @@ struct TrackModel {
 };
 using TrackModels = std::map<std::string, TrackModel>;
 
+/// TrackModel::centre of a class; the origin where it has no model. Objects are compared by where this point is: their
+/// origins may be at their feet, which half a turn takes to the top.
+Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name);
+
 /// Models by class name; those without known symmetries have none. Throws InputError naming a mesh without triangles.
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
 
@@ -76,8 +80,9 @@ class PoseTrack {
   void take(const SeenPose& pose, const Symmetries& symmetries, bool doubted);
 
   const MotionFilter& filter() const { return hypotheses_[best_].filter; }
-  /// Metres from the nearest hypothesis, and radians to the nearest that looks the same.
-  double distance(const PoseMeasurement& measured) const;
+  /// Metres from the nearest hypothesis to where the measured pose has the object's `centre` (object frame, metres),
+  /// and radians to the nearest one, of what looks the same.
+  double distance(const PoseMeasurement& measured, const Symmetries& symmetries, const Eigen::Vector3d& centre) const;
   double angle(const PoseMeasurement& measured, const Symmetries& symmetries) const;
 
  private:

@@ -32,6 +32,7 @@ struct Track {
 /// When a camera looked last.
 struct CameraClock {
   std::int64_t utime = 0;
+  double seconds = 0.0;           ///< from the frame before to the one of this time, as far as they count
   std::set<std::string> classes;  ///< that the frame of this time was told of
 };
 
@@ -93,7 +94,7 @@ void Tracker::begin_world() {
 std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   State& state = *state_;
   const FrameId& frame = seen.poses.frame;
-  double seconds = 0.0;  // since the camera's last frame
+  double seconds = 0.0;  // since the camera's last result
   if (!state.begin_frame(frame, seconds)) return std::nullopt;
   const std::vector<SeenPose> poses = state.new_poses(seen);
   for (Track& track : state.tracks) {
@@ -104,7 +105,7 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   for (const SeenPose& pose : poses) classes.insert(pose.class_name);
   std::vector<SeenPose> unknown;
   for (const std::string& class_name : classes) {
-    const std::vector<SeenPose> left = state.associate(poses, class_name, seconds);
+    const std::vector<SeenPose> left = state.associate(poses, class_name, state.cameras[frame.channel].seconds);
     unknown.insert(unknown.end(), left.begin(), left.end());
   }
   for (Track& track : state.tracks) {
@@ -125,7 +126,8 @@ void Tracker::State::begin_world() {
   ++world_number;
 }
 
-/// Whether the frame is worked on; `seconds` since the camera's last one, as far as it counts.
+/// Whether the frame is worked on; `seconds` since the camera's last result, as far as they count: none between two of
+/// one frame.
 bool Tracker::State::begin_frame(const FrameId& frame, double& seconds) {
   constexpr double kUsualS = 1.0 / 30.0;
   constexpr double kMostS = 0.1;
@@ -138,7 +140,7 @@ bool Tracker::State::begin_frame(const FrameId& frame, double& seconds) {
   CameraClock& clock = cameras[frame.channel];
   if (frame.utime < clock.utime) return false;
   seconds = clock.utime == 0 ? kUsualS : std::min(kMostS, seconds_between(clock.utime, frame.utime));
-  if (frame.utime != clock.utime) clock = {frame.utime, {}};
+  if (frame.utime != clock.utime) clock = {frame.utime, seconds, {}};
   return true;
 }
 
@@ -167,12 +169,14 @@ std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& pos
   }
   constexpr double kUnconfirmed = 0.3;  // rather one that is known
   Eigen::MatrixXd costs(objects.size(), measured.size());
+  const Symmetries& symmetries = symmetries_of(class_name);
+  const Eigen::Vector3d centre = centre_of(models, class_name);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Track& track = *objects[i];
     const double reach = track.pose.filter().moving() ? how.moving_reach_m : how.reach_m;
     for (std::size_t j = 0; j < measured.size(); ++j) {
-      const double distance = track.pose.distance(measured[j]->measured);
-      const double angle = track.pose.angle(measured[j]->measured, symmetries_of(class_name));
+      const double distance = track.pose.distance(measured[j]->measured, symmetries, centre);
+      const double angle = track.pose.angle(measured[j]->measured, symmetries);
       costs(i, j) = distance > reach
                         ? 10.0
                         : distance / reach + how.turn_cost * angle / M_PI + (track.id == 0 ? kUnconfirmed : 0.0);
@@ -193,7 +197,7 @@ std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& pos
   for (std::size_t j = 0; j < measured.size(); ++j) {
     if (taken[j]) continue;
     const bool crowded = std::any_of(objects.begin(), objects.end(), [&](const Track* track) {
-      return track->pose.distance(measured[j]->measured) < how.crowded * radius_of(class_name);
+      return track->pose.distance(measured[j]->measured, symmetries, centre) < how.crowded * radius_of(class_name);
     });
     if (!crowded) left.push_back(*measured[j]);
   }
@@ -243,10 +247,10 @@ void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std
   const Eigen::Isometry3d T_camera_object = seen.T_world_camera.inverse() * track.pose.filter().T_world_object();
   const Look look = image != nullptr ? look_at(*image, *model, T_camera_object) : Look{};
   const double unseen_s = seconds_between(track.last_seen.utime, seen.poses.frame.utime);
-  const auto& place = track.pose.filter().T_world_object().translation();
+  const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(models, track.class_name);
   const bool crowded = std::any_of(poses.begin(), poses.end(), [&](const SeenPose& pose) {
     return pose.class_name != track.class_name &&
-           (pose.measured.T_world_object.translation() - place).norm() <
+           (pose.measured.T_world_object * centre_of(models, pose.class_name) - place).norm() <
                0.5 * std::min(radius_of(pose.class_name), radius_of(track.class_name));
   });
   const Eigen::Vector3d here = T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
@@ -308,14 +312,16 @@ Track* Tracker::State::earlier_self(const Track& candidate, std::int64_t utime) 
   Track* best = nullptr;
   double best_rank = 0.0;
   for (Track& track : tracks) {
-    if (track.id == 0 || track.class_name != candidate.class_name || track.seen_now) continue;
+    // One that this frame has given its number to another candidate is nobody's any more.
+    if (track.id <= 0 || track.class_name != candidate.class_name || track.seen_now) continue;
     const double unseen_s = seconds_between(track.last_seen.utime, utime);
     const bool handled = track.state == TrackState::kHidden && unseen_s < settings.handled_s;
     const bool lost = track.pose.filter().moving() || track.seen_through_s > 0.0;
     const bool free = !track.there() || lost || (handled && visible <= most_together[candidate.class_name]);
     if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
     const double rank = unseen_s + (track.there() ? 0.0 : 5.0) +
-                        track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()});
+                        track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
+                                            symmetries_of(track.class_name), centre_of(models, track.class_name));
     if (best != nullptr && rank >= best_rank) continue;
     best = &track;
     best_rank = rank;

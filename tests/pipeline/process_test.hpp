@@ -91,4 +91,16 @@ class ProcessOnMemq {
   std::thread thread_;
 };
 
+/// What a detector says of a frame in which it has found a bowl.
+inline Detections one_bowl(std::int64_t utime, const std::string& camera = channel::kFrame) {
+  Detection bowl;
+  bowl.class_id = 1;
+  bowl.class_name = "bowl";
+  bowl.box_px = {1, 2, 3, 4};
+  Detections detections;
+  detections.frame = {camera, utime};
+  detections.detections = {bowl};
+  return detections;
+}
+
 }  // namespace houghstream

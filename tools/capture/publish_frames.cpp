@@ -107,7 +107,7 @@ class StatusTicker {
     thread_ = std::thread([this, &status, &bus, &work] {
       while (running_) {
         // Who hangs says nothing more.
-        if (work.is_beating() && status.publish_if_due(bus)) notify_service("WATCHDOG=1");
+        if (work.is_beating() && status.try_publish_if_due(bus)) notify_service("WATCHDOG=1");
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       }
     });

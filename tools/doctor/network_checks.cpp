@@ -21,16 +21,6 @@ constexpr const char* kSenders = "who may send";
 constexpr const char* kSelfTest = "LCM self test";
 const std::string kRouteRemedy = "sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo";
 
-/// ADDRESS:PORT of a udpm URL.
-std::optional<std::pair<std::string, std::string>> group_of(const std::string& url) {
-  const std::string scheme = "udpm://";
-  if (url.rfind(scheme, 0) != 0) return std::nullopt;
-  const std::string place = url.substr(scheme.size(), url.find('?') - scheme.size());
-  const std::size_t colon = place.find(':');
-  if (colon == std::string::npos) return std::nullopt;
-  return std::make_pair(place.substr(0, colon), place.substr(colon + 1));
-}
-
 /// The interface through which packets to the address leave, by /proc/net/route: the narrowest route, then the
 /// smallest metric. Numbers there are in the order of the network, read as those of this machine, like inet_addr().
 std::optional<std::string> interface_to(const Machine& machine, const std::string& address) {
@@ -60,11 +50,11 @@ std::optional<std::string> interface_to(const Machine& machine, const std::strin
 }
 
 Finding check_route(const Machine& machine, const std::string& url) {
-  const auto group = group_of(url);
+  const std::optional<BusPlace> group = multicast_group(url);
   if (!group) return ok(kRoute, fmt::format("not needed with {}", url));
-  const std::optional<std::string> name = interface_to(machine, group->first);
-  if (!name) return wrong(kRoute, fmt::format("no route to {}: LCM cannot send", group->first), kRouteRemedy);
-  return ok(kRoute, fmt::format("{} goes through {}", group->first, *name));
+  const std::optional<std::string> name = interface_to(machine, group->address);
+  if (!name) return wrong(kRoute, fmt::format("no route to {}: LCM cannot send", group->address), kRouteRemedy);
+  return ok(kRoute, fmt::format("{} goes through {}", group->address, *name));
 }
 
 Finding check_buffer(const Machine& machine, std::size_t frame_bytes, bool heard) {
@@ -93,9 +83,12 @@ Finding check_java_buffer(const Machine& machine, std::size_t frame_bytes) {
 
 Finding check_self_test(const Machine& machine, const std::string& url, std::size_t bytes) {
   const SelfTest test = machine.self_test(url, bytes);
-  const auto group = group_of(url).value_or(std::make_pair("239.255.76.67", "7667"));
+  const std::optional<BusPlace> group = multicast_group(url);
+  const std::optional<BusPlace> server = tcp_server(url);
   const std::string firewall =
-      fmt::format("sudo iptables -I INPUT -p udp -d {} --dport {} -j ACCEPT", group.first, group.second);
+      group    ? fmt::format("sudo iptables -I INPUT -p udp -d {} --dport {} -j ACCEPT", group->address, group->port)
+      : server ? fmt::format("sudo iptables -I INPUT -p tcp --dport {} -j ACCEPT", server->port)
+               : "";
   if (!test.error.empty()) return wrong(kSelfTest, test.error, kRouteRemedy);
   const std::string what = fmt::format("{} of {} messages of {} kB came back", test.received, test.sent, bytes / 1000);
   if (test.received == test.sent) return ok(kSelfTest, what);
@@ -127,17 +120,16 @@ bool has_neighbours(const Machine& machine) {
 
 /// Who may send on the bus. LCM asks nobody who he is.
 Finding check_senders(const Machine& machine, const std::string& url) {
-  const auto group = group_of(url);
-  const bool is_tcp = url.rfind("tcpq://", 0) == 0;
-  if (!group && !is_tcp) return ok(kSenders, fmt::format("this machine only, with {}", url));
+  const std::optional<BusPlace> server = tcp_server(url);
+  const std::optional<BusPlace> place = server ? server : multicast_group(url);
+  if (!place) return ok(kSenders, fmt::format("this machine only, with {}", url));
   if (!has_neighbours(machine)) return ok(kSenders, "this machine only: no other is connected");
-  const std::string port = is_tcp ? "7700" : group->second;
   const std::string drop = fmt::format(
       "sudo nft add table inet houghstream; sudo nft add chain inet houghstream input '{{ type filter hook input "
       "priority 0; }}'; sudo nft add rule inet houghstream input iifname != lo {} dport {} drop",
-      is_tcp ? "tcp" : "udp", port);
-  if (machine.refuses_others(port)) return ok(kSenders, "this machine only: nftables drops what others send");
-  if (is_tcp) return note(kSenders, "every host that reaches the server's port may send, and read what is sent", drop);
+      server ? "tcp" : "udp", place->port);
+  if (machine.refuses_others(place->port)) return ok(kSenders, "this machine only: nftables drops what others send");
+  if (server) return note(kSenders, "every host that reaches the server's port may send, and read what is sent", drop);
   if (is_of_own_host(url))
     return note(kSenders,
                 "ttl=0: our programs take what this machine sends only; lcm-spy, lcm-logger and other programs take "
@@ -155,7 +147,7 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
   const bool route = findings.back().level == Finding::Level::kOk;
   const std::size_t heard = route ? machine.heard_bytes(settings.url, settings.frame_channel) : 0;
   const std::size_t frame_bytes = heard > 0 ? heard : settings.frame_bytes;
-  if (group_of(settings.url)) {
+  if (multicast_group(settings.url)) {
     findings.push_back(check_buffer(machine, frame_bytes, heard > 0));
     findings.push_back(check_java_buffer(machine, frame_bytes));
   }

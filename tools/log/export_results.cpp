@@ -239,21 +239,21 @@ std::int64_t export_results_json(const std::filesystem::path& log_file, const st
 
 std::int64_t export_objects_csv(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                                 LossAccount& losses) {
+  require_other_file(out_file, log_file);
   const std::vector<WorldObjects> worlds = read_worlds(log_file, losses);
-  std::ofstream out(out_file);
-  out << "utime,source_channel,world,world_number,track_id,class_id,class_name,state,probability,moving,x,y,z,qw,qx,qy,"
-         "qz,"
-         "dev_x,dev_y,dev_z,dev_rx,dev_ry,dev_rz,vx,vy,vz,wx,wy,wz,seen_utime,seen_channel,reason\n";
+  std::string text =
+      "utime,source_channel,world,world_number,track_id,class_id,class_name,state,probability,moving,x,y,z,qw,qx,qy,qz,"
+      "dev_x,dev_y,dev_z,dev_rx,dev_ry,dev_rz,vx,vy,vz,wx,wy,wz,seen_utime,seen_channel,reason\n";
   for (const WorldObjects& world : worlds) {
-    for (const TrackedObject& object : world.objects) out << object_row(world, object) << '\n';
+    for (const TrackedObject& object : world.objects) text += object_row(world, object) + '\n';
   }
-  out.close();
-  require(!out.fail(), "{}: cannot be written", out_file.string());
+  write_whole_file(out_file, text);
   return static_cast<std::int64_t>(worlds.size());
 }
 
 std::int64_t export_objects_json(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
                                  LossAccount& losses) {
+  require_other_file(out_file, log_file);
   const std::vector<WorldObjects> worlds = read_worlds(log_file, losses);
   OrderedJson json{{"stories", stories_of(worlds)}, {"frames", OrderedJson::array()}};
   for (const WorldObjects& world : worlds) json["frames"].push_back(world_json(world));

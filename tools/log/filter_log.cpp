@@ -6,6 +6,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
+#include "pipeline/types/frame_id.hpp"
 
 namespace houghstream::log_tools {
 namespace {

@@ -1,17 +1,10 @@
 #include "tools/log/good_events.hpp"
 
-#include <limits>
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream::log_tools {
-
-std::int64_t microseconds_between(std::int64_t from, std::int64_t to) {
-  std::int64_t between = 0;
-  if (!__builtin_sub_overflow(to, from, &between)) return between;
-  return to > from ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
-}
 
 void LossAccount::note_damage(std::uint64_t bytes, const std::string& reason) {
   if (damaged_places_ == 0) first_damage_ = reason;

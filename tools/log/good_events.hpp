@@ -9,9 +9,6 @@
 
 namespace houghstream::log_tools {
 
-/// `to` - `from`, microseconds; at most what the type holds, as the times of a damaged log may be any.
-std::int64_t microseconds_between(std::int64_t from, std::int64_t to);
-
 /// What of a recording could not be kept.
 class LossAccount {
  public:

@@ -13,6 +13,7 @@
 #include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "pipeline/types/frame_id.hpp"
 #include "tools/log/message_types.hpp"
 
 namespace houghstream::log_tools {

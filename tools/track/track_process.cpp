@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <deque>
 #include <mutex>
-#include <set>
 
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/limited_lines.hpp"
@@ -43,8 +42,9 @@ class Silence {
     try {
       const auto status = decode_message<status_t>(arrival.bytes);
       if (status.process != "hs-detect" && status.process != "hs-pose") return;
+      const std::string name = fmt::format("{} (process {})", status.process, status.pid);
       const std::lock_guard<std::mutex> lock(mutex_);
-      last_[fmt::format("{} (process {})", status.process, status.pid)] = arrival.event_us;
+      if (last_.size() < kProcesses || last_.count(name) > 0) last_[name] = arrival.event_us;
     } catch (const InputError&) {
     }
   }
@@ -63,6 +63,8 @@ class Silence {
   }
 
  private:
+  static constexpr std::size_t kProcesses = 64;  // a sender of rubbish may make up numbers without end
+
   std::mutex mutex_;
   std::map<std::string, std::int64_t> last_;
 };
@@ -129,6 +131,7 @@ class TrackProcess {
     constexpr std::size_t kKept = 64;
     note_event(arrival);
     try {
+      PairInbox::require_size(arrival.bytes.size);
       Detections detections = detections_from_message(decode_message<detections_t>(arrival.bytes));
       if (!channels_.matches(detections.frame.channel)) return;
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -145,9 +148,9 @@ class TrackProcess {
       check_wire(arrival.bytes, object_poses_t::getHash(), object_poses_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
       if (!channels_.matches(frame.channel)) return;
+      inbox_.put_detections(frame, copy(arrival.bytes));
       status_.count_received();
       ++poses_;
-      inbox_.put_detections(frame, copy(arrival.bytes));
     } catch (const InputError& error) {
       status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), "message");
@@ -199,17 +202,16 @@ class TrackProcess {
     const bool patient = static_cast<double>(now_us() - waiting.since_us) * 1e-6 < options_.wait_s;
     const std::lock_guard<std::mutex> lock(mutex_);
     tracks::CameraPlace place = places_.at(channel::camera_name(frame.channel), frame.utime);
-    place.may_come = place.may_come && patient && !(alone_ && !places_.any());
+    place.may_come = place.may_come && patient && (alone_.empty() || places_.any());
     if (place.T_world_camera || place.may_come) return begin_world("WORLD", place);
     if (places_.any()) return place;
-    cameras_.insert(frame.channel);
-    if (cameras_.size() > 1)
+    if (!alone_.empty() && alone_ != frame.channel)
       return {
           std::nullopt, false,
           "where its camera is is not known, expected --cameras, --camera-pose or " + channel::to_world(frame.channel)};
-    if (!alone_)
+    if (alone_.empty())
       log_info("where {} is is not known: the world is its own frame, and objects move when it does", frame.channel);
-    alone_ = true;
+    alone_ = frame.channel;
     return begin_world(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
   }
 
@@ -227,7 +229,7 @@ class TrackProcess {
     try {
       StageClock clock;
       const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(view(waiting.messages.detections)));
-      check_.add(poses, T_world_camera);
+      check_.add(poses, T_world_camera, *used_models_);
       if (options_.check || publish_objects(waiting, poses, T_world_camera, clock))
         status_.count_processed(std::chrono::steady_clock::now() - waiting.messages.arrival);
       tell_contradictions();
@@ -290,8 +292,11 @@ class TrackProcess {
 
   void tell_silence() {
     if (bus_.is_log()) return;
-    for (const std::string& name : silence_->fallen_silent(now_us()))
-      log_warning("{} has fallen silent: what it alone finds is not seen any more", name);
+    for (const std::string& name : silence_->fallen_silent(now_us())) {
+      const std::string line = name + " has fallen silent: what it alone finds is not seen any more";
+      const auto admitted = silences_.admit(name, line, std::chrono::steady_clock::now());
+      if (admitted) log_warning("{}", *admitted);
+    }
   }
 
   void tell_contradictions() {
@@ -316,12 +321,12 @@ class TrackProcess {
   tracks::Tracker tracker_;
   WorldOutput output_;
   tracks::ExtrinsicCheck check_;
-  LimitedLines lines_;
+  LimitedLines lines_;     // of contradictions
+  LimitedLines silences_;  // of processes
   std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
   std::deque<Waiting> waiting_;
   std::string world_;
-  std::set<std::string> cameras_;  // whose place is not known
-  bool alone_ = false;             // the world is the frame of the only camera
+  std::string alone_;  // the camera whose frame is the world, where no place is known
   // What the receiving thread writes.
   mutable std::mutex mutex_;
   std::int64_t event_us_ = 0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
@@ -148,14 +149,16 @@ void BusWatcher::hand_over() {
 
 void BusWatcher::listen() {
   constexpr std::chrono::milliseconds kPatience(50);
+  LimitedLines complaints;
   while (!stopping_) {
     try {
       bus_.handle(kPatience);
     } catch (const std::exception& error) {
-      log_error("{}", error.what());
+      const auto admitted = complaints.admit("bus", error.what(), std::chrono::steady_clock::now());
+      if (admitted) log_error("{}", *admitted);
     }
     hand_over();
-    status_.publish_if_due(bus_);
+    status_.try_publish_if_due(bus_);
   }
 }
 

@@ -49,8 +49,8 @@ void run_viewer(const ViewerSettings& settings) {
   }
   watcher.stop();
   while (const auto matched = watcher.next(std::chrono::milliseconds(0))) frame_show.show(*matched, watcher);
+  frame_show.finish();  // before the last word, which a bus that is gone does not take: a video must be whole
   watcher.finish();
-  frame_show.finish();
 }
 
 }  // namespace houghstream::view

@@ -55,8 +55,7 @@ void OpenniRecording::note(const SensorImage& image) {
   if (may_be_recorded && own.size() < kRemembered) own.push_back(remember(image));
 }
 
-void OpenniRecording::mend_times() {
-  const FirstImages recorded = first_recorded(file_);
+void OpenniRecording::mend_times(const FirstImages& recorded) {
   const std::int64_t colour_later_us = device_start_us(file_ + ", colour", recorded.colour, live_.colour, jpeg_) -
                                        device_start_us(file_ + ", depth", recorded.depth, live_.depth, false);
   const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
@@ -64,8 +63,18 @@ void OpenniRecording::mend_times() {
 }
 
 void OpenniRecording::finish() noexcept {
+  FirstImages recorded;
   try {
-    mend_times();
+    check_oni(file_);
+    recorded = first_recorded(file_);
+  } catch (const std::exception& error) {
+    whole_.keep();  // what a camera has seen cannot be had again
+    log_error("{}; the recording is not whole and stays there, {} is what it was", error.what(),
+              whole_.file().string());
+    return;
+  }
+  try {
+    mend_times(recorded);
   } catch (const std::exception& error) {
     log_warning("{}; in the recording colour may lie beside its depth", error.what());
   }

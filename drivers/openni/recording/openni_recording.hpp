@@ -40,11 +40,12 @@ class OpenniRecording {
   void stop() { recorder_.destroy(); }
 
   /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero, and puts it
-  /// into its place. Warns where that fails; the file is then as OpenNI2 has left it.
+  /// into its place. Warns where the times cannot be mended; they are then as OpenNI2 has left them. A recording that
+  /// is not whole (a full disk) is told, and stays as FILE.partial.oni; an earlier FILE is left alone.
   void finish() noexcept;
 
  private:
-  void mend_times();
+  void mend_times(const FirstImages& recorded);
 
   WholeFile whole_;
   std::string file_;  // while it is written

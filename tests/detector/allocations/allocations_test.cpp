@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
+#include <opencv2/imgproc.hpp>
 
 #include "detector/detector.hpp"
 #include "detector/stages.hpp"
@@ -92,6 +93,10 @@ TEST(Allocations, FramesTakeTheMemoryOfThoseBefore) {
   RgbdFrame frame = toy::room(5);
   toy::put_tile(0, 90, 120, 0.8, frame);
   toy::put_tile(1, 230, 120, 0.9, frame);
+  // As a camera of the usual focal length sees it: where a coarse one's frames are enlarged, OpenCV takes memory.
+  frame.camera = frame.camera.scaled(2.0);
+  cv::resize(frame.colour, frame.colour, cv::Size(), 2.0, 2.0, cv::INTER_NEAREST);
+  cv::resize(frame.depth, frame.depth, cv::Size(), 2.0, 2.0, cv::INTER_NEAREST);
   for (const int threads : {1, 2}) {
     DetectionSettings settings = toy::quick_profile().detection;
     settings.threads = threads;

@@ -86,5 +86,28 @@ TEST(Calibration, AnyNumberOfThreadsGivesTheSame) {
   EXPECT_EQ(serial, masses(set_of(7), settings, forest_of(5, 0.01F)));
 }
 
+/// Of this object: half of its patches in leaves that give it one probability, half in such that give it another.
+Forest giving(float one, float other) {
+  Forest forest;
+  forest.classes.resize(2);
+  forest.classes[0].class_id = 3;
+  forest.classes[1].class_id = 8;
+  for (ObjectClass& object : forest.classes) object.expected_mass = 12.0F;
+  forest.leaves = {0, 1, 2};
+  forest.leaf_weights = {1.0F / one, 1.0F / other};
+  forest.leaf_classes.resize(2);
+  for (LeafClass& entry : forest.leaf_classes) entry.class_index = 1;
+  forest.leaf_classes[0].probability = one;
+  forest.leaf_classes[1].probability = other;
+  return forest;
+}
+
+TEST(Calibration, MassesFollowTheProbabilitiesWhereOthersWereAdded) {
+  Forest after = giving(0.4F, 0.2F);
+  carry_masses(giving(0.6F, 0.4F), after);
+  EXPECT_NEAR(after.classes[1].expected_mass, 12.0F * 0.3F / 0.5F, 1e-5F);
+  EXPECT_EQ(after.classes[0].expected_mass, 12.0F) << "of which no leaf knows anything";
+}
+
 }  // namespace
 }  // namespace houghstream::training

@@ -69,6 +69,26 @@ TEST_F(Files, MayBeKeptInParts) {
   EXPECT_EQ(read_file(file.string() + ".partial", "text"), "a half");
 }
 
+TEST_F(Files, MayBeKeptWhereTheyCannotBePublished) {
+  const std::string partial = file.string() + ".partial";
+  {
+    WholeFile whole(file);
+    std::ofstream(whole.partial()) << "cannot be had again";
+    fs::create_directory(file);
+    EXPECT_THROW(whole.publish(), InputError);
+    EXPECT_TRUE(fs::exists(partial));
+    whole.keep();
+  }
+  EXPECT_EQ(read_file(partial, "text"), "cannot be had again");
+  fs::remove(file);
+  {
+    WholeFile whole(file);
+    fs::create_directory(file);
+    EXPECT_THROW(whole.publish(), InputError);
+  }
+  EXPECT_FALSE(fs::exists(partial)) << "nobody has kept it";
+}
+
 TEST_F(Files, KeepLinksAndRights) {
   put("old");
   chmod(file.c_str(), 0640);
@@ -94,6 +114,12 @@ TEST_F(Files, AreNotTheirOwnSource) {
   fs::create_symlink(file, link);
   EXPECT_THROW(require_other_file(link, file), InputError);
   EXPECT_NO_THROW(require_other_file(folder / "other", file));
+  fs::rename(file, folder / "other.partial");
+  EXPECT_THROW(require_other_file(folder / "other", folder / "other.partial"), InputError) << "it would be emptied";
+  fs::create_symlink(folder / "target", folder / "linked");
+  std::ofstream(folder / "target.partial") << "kept";
+  std::ofstream(folder / "target") << "old";
+  EXPECT_THROW(require_other_file(folder / "linked", folder / "target.partial"), InputError);
 }
 
 TEST_F(Files, AreNoPipes) {

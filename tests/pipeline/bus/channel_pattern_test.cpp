@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
 
 namespace houghstream {
 namespace {
@@ -22,6 +23,13 @@ TEST(ChannelPattern, AnExpressionIsForTheWholeName) {
   EXPECT_FALSE(two.matches("LEFT_2"));
   EXPECT_FALSE(two.matches("UPRIGHT"));
   EXPECT_TRUE(ChannelPattern("CAMERA_[0-9]+").matches("CAMERA_17"));
+}
+
+TEST(ChannelPattern, ANameOfAnyLengthIsSurvived) {
+  const ChannelPattern any("CAMERA.*");
+  EXPECT_TRUE(any.matches("CAMERA" + std::string(channel::kMostBytes - 6, '_')));
+  EXPECT_FALSE(any.matches("CAMERA" + std::string(channel::kMostBytes - 5, '_')));
+  EXPECT_FALSE(any.matches("CAMERA" + std::string(10'000'000, '_'))) << "and the stack is not used up";
 }
 
 TEST(ChannelPattern, WhatIsNoExpressionIsRefused) {

@@ -1,8 +1,10 @@
 #include "pipeline/bus/event_log.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <lcm/lcm-cpp.hpp>
 
@@ -132,6 +134,25 @@ TEST_F(EventLogFile, DamageUpToTheEndIsPassedOver) {
   EXPECT_THROW(reader.next(), InputError);
   EXPECT_EQ(reader.skip_damage().bytes, 30U);
   EXPECT_FALSE(reader.next().has_value());
+}
+
+// As on a disk that is full for a while.
+TEST_F(EventLogFile, ALogThatLacksAnEventIsNotPublished) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const std::vector<std::uint8_t> data(100'000, 7);
+  LogWriter writer(file);
+  writer.write(1, "CHANNEL", {data.data(), data.size()});
+  rlimit full = before;
+  full.rlim_cur = 150'000;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  EXPECT_THROW(writer.write(2, "CHANNEL", {data.data(), data.size()}), InputError);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_NO_THROW(writer.write(3, "CHANNEL", {data.data(), 10}));
+  EXPECT_THROW(writer.close(), InputError);
+  std::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST_F(EventLogFile, FilesThatAreNoLogsAreRefused) {

@@ -1,12 +1,16 @@
 #include "pipeline/bus/lcm_bus.hpp"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
+#include <thread>
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channels.hpp"
@@ -99,6 +103,97 @@ TEST(LcmBus, AFloodOfBadMessagesIsNotLoggedLineByLine) {
   const std::string log = testing::internal::GetCapturedStderr();
   EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 2) << log;
   EXPECT_NE(log.find("49 more messages dropped"), std::string::npos) << log;
+}
+
+/// A server of tcpq that takes one client, and all that it publishes.
+class TcpServer {
+ public:
+  TcpServer() : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    const bool listens = bind(socket_, reinterpret_cast<sockaddr*>(&address), size) == 0 && listen(socket_, 1) == 0 &&
+                         getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+    EXPECT_TRUE(listens);
+    url_ = "tcpq://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~TcpServer() {
+    if (thread_.joinable()) thread_.join();
+    close(socket_);
+  }
+  TcpServer(const TcpServer&) = delete;
+  TcpServer& operator=(const TcpServer&) = delete;
+
+  const std::string& url() const { return url_; }
+
+  /// Messages that have come whole on channel X once the client has gone; -1 where parts of two were mixed.
+  int messages() {
+    thread_.join();
+    return messages_;
+  }
+
+ private:
+  static bool take(int client, void* bytes, std::size_t size) {
+    return recv(client, bytes, size, MSG_WAITALL) == static_cast<ssize_t>(size);
+  }
+
+  static std::uint32_t number(int client) {
+    std::uint32_t value = 0;
+    return take(client, &value, sizeof value) ? ntohl(value) : 0;
+  }
+
+  void serve() {
+    const int client = accept(socket_, nullptr, nullptr);
+    number(client);  // magic
+    number(client);  // version
+    const std::uint32_t hello[] = {htonl(0x287617fa), htonl(0x0100)};
+    send(client, hello, sizeof hello, 0);
+    while (const std::uint32_t type = number(client)) {
+      std::string name(std::min(number(client), 100U), ' ');
+      take(client, name.data(), name.size());
+      std::string data(std::min(number(client), 100'000U), ' ');
+      const bool whole = take(client, data.data(), data.size()) && type == 1 && name == "X" && !data.empty() &&
+                         data.find_first_not_of(data[0]) == std::string::npos;
+      messages_ = whole ? messages_ + 1 : -1;
+      if (!whole) break;
+    }
+    shutdown(socket_, SHUT_RDWR);  // nobody waits for an answer to another greeting
+    close(client);
+  }
+
+  int socket_;
+  std::string url_;
+  int messages_ = 0;
+  std::thread thread_;
+};
+
+TEST(LcmBus, WhatSeveralThreadsPublishOverTcpIsNotMixed) {
+  constexpr int kEach = 3000;
+  TcpServer server;
+  {
+    LcmBus bus(server.url());
+    const auto publish = [&](std::uint8_t value) {
+      const std::vector<std::uint8_t> bytes(200, value);
+      try {
+        for (int i = 0; i < kEach; ++i) bus.publish("X", {bytes.data(), bytes.size()}, 0);
+      } catch (const InputError&) {  // the server has gone
+      }
+    };
+    std::thread other([&] { publish('a'); });
+    publish('b');
+    other.join();
+  }
+  EXPECT_EQ(server.messages(), 2 * kEach);
+}
+
+TEST(LcmBus, WithoutAServerReceivingFailsAfterItsTime) {
+  LcmBus bus("tcpq://127.0.0.1:1");
+  bus.subscribe("X", [](const Arrival&) {});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THROW(bus.handle(milliseconds(50)), InputError);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, milliseconds(50));
 }
 
 TEST(LcmBus, RefusesWhatItCannotOpen) {

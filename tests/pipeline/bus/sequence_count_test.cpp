@@ -158,11 +158,14 @@ TEST(RepeatedMessages, AreTheSameBytesOfTheSameFrameSoonAfter) {
   RepeatedMessages repeats;
   const std::vector<std::uint8_t> a = {1, 2, 3};
   const std::vector<std::uint8_t> b = {1, 2, 4};
-  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), 0));
-  EXPECT_TRUE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), 10));
-  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, b.data(), b.size(), 10)) << "of another detector";
-  EXPECT_FALSE(repeats.is_repeated({"RIGHT", 1}, a.data(), a.size(), 10));
-  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), 2'000'000)) << "a log that is replayed";
+  const RepeatedMessages::Clock::time_point start{};
+  const auto soon = start + std::chrono::microseconds(10);
+  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), start));
+  EXPECT_TRUE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), soon));
+  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, b.data(), b.size(), soon)) << "of another detector";
+  EXPECT_FALSE(repeats.is_repeated({"RIGHT", 1}, a.data(), a.size(), soon));
+  EXPECT_FALSE(repeats.is_repeated({"LEFT", 1}, a.data(), a.size(), start + std::chrono::seconds(2)))
+      << "a log that is replayed";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <thread>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channels.hpp"
 
@@ -85,6 +86,19 @@ TEST(StatusReporter, IsPublishedOnceASecond) {
   bus.handle(std::chrono::milliseconds(10));
   bus.handle(std::chrono::milliseconds(10));
   EXPECT_EQ(seen, 1);
+}
+
+TEST(StatusReporter, ABusThatDoesNotTakeItIsToldAndSurvived) {
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  LcmBus bus("tcpq://127.0.0.1:1");  // where nobody listens
+  StatusReporter status("hs-test");
+  EXPECT_FALSE(status.try_publish_if_due(bus)) << "not due";
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  EXPECT_FALSE(status.try_publish_if_due(bus));
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("no status: tcpq://"), std::string::npos);
+  EXPECT_NE(status.message().last_error.find("could not be published on HOUGHSTREAM_STATUS"), std::string::npos);
+  EXPECT_THROW(status.publish(bus), InputError);
 }
 
 }  // namespace

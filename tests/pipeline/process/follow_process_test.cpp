@@ -14,14 +14,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Detections one_bowl(std::int64_t utime) {
-  Detection bowl;
-  bowl.class_id = 1;
-  bowl.class_name = "bowl";
-  bowl.box_px = {1, 2, 3, 4};
-  return {{channel::kFrame, utime}, {bowl}, {}};
-}
-
 ObjectPoses bowl_at(const FrameId& frame, double z, int detection) {
   ObjectPose pose;
   pose.class_name = "bowl";
@@ -44,7 +36,7 @@ FollowPoses fake() {
           }};
 }
 
-void run_fake(LcmBus& bus) {
+void run_following(LcmBus& bus) {
   run_follow_process(bus, PoseProcessOptions{}, fake());
 }
 
@@ -54,7 +46,7 @@ images_t frame_message(std::int64_t utime) {
 
 TEST(FollowProcess, EachFrameHasItsPosesWithoutDetectionsAndDetectionsTheirAnswer) {
   ProcessOnMemq test({channel::kPoses, channel::kStatus, "BOWL_TO_CAMERA"});
-  test.start(run_fake);
+  test.start(run_following);
   for (std::int64_t utime = 1; utime <= 3; ++utime) {
     test.bus.publish(channel::kFrame, frame_message(utime));
     ASSERT_TRUE(test.wait_for("BOWL_TO_CAMERA", static_cast<std::size_t>(utime)));
@@ -127,6 +119,23 @@ TEST(FollowProcess, OlderFramesAreSkippedAndBadMessagesCounted) {
   EXPECT_EQ(status.frames_processed + status.frames_skipped + status.frames_refused, status.frames_received);
 }
 
+TEST(FollowProcess, DetectionsThatComeTwiceAreAnsweredOnceAndLargeOnesNot) {
+  ProcessOnMemq test({channel::kPoses, channel::kStatus});
+  test.start(run_following);
+  test.bus.publish(channel::kFrame, frame_message(1));
+  ASSERT_TRUE(test.wait_for(channel::kPoses, 1));
+  Detections many = one_bowl(1);
+  many.detections.assign(30'000, Detection(many.detections.at(0)));
+  test.bus.publish(channel::kDetections, to_message(many));
+  for (int i = 0; i < 2; ++i) test.bus.publish(channel::kDetections, to_message(one_bowl(1)));
+  ASSERT_TRUE(test.wait_for(channel::kPoses, 2));
+  std::this_thread::sleep_for(milliseconds(300));
+  test.stop();
+  EXPECT_EQ(test.count(channel::kPoses), 2U);
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_NE(status.last_error.find("expected at most 1048576"), std::string::npos) << status.last_error;
+}
+
 TEST(FollowProcess, ALogIsWorkedOnInItsOrderAndStopSignalsAreCaught) {
   std::signal(SIGINT, SIG_DFL);
   const auto input = std::filesystem::temp_directory_path() / ("follow_process_in." + std::to_string(getpid()));
@@ -143,7 +152,7 @@ TEST(FollowProcess, ALogIsWorkedOnInItsOrderAndStopSignalsAreCaught) {
   writer.close();
   {
     LcmBus bus("file://" + input.string(), output);
-    run_fake(bus);
+    run_following(bus);
   }
   std::vector<std::pair<std::int64_t, int>> poses;
   LogReader reader(output);

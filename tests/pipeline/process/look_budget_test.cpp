@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace houghstream {
 namespace {
 
@@ -37,6 +39,23 @@ TEST(LookBudget, ALossBringsTheNextLookForwardOnce) {
   EXPECT_TRUE(budget.is_due({"LEFT", 50000}));
   EXPECT_FALSE(budget.is_due({"LEFT", 100000}));
   EXPECT_TRUE(budget.is_due({"LEFT", 250000}));
+}
+
+TEST(LookBudget, ALossOfACameraThatIsNotKnownIsForgotten) {
+  LookBudget budget(5.0);
+  EXPECT_TRUE(budget.is_due({"LEFT", 0}));
+  for (int i = 0; i < 100; ++i) budget.hurry("FORGED_" + std::to_string(i));
+  EXPECT_EQ(budget.cameras(), 1U);
+}
+
+TEST(LookBudget, TimesMayBeAny) {
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  LookBudget budget(1.0);
+  EXPECT_TRUE(budget.is_due({"LEFT", kFirst}));
+  EXPECT_TRUE(budget.is_due({"LEFT", kLast}));
+  EXPECT_TRUE(budget.is_due({"LEFT", kFirst}));
+  EXPECT_FALSE(budget.is_due({"LEFT", kFirst + 500000}));
 }
 
 TEST(LookBudget, TimesThatGoBackBeginAnew) {

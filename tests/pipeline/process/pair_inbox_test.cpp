@@ -115,6 +115,23 @@ TEST(PairInbox, MemoryIsBoundedWhereFramesNeverCome) {
   EXPECT_EQ(inbox.take_dropped().without_frame.size(), count - PairInbox::kHistory);
 }
 
+TEST(PairInbox, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
+  for (const bool newest_first : {true, false}) {
+    PairInbox inbox(newest_first);
+    inbox.put_frame(id(1), bytes(11));
+    const int count = 500;
+    for (int i = 0; i < count; ++i) inbox.put_detections(id(1), {1, static_cast<std::uint8_t>(i)});
+    std::size_t taken = 0;
+    while (inbox.take(kNow)) ++taken;
+    EXPECT_EQ(taken, PairInbox::kWaiting);
+    const PairInbox::Dropped dropped = inbox.take_dropped();
+    EXPECT_EQ(dropped.skipped, count - static_cast<std::int64_t>(PairInbox::kWaiting));
+    EXPECT_TRUE(dropped.without_frame.empty());
+  }
+  EXPECT_THROW(PairInbox(true).put_detections(id(1), std::vector<std::uint8_t>(PairInbox::kWaitingBytes + 1)),
+               InputError);
+}
+
 TEST(PairInbox, TwoCamerasOfEqualTimesKeepTheirFramesApart) {
   for (const bool newest_first : {true, false}) {
     PairInbox inbox(newest_first);

@@ -15,17 +15,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Detections one_bowl(std::int64_t utime, const std::string& camera = channel::kFrame) {
-  Detection bowl;
-  bowl.class_id = 1;
-  bowl.class_name = "bowl";
-  bowl.box_px = {1, 2, 3, 4};
-  Detections detections;
-  detections.frame = {camera, utime};
-  detections.detections = {bowl};
-  return detections;
-}
-
 ObjectPoses at_one_metre(const RgbdFrame& frame, const Detections& detections, const ObjectPoses&) {
   EXPECT_EQ(frame.id, detections.frame);
   ObjectPose pose;
@@ -279,6 +268,20 @@ TEST(PoseProcess, TwoDetectorsOfOneObjectAreTold) {
   test.stop();
   const std::string error = test.last<status_t>(channel::kStatus).last_error;
   EXPECT_NE(error.find("two detectors find 'bowl'"), std::string::npos) << error;
+}
+
+TEST(PoseProcess, DetectionsOfTooManyBytesAreRefused) {
+  ProcessOnMemq test({channel::kPoses, channel::kStatus});
+  test.start(run_fake);
+  send_frame(test, 10);
+  Detections many = one_bowl(10);
+  many.detections.assign(30'000, Detection(many.detections.at(0)));
+  test.bus.publish(channel::kDetections, to_message(many));
+  std::this_thread::sleep_for(milliseconds(300));
+  test.stop();
+  EXPECT_EQ(test.count(channel::kPoses), 0U);
+  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_received, 1);
+  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_refused, 1);
 }
 
 TEST(PoseProcess, DetectionsThatComeTwiceCountOnce) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 #include <unordered_set>
 
@@ -29,6 +30,17 @@ TEST(FrameId, IsPrinted) {
 
 TEST(FrameId, SecondsBetweenTimesAreNegativeWhenTheyGoBack) {
   EXPECT_DOUBLE_EQ(seconds_between(2000000, 500000), -1.5);
+}
+
+TEST(FrameId, TimesMayBeAny) {
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(microseconds_between(3, 10), 7);
+  EXPECT_EQ(microseconds_between(kFirst, kLast), kLast);
+  EXPECT_EQ(microseconds_between(kLast, kFirst), kFirst);
+  EXPECT_EQ(microseconds_between(0, kFirst), kFirst);
+  EXPECT_GT(seconds_between(kFirst, kLast), 9e12);
+  EXPECT_LT(seconds_between(kLast, kFirst), -9e12);
 }
 
 }  // namespace

@@ -57,6 +57,25 @@ TEST(DistanceGrid, DoesNotDependOnThreads) {
   EXPECT_EQ(one.distance, fuse_distances(views, settings).distance);
 }
 
+TEST(DistanceGrid, BesideTheImagesIsFreeBesideThePictureNothingIsKnown) {
+  DepthView view = make_depth_view(turntable_view(TurntableScene{test_scene::cereal_box()}, 0));
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-0.2, -0.01, -0.01), Eigen::Vector3d(0.2, 0.01, 0.01));
+  GridSettings settings;
+  settings.voxel = 0.01;
+  settings.outline_weight = 1.0;
+  const auto weight_at = [&](double x) {
+    const DistanceGrid grid = fuse_box({view}, box, settings);
+    const Eigen::Vector3d cell = (Eigen::Vector3d(x, 0.0, 0.0) - grid.origin) / grid.voxel;
+    const Eigen::Vector3i at = cell.array().round().cast<int>();
+    return grid.weight[grid.index(at.x(), at.y(), at.z())];
+  };
+  EXPECT_EQ(weight_at(-0.2), 1.0F);  // left of the images
+  EXPECT_EQ(weight_at(0.2), 1.0F);   // right of them
+  view.picture = cv::Rect(0, -80, 440, 480);
+  EXPECT_EQ(weight_at(-0.2), 0.0F);
+  EXPECT_EQ(weight_at(0.2), 1.0F);
+}
+
 TEST(DistanceGrid, WhatCannotBeFusedIsRefused) {
   EXPECT_THROW(fuse_distances({}, coarse()), InputError);
   GridSettings tiny = coarse();

@@ -30,5 +30,20 @@ TEST(SeenThrough, WhatIsNoPartOfTheObjectIsSeenThrough) {
   EXPECT_EQ(seen_through_share(with_finger, take, views, 3), share);
 }
 
+TEST(SeenThrough, NothingIsSeenThroughBesideAPixelWithoutDepth) {
+  const test_scene::ShownScene scene;
+  Mesh box;
+  test_scene::add_box(scene.box, 0.0, box);
+  Take take;
+  take.keyframes.resize(1);
+  RgbdFrame& frame = take.keyframes[0].frame;
+  frame.camera = scene.camera;
+  frame.depth = cv::Mat(scene.camera.height, scene.camera.width, CV_32FC1, cv::Scalar(2.0));
+  const std::vector<ShownView> views = {{0, test_scene::camera_at(0.0, 0.7, 0.6), {}}};
+  EXPECT_EQ(seen_through_share(box, take, views, 1), 1.0);
+  for (int x = 0; x < frame.depth.cols; x += 3) frame.depth.col(x).setTo(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(seen_through_share(box, take, views, 1), 0.0);
+}
+
 }  // namespace
 }  // namespace houghstream::reconstruction

@@ -7,6 +7,9 @@
 namespace houghstream::tracks {
 namespace {
 
+using test::foot;
+using test::half_turn;
+using test::models_on_foot;
 using test::on_table;
 using test::TrackedScene;
 
@@ -18,10 +21,10 @@ ExtrinsicCheck after_frames(const Eigen::Vector3d& wrong_m) {
   for (int i = 0; i < 30; ++i) {
     scene.utime += test::kFrameUs;
     scene.channel = "LEFT";
-    check.add(scene.poses(), scene.T_world_camera);
+    check.add(scene.poses(), scene.T_world_camera, {});
     scene.channel = "RIGHT";
     const ObjectPoses poses = scene.poses();
-    check.add(poses, Eigen::Translation3d(wrong_m) * scene.T_world_camera);
+    check.add(poses, Eigen::Translation3d(wrong_m) * scene.T_world_camera, {});
   }
   return check;
 }
@@ -40,6 +43,23 @@ TEST(ExtrinsicCheck, TwoCentimetresAreReportedWithTheirDirection) {
   EXPECT_EQ(found.first, "LEFT");
   EXPECT_EQ(found.second, "RIGHT");
   EXPECT_NEAR(found.offset_m.y(), 0.02, 0.003);
+}
+
+TEST(ExtrinsicCheck, CamerasThatSeeAnObjectInTwoPosesThatLookTheSameAgree) {
+  const TrackModels models = models_on_foot();
+  TrackedScene scene;
+  ExtrinsicCheck check;
+  for (int i = 0; i < 30; ++i) {
+    scene.utime += test::kFrameUs;
+    scene.channel = "LEFT";
+    scene.posed = {{"can", on_table(0, 0) * foot()}};
+    check.add(scene.poses(), scene.T_world_camera, models);
+    scene.channel = "RIGHT";
+    scene.posed = {{"can", on_table(0, 0) * foot() * half_turn()}};
+    check.add(scene.poses(), scene.T_world_camera, models);
+  }
+  ASSERT_EQ(check.pairs().size(), 1U);
+  EXPECT_LT(check.pairs()[0].offset_m.norm(), 1e-6);
 }
 
 }  // namespace

@@ -22,6 +22,28 @@ inline Mesh block() {
   return mesh;
 }
 
+/// The same with its origin at its foot.
+inline Mesh block_on_foot() {
+  Mesh mesh;
+  test_scene::add_box(mesh, {-0.035F, -0.035F, 0.0F}, {0.035F, 0.035F, 0.12F});
+  return mesh;
+}
+
+/// Where the frame at its foot is, in that in its middle.
+inline Eigen::Isometry3d foot() {
+  return Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, -0.06));
+}
+
+/// Turns the block on its head, in the frame at its foot.
+inline Eigen::Isometry3d half_turn() {
+  return foot().inverse() * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()) * foot();
+}
+
+/// The block that has its origin at its foot as a can, which looks the same on its head.
+inline TrackModels models_on_foot() {
+  return make_track_models({{"can", block_on_foot()}}, {{"can", {{half_turn()}, {}}}});
+}
+
 /// From above and in front; the table is z = 0.
 inline Eigen::Isometry3d camera_in_front(double x = 0.0) {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();

@@ -7,7 +7,12 @@
 namespace houghstream::tracks {
 namespace {
 
+using test::block;
+using test::block_on_foot;
 using test::camera_in_front;
+using test::foot;
+using test::half_turn;
+using test::models_on_foot;
 using test::on_table;
 using test::TrackedScene;
 
@@ -106,6 +111,63 @@ TEST(Tracker, WhatIsCarriedToAnotherPlaceKeepsItsNumber) {
   EXPECT_EQ(world.objects[0].class_name, "can");
   EXPECT_EQ(world.objects[0].track_id, 1);
   EXPECT_LT(distance(world.objects[0], on_table(0.1, -0.1)), 0.001);
+}
+
+TEST(Tracker, OfTwoThatComeTogetherOneIsThatWhichHadGone) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(-0.2, 0)}});
+  scene.frames(60);
+  scene.show({});
+  ASSERT_TRUE(scene.frames(120).objects.empty());
+  scene.show({{"can", on_table(0, 0)}, {"can", on_table(0.2, 0)}});
+  WorldObjects world;
+  for (int i = 0; i < 10; ++i) {
+    world = scene.frame();
+    EXPECT_NE(world.objects.size(), 1U) << i;  // both have been seen as often
+  }
+  ASSERT_EQ(world.objects.size(), 2U);
+  EXPECT_EQ(world.objects[0].track_id, 1);
+  EXPECT_EQ(world.objects[1].track_id, 2);
+}
+
+TEST(Tracker, APoseThatLooksTheSameIsOfTheSameObjectWhereverItsOriginIs) {
+  TrackedScene scene;
+  scene.tracker.set_models(models_on_foot());
+  scene.standing = {{"can", on_table(0, 0)}};
+  WorldObjects world;
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Isometry3d upright = on_table(0, 0) * foot();
+    scene.posed = {{"can", i < 30 ? upright : upright * half_turn()}};
+    world = scene.frame();
+    EXPECT_LE(world.objects.size(), 1U) << i;
+  }
+  ASSERT_EQ(world.objects.size(), 1U);
+  EXPECT_LT(distance(world.objects[0], on_table(0, 0) * foot()), 0.001);
+}
+
+TEST(Tracker, WhereAnObjectStandsNoneOfItsClassStandsOnItsHead) {
+  TrackedScene scene;
+  scene.tracker.set_models(make_track_models({{"can", block_on_foot()}}, {}));
+  scene.standing = {{"can", on_table(0, 0)}};
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Isometry3d upright = on_table(0, 0) * foot();
+    scene.posed = {{"can", upright}};
+    if (i >= 10) scene.posed.emplace_back("can", upright * half_turn());
+    EXPECT_LE(scene.frame().objects.size(), 1U) << i;
+  }
+}
+
+TEST(Tracker, WhereAnotherClassIsRecognisedAnObjectGoesWhereverTheirOriginsAre) {
+  TrackedScene scene;
+  scene.tracker.set_models(make_track_models({{"can", block()}, {"mug", block_on_foot()}}, {}));
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(60);
+  scene.posed = {{"mug", on_table(0, 0) * foot()}};
+  const WorldObjects world = scene.frames(30);
+  ASSERT_EQ(world.objects.size(), 2U);
+  EXPECT_EQ(world.objects[0].state, TrackState::kGone);
+  EXPECT_NE(world.objects[0].reason.find("something else"), std::string::npos) << world.objects[0].reason;
+  EXPECT_EQ(world.objects[1].class_name, "mug");
 }
 
 TEST(Tracker, TwoEqualOnesSideBySideKeepTheirNumbersWhileOneIsPushedPastTheOther) {
@@ -221,6 +283,19 @@ TEST(Tracker, WhatOneResultOfAFrameHasSeenAnotherDoesNotMiss) {
   scene.posed.clear();
   EXPECT_EQ(scene.look().objects.at(0).state, TrackState::kVisible);
   EXPECT_EQ(scene.frame().objects.at(0).state, TrackState::kUnrecognised);
+}
+
+TEST(Tracker, WhatASecondDetectorSeesIsAsSoonSureAsWhatTheFirstOneSees) {
+  TrackedScene scene;
+  scene.standing = {{"can", on_table(0, 0)}, {"mug", on_table(0.2, 0)}};
+  WorldObjects world;
+  for (int i = 0; i < 5; ++i) {
+    scene.posed = {{"can", on_table(0, 0)}};
+    scene.frame();
+    scene.posed = {{"mug", on_table(0.2, 0)}};
+    world = scene.look();
+  }
+  EXPECT_EQ(world.objects.size(), 2U);
 }
 
 TEST(Tracker, MoreObjectsThanAllowedAreRefused) {

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/wire_check.hpp"
@@ -160,6 +161,27 @@ TEST(Capture, EndsSoonAfterASignalHoweverFarTheNextFrameIs) {
       [](const openni::CameraListener&) { return std::make_unique<FakeSource>(3); }, settings, "memq://");
   EXPECT_EQ(result.frames, 1) << "the second one's turn had not come";
   EXPECT_LT(result.seconds, 1.0);
+}
+
+/// A source that lets its first frame be waited for until a status is due.
+class SlowSource : public FrameSource {
+ public:
+  std::optional<RgbdFrame> next() override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1300));
+    return make_test_frame(1000);
+  }
+  double rate_hz() const override { return 1e3; }
+};
+
+TEST(Capture, AStatusThatTheBusDoesNotTakeDoesNotEndTheProcess) {
+  catch_stop_signals();
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  EXPECT_THROW(capture_to_network([](const openni::CameraListener&) { return std::make_unique<SlowSource>(); },
+                                  CaptureSettings{}, "tcpq://127.0.0.1:1"),
+               InputError)
+      << "nobody listens there: the frame is not taken either";
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("no status: "), std::string::npos);
 }
 
 TEST(Capture, KeepsTheRateOnTheNetwork) {

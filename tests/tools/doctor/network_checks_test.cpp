@@ -35,6 +35,15 @@ TEST(NetworkChecks, TheNarrowestRouteCountsThenTheSmallestMetric) {
   EXPECT_EQ(way_with("damaged\n"), "no route to 239.255.76.67: LCM cannot send");
 }
 
+TEST(NetworkChecks, AUrlThatStatesNoGroupIsOfLcmsOwn) {
+  const HealthyMachine healthy("network_own_group");
+  for (const char* url : {"udpm://", "udpm://?ttl=1", "udpm://239.255.76.67", "udpm://239.255.76.67?ttl=0"}) {
+    BusSettings bus = kBus;
+    bus.url = url;
+    EXPECT_EQ(check_network(healthy.machine, bus).front().what, "239.255.76.67 goes through lo") << url;
+  }
+}
+
 TEST(NetworkChecks, WithoutARouteTheBusIsLeftAlone) {
   HealthyMachine healthy("network_no_route");
   plant(healthy.machine.root / "proc/net/route", kColumns);
@@ -109,6 +118,8 @@ TEST(NetworkChecks, WhoMaySendIsSaidWithWhatKeepsOthersOut) {
   EXPECT_NE(own.remedy.find("udp dport 7667 drop"), std::string::npos) << own.remedy;
   EXPECT_EQ(senders("udpm://239.255.76.67:7667?ttl=1").level, Level::kNote);
   EXPECT_NE(senders("tcpq://localhost").remedy.find("tcp dport 7700 drop"), std::string::npos);
+  EXPECT_NE(senders("tcpq://10.0.0.2:7800").remedy.find("tcp dport 7800 drop"), std::string::npos);
+  EXPECT_EQ(senders("udpm://?ttl=1").level, Level::kNote) << "LCM's own group";
   EXPECT_EQ(senders("memq://").level, Level::kOk);
   healthy.machine.refuses_others = [](const std::string& port) { return port == "7667"; };
   EXPECT_EQ(senders(kBus.url).level, Level::kOk);

@@ -7,6 +7,7 @@
 
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
@@ -216,6 +217,20 @@ TEST(ExportObjects, JsonTellsEachObjectsStoryAndWhyItVanished) {
   EXPECT_EQ(states[1]["reason"], "LEFT sees through, 90 % of it");
   EXPECT_EQ(json["frames"].size(), 3U);
   EXPECT_EQ(json["frames"][0]["objects"][0]["pose"][0], 0.25);
+}
+
+TEST(ExportObjects, AreNotWrittenOverTheirLogAndAreThereAsAWhole) {
+  LossAccount losses;
+  const fs::path log = log_of_three_frames();
+  const std::string before = read_text(log);
+  const fs::path out = log.parent_path() / "out";
+  fs::create_symlink(log, log.parent_path() / "link");
+  EXPECT_THROW(export_objects_csv(log, log, losses), InputError);
+  EXPECT_THROW(export_objects_csv(log, log.parent_path() / "link", losses), InputError);
+  EXPECT_THROW(export_objects_json(log, log, losses), InputError);
+  EXPECT_EQ(read_text(log), before);
+  const WholeFile held(out);
+  EXPECT_THROW(export_objects_csv(log, out, losses), InputError) << "somebody else writes it";
 }
 
 TEST(ExportObjects, ALogWithoutObjectsIsRefused) {

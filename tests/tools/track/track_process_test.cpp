@@ -4,6 +4,7 @@
 #include <houghstream/status_t.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "tests/pipeline/process_test.hpp"
 
@@ -98,7 +99,7 @@ TEST(TrackProcess, ATransformThatDoesNotComeInTimeIsSaidAndTheFrameIsRefusedNeve
       << status.last_error;
 }
 
-TEST(TrackProcess, ASecondCameraWithoutAPlaceIsRefused) {
+TEST(TrackProcess, ASecondCameraWithoutAPlaceIsRefusedAndTheFirstGoesOn) {
   ProcessOnMemq test({channel::kObjects, channel::kStatus});
   TrackProcessOptions options;
   options.frame_channels = "LEFT|RIGHT";
@@ -108,9 +109,52 @@ TEST(TrackProcess, ASecondCameraWithoutAPlaceIsRefused) {
   ASSERT_TRUE(test.wait_for(channel::kObjects, 1));
   send_frame(test, 0, "RIGHT");
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  test.stop();
   EXPECT_EQ(test.count(channel::kObjects), 1U);
+  send_frame(test, 1, "LEFT");
+  ASSERT_TRUE(test.wait_for(channel::kObjects, 2));
+  test.stop();
+  EXPECT_EQ(last_world(test).frame, (FrameId{"LEFT", time_of(1)}));
+  EXPECT_EQ(test.last<status_t>(channel::kStatus).frames_refused, 1);
   EXPECT_NE(test.last<status_t>(channel::kStatus).last_error.find("RIGHT_TO_WORLD"), std::string::npos);
+}
+
+TEST(TrackProcess, ResultsOfTooManyBytesAreRefused) {
+  ProcessOnMemq test({channel::kObjects, channel::kStatus});
+  TrackProcessOptions options;
+  options.wait_s = 0.02;
+  test.start(tracking(options));
+  test.bus.publish(channel::kFrame, to_message(make_test_frame(time_of(0)), WireFormat{}, 0));
+  ObjectPoses many = one_bowl(time_of(0));
+  many.poses.assign(30'000, ObjectPose(many.poses.at(0)));
+  test.bus.publish(channel::kPoses, to_message(many));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  test.stop();
+  EXPECT_EQ(test.count(channel::kObjects), 0U);
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.frames_received, 1);
+  EXPECT_EQ(status.frames_refused, 1);
+  EXPECT_NE(status.last_error.find("expected at most 1048576"), std::string::npos) << status.last_error;
+}
+
+TEST(TrackProcess, ForgedProcessesThatFallSilentDoNotFillTheLog) {
+  ProcessOnMemq test({channel::kStatus});
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  test.start(tracking({}));
+  status_t forged{};
+  forged.process = "hs-pose";
+  for (forged.pid = 1; forged.pid <= 200; ++forged.pid) {
+    test.bus.publish(channel::kStatus, forged);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(3500));
+  test.stop();
+  const std::string log = testing::internal::GetCapturedStderr();
+  int lines = 0;
+  for (std::size_t at = log.find("fallen silent"); at != std::string::npos; at = log.find("fallen silent", at + 1))
+    ++lines;
+  EXPECT_GE(lines, 1) << log;
+  EXPECT_LE(lines, 64) << log;
 }
 
 TEST(TrackProcess, OtherToolsAreToldOfTheObjectsWhereAsked) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "tests/tools/view/watched_bus.hpp"
 
@@ -124,6 +125,24 @@ TEST(BusWatcher, APreviewIsAJpegOfThePicture) {
   EXPECT_EQ(preview.size, static_cast<std::int32_t>(preview.data.size()));
   ASSERT_GT(preview.data.size(), 2U);
   EXPECT_EQ(preview.data[0] << 8 | preview.data[1], 0xFFD8);
+}
+
+TEST(BusWatcher, ABusThatIsGoneDoesNotEndIt) {
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  {
+    LcmBus bus("tcpq://127.0.0.1:1");  // where nobody listens
+    BusWatcher watcher(bus, channel::kFrame, {}, 1);
+    EXPECT_FALSE(watcher.next(std::chrono::milliseconds(1300)).has_value());
+    watcher.stop();
+  }
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("no status: "), std::string::npos) << log;
+  std::size_t lines = 0;
+  for (std::size_t at = log.find("not connected"); at != std::string::npos; at = log.find("not connected", at + 1))
+    ++lines;
+  EXPECT_GE(lines, 1U) << log;
+  EXPECT_LE(lines, 3U) << log;
 }
 
 TEST(BusWatcher, ALogIsNotWatched) {

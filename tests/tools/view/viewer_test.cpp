@@ -47,6 +47,15 @@ TEST(Viewer, AStopSignalEndsIt) {
   user.join();
 }
 
+TEST(Viewer, FilesAreFinishedBeforeTheLastWordWhichMayFail) {
+  ViewerSettings settings = silent_stream("gone");
+  settings.lcm_url = "tcpq://127.0.0.1:1";  // where nobody listens
+  settings.duration = 0.1;
+  const std::string error = error_of([&] { run_viewer(settings); });
+  EXPECT_NE(error, "");
+  EXPECT_EQ(error.find("could not be published"), std::string::npos) << error;
+}
+
 TEST(Viewer, ABusThatIsNoneIsAnError) {
   ViewerSettings settings = silent_stream("bus");
   settings.lcm_url = "nosuch://";

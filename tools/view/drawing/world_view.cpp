@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 
 #include "tools/view/drawing/overlay.hpp"
@@ -14,7 +13,8 @@ namespace {
 
 constexpr std::size_t kTrail = 150;  // places
 constexpr double kNearM = 0.05;
-constexpr std::int64_t kOfThisTimeUs = 300000;
+constexpr double kOfThisTimeS = 0.3;
+constexpr std::size_t kCameras = 64;  // a sender of rubbish may make up channels without end
 
 double deviation_of(const TrackedObject& object) {
   return std::sqrt(std::max(0.0, object.covariance.topLeftCorner<3, 3>().trace() / 3.0));
@@ -105,7 +105,8 @@ void WorldState::add(const WorldObjects& world) {
     trails.clear();
   }
   last = world;
-  T_world_camera[world.frame.channel] = world.T_world_camera;
+  if (T_world_camera.size() < kCameras || T_world_camera.count(world.frame.channel) > 0)
+    T_world_camera[world.frame.channel] = world.T_world_camera;
   std::map<std::int64_t, std::deque<Eigen::Vector3d>> kept;
   for (const TrackedObject& object : world.objects) {
     std::deque<Eigen::Vector3d>& trail = kept[object.track_id];
@@ -118,7 +119,8 @@ void WorldState::add(const WorldObjects& world) {
 
 void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& frame) {
   const auto camera = world.T_world_camera.find(frame.id.channel);
-  if (camera == world.T_world_camera.end() || std::abs(world.last.frame.utime - frame.id.utime) > kOfThisTimeUs) return;
+  const double apart_s = std::abs(seconds_between(world.last.frame.utime, frame.id.utime));
+  if (camera == world.T_world_camera.end() || apart_s > kOfThisTimeS) return;
   const Eigen::Isometry3d T_camera_world = camera->second.inverse();
   const auto pixel_of = [&](const Eigen::Vector3d& place) -> std::optional<cv::Point> {
     const Eigen::Vector3d point = T_camera_world * place;

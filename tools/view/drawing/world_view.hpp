@@ -15,7 +15,7 @@ namespace houghstream::view {
 /// What hs-track said of the world last, and where its objects were before.
 struct WorldState {
   WorldObjects last;
-  std::map<std::string, Eigen::Isometry3d> T_world_camera;     ///< of each camera, by channel, as it was told last
+  std::map<std::string, Eigen::Isometry3d> T_world_camera;  ///< of each camera (64 at most), by channel, as told last
   std::map<std::int64_t, std::deque<Eigen::Vector3d>> trails;  ///< by track_id: places of the last seconds, metres
 
   /// A new world has no past.

@@ -174,6 +174,7 @@ TEST(TrainingPictures, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
   const TrainingView view = round_view();
   const double area = M_PI * kRadius * kRadius * kTaught * kTaught / kFocal / kFocal;
   Profile profile = open_profile("realtime");
+  const double working = feature_levels(profile.features, view.frame.camera)[0].scale * kFocal;
   for (const float distance : {0.5F, 0.7F, 1.1F}) {
     profile.training.min_distance = distance;
     profile.training.max_distance = distance;
@@ -181,7 +182,7 @@ TEST(TrainingPictures, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
     EXPECT_NEAR(picture.whole_area, area, 0.08 * area) << distance;
     for (const TrainingSample& sample : picture.samples) {
       if (sample.label == 0) continue;
-      ASSERT_NEAR(sample.scale, patch_scale(profile.patch, 0.5 * kFocal, distance), 3) << distance;
+      ASSERT_NEAR(sample.scale, patch_scale(profile.patch, working, distance), 3) << distance;
     }
   }
 }

@@ -1,3 +1,6 @@
+#include <sys/resource.h>
+
+#include <csignal>
 #include <map>
 
 #include "pipeline/base/checks.hpp"
@@ -72,6 +75,23 @@ TEST(OpenniRecording, ColourKeepsItsDistanceFromItsDepthHoweverLateItComes) {
 TEST(OpenniRecording, ColourThatComesAtOnceIsAtItsDepthsTime) {
   const VirtualCamera camera("recording_prompt", "size 320x240\n");
   expect_apart(recorded_file(camera, 50, false), 0);
+}
+
+// As on a full disk: the recorder goes on without a word.
+TEST(OpenniRecording, WhatIsCutStaysBesideAnEarlierOne) {
+  const VirtualCamera camera("recording_cut", "size 320x240\n");
+  write_text(camera.folder() / "recorded.oni", "an earlier one");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit full = before;
+  full.rlim_cur = 100'000;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  const std::filesystem::path file = recorded_file(camera, 50, false);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_EQ(read_text(file), "an earlier one");
+  EXPECT_TRUE(std::filesystem::exists(file.string() + ".partial.oni"));
 }
 
 /// A recorder and a driver that hands over an image must not wait for each other: images come all the time here.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tools/view/drawing/overlay.hpp"
 
 namespace houghstream::view {
@@ -57,6 +59,30 @@ TEST(WorldView, AnotherWorldHasNoPast) {
   next.world_number = 2;
   state.add(next);
   EXPECT_EQ(state.trails.at(4).size(), 1U);
+}
+
+TEST(WorldView, CamerasWithoutEndAreNotRemembered) {
+  WorldState state;
+  for (int i = 0; i < 200; ++i) {
+    WorldObjects world = one_can(0.0);
+    world.frame.channel = std::to_string(i);
+    state.add(world);
+  }
+  EXPECT_EQ(state.T_world_camera.size(), 64U);
+  WorldObjects known = one_can(0.0);
+  known.frame.channel = "0";
+  known.T_world_camera = Eigen::Translation3d(1, 0, 0);
+  state.add(known);
+  EXPECT_EQ(state.T_world_camera.at("0").translation().x(), 1.0);
+}
+
+TEST(WorldView, AWorldOfAnyTimeIsSurvived) {
+  WorldState state;
+  state.add(one_can(0.0, std::numeric_limits<std::int64_t>::min()));
+  const RgbdFrame frame = black_frame(std::numeric_limits<std::int64_t>::max());
+  cv::Mat picture = frame.colour.clone();
+  draw_tracks(picture, state, frame);
+  EXPECT_EQ(cv::norm(picture), 0.0);
 }
 
 TEST(WorldView, FromAboveObjectsAndCamerasAreDrawn) {
