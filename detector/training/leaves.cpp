@@ -97,9 +97,8 @@ std::int32_t add_leaf(const LeafSource& source, const std::vector<std::uint32_t>
 }
 
 Mixture mixture_of(float known_classes, float added_classes, float most_background) {
-  const auto background = [&](float classes) {
-    return std::min(classes, most_background);
-  };  // over one object's weight
+  // Over one object's weight.
+  const auto background = [&](float classes) { return std::min(classes, most_background); };
   const float classes = known_classes + added_classes;
   const float whole = classes + background(classes);
   Mixture mixture;

@@ -108,6 +108,7 @@ class FollowProcess {
 
   void receive_detections(const Arrival& arrival) {
     try {
+      PairInbox::require_size(arrival.bytes.size);
       check_wire(arrival.bytes, detections_t::getHash(), detections_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
       if (!bus_.is_log() && repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, arrival.time))

@@ -11,6 +11,7 @@ class FoundObject(NamedTuple):
     class_id: int
     score: float
     box: tuple  # x, y, width, height in pixels
+    centre: tuple  # metres
     encoded: bytes  # all that was said of it
 
 
@@ -24,7 +25,12 @@ class FoundPose(NamedTuple):
 def detections_of(data):
     return [
         FoundObject(
-            one.class_name, one.class_id, one.score, (one.box_x, one.box_y, one.box_width, one.box_height), one.encode()
+            one.class_name,
+            one.class_id,
+            one.score,
+            (one.box_x, one.box_y, one.box_width, one.box_height),
+            tuple(one.centre_camera),
+            one.encode(),
         )
         for one in detections_t.decode(data).detections
     ]

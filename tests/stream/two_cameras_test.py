@@ -81,7 +81,7 @@ def original(result):
 
 
 def named_detections(data):
-    return [(found.name, found.class_id, found.score, found.box) for found in detections_of(data)]
+    return [(found.name, found.class_id, found.score, found.box, found.centre) for found in detections_of(data)]
 
 
 def is_twin(result):

@@ -145,6 +145,7 @@ class TrackProcess {
   void receive_poses(const Arrival& arrival) {
     note_event(arrival);
     try {
+      PairInbox::require_size(arrival.bytes.size);
       check_wire(arrival.bytes, object_poses_t::getHash(), object_poses_t::getTypeName());
       const FrameId frame = read_result_frame(arrival.bytes, arrival.channel);
       if (!channels_.matches(frame.channel)) return;
