@@ -1,5 +1,6 @@
 #include "detector/detector.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "detector/extensions.hpp"
@@ -8,13 +9,21 @@
 namespace houghstream {
 namespace {
 
-/// Those that are likely enough; of overlapping ones the stronger (Section 2).
+/// Those that are likely enough; of overlapping ones the stronger (Section 2). Weaker ones that a pose may confirm
+/// stand behind, and never suppress any of them.
 std::vector<Detection> suppress(std::vector<Candidate>& candidates, const DetectionSettings& settings) {
+  const EvidenceSettings& evidence = settings.evidence;
   std::vector<Detection> likely;
   for (Candidate& candidate : candidates) {
-    if (candidate.detection.score >= settings.evidence.threshold) likely.push_back(std::move(candidate.detection));
+    Detection& detection = candidate.detection;
+    detection.reported = detection.score >= evidence.threshold;
+    if (detection.reported || detection.score >= evidence.candidates_from) likely.push_back(std::move(detection));
   }
-  return suppress_overlaps(std::move(likely), settings.suppression);
+  std::vector<Detection> kept = suppress_overlaps(std::move(likely), settings.suppression);
+  const auto reported = std::count_if(kept.begin(), kept.end(), [](const Detection& it) { return it.reported; });
+  const auto most = static_cast<std::size_t>(reported + evidence.max_candidates);
+  if (kept.size() > most) kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(most), kept.end());
+  return kept;
 }
 
 }  // namespace

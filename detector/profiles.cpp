@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "detector/features/feature_families.hpp"
+#include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/base/checks.hpp"
 
@@ -14,7 +15,6 @@ namespace houghstream {
 namespace {
 
 constexpr std::array<float, kMaxScales> kFiveScales = {0.33F, 0.66F, 1.0F, 1.66F, 2.33F};  // Section 4
-constexpr float kUsualFocal = 525.0F;  // pixels, of the 640x480 cameras that the paper's patches were counted in
 
 /// What each of so many objects and the background would have if nothing were known: the released detector of the
 /// paper's authors lets a patch vote for an object from there on (its threshold_hierarchy is 1).

@@ -91,7 +91,7 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
 void verify_one(const PoseSettings& settings, Estimation& it) {
   const Eigen::Isometry3d& T_camera_object = it.chosen.T_camera_object;
   const PoseEvidence evidence = gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification);
-  judge(evidence, T_camera_object, settings, it.pose);
+  judge(evidence, T_camera_object, it.detection.reported, settings, it.pose);
 }
 
 }  // namespace

@@ -119,7 +119,8 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   detection.centre_camera = hypothesis.centre_camera;
   detection.vote_weight = hypothesis.weight;
   detection.vote_count = hypothesis.vote_count;
-  if (detection.score < input.settings.threshold) return candidate;  // most, whose rotations nobody will ask for
+  const float least = std::min(input.settings.threshold, input.settings.candidates_from);
+  if (detection.score < least) return candidate;  // most, whose rotations nobody will ask for
   add_rotations(input, hypothesis, weighed_views(hypothesis, spread, own), detection.rotations);
   return candidate;
 }

@@ -15,7 +15,7 @@ namespace houghstream {
 
 /// A hypothesis that the Hough space offers, weighed but not yet decided on.
 struct Candidate {
-  Detection detection;  ///< complete, with its score; without rotations below the threshold
+  Detection detection;  ///< complete, with its score; without rotations where it is too weak for a candidate
   Evidence evidence;
 };
 

@@ -146,9 +146,8 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
 }
 
 float octaves_scale(const Camera& camera) {
-  constexpr double kUsualFocal = 525.0;
   constexpr double kMostOctaves = 3.0;
-  const double octaves = std::round(std::log2(kUsualFocal / camera.fx));
+  const double octaves = std::round(std::log2(static_cast<double>(kUsualFocal) / camera.fx));
   return static_cast<float>(std::exp2(std::clamp(octaves, -kMostOctaves, 1.0)));
 }
 

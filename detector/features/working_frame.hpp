@@ -29,6 +29,9 @@ struct FeatureLevel {
 
   bool holds(float depth) const { return depth > min_distance && depth <= max_distance; }  // false for NaN
 };
+/// Focal length of the 640x480 cameras that the paper's patches, and all supports in pixels, were counted in.
+constexpr float kUsualFocal = 525.0F;
+
 /// Of the cameras whose frames supports in pixels were chosen for.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
 /// Of any camera: a tele lens shows an object in more pixels, of which supports in pixels would cover less. Sizes are
@@ -36,7 +39,7 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
 /// alike.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera);
 
-/// The power of two that brings a camera's focal length nearest to 525 pixels, for which those supports were chosen.
+/// The power of two that brings a camera's focal length nearest to kUsualFocal.
 float octaves_scale(const Camera& camera);
 
 /// Resizes (paper, Section 5.1.1) and closes small holes. Of each 2x2 block the nearest surface counts, so that

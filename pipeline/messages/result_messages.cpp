@@ -37,6 +37,7 @@ detection_t detection_to_message(const Detection& detection) {
   message.class_id = detection.class_id;
   message.class_name = detection.class_name;
   message.score = detection.score;
+  message.reported = detection.reported ? 1 : 0;
   message.box_x = detection.box_px.x;
   message.box_y = detection.box_px.y;
   message.box_width = detection.box_px.width;
@@ -79,6 +80,7 @@ Detection detection_from_message(const detection_t& message) {
   out.class_id = message.class_id;
   out.class_name = message.class_name;
   out.score = message.score;
+  out.reported = message.reported != 0;
   out.box_px = box;
   out.centre_camera = centre;
   out.vote_weight = message.vote_weight;

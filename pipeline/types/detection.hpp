@@ -22,6 +22,7 @@ struct Detection {
   int class_id = 0;  ///< from 1; 0 is no class
   std::string class_name;
   float score = 0.0F;                                       ///< probability that the object is there, 0 to 1
+  bool reported = true;                                     ///< false: a candidate, see object_pose.hpp is_reported()
   cv::Rect2f box_px;                                        ///< visible box, pixels of the full-size frame
   Eigen::Vector3f centre_camera = Eigen::Vector3f::Zero();  ///< the point that votes are for, metres; NaN where unknown
   float vote_weight = 0.0F;                                 ///< sum of the supporting votes' weights

@@ -8,8 +8,8 @@ namespace houghstream {
 namespace {
 
 bool same_detection(const Detection& a, const Detection& b) {
-  return a.class_id == b.class_id && a.class_name == b.class_name && a.score == b.score && a.box_px == b.box_px &&
-         a.vote_weight == b.vote_weight && a.vote_count == b.vote_count;
+  return a.class_id == b.class_id && a.class_name == b.class_name && a.score == b.score && a.reported == b.reported &&
+         a.box_px == b.box_px && a.vote_weight == b.vote_weight && a.vote_count == b.vote_count;
 }
 
 bool same_find(const Detections& a, const Detections& b) {

@@ -1,5 +1,7 @@
 #include "pipeline/types/object_pose.hpp"
 
+#include <algorithm>
+
 namespace houghstream {
 
 const char* to_string(PoseStatus status) {
@@ -17,6 +19,17 @@ const char* to_string(PoseStatus status) {
     case PoseStatus::kOccluded: return "occluded";
   }
   return "unknown";
+}
+
+const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_index) {
+  const auto found = std::find_if(poses.poses.begin(), poses.poses.end(), [&](const ObjectPose& pose) {
+    return pose.detection_index == static_cast<int>(detection_index);
+  });
+  return found == poses.poses.end() ? nullptr : &*found;
+}
+
+bool is_reported(const Detection& detection, const ObjectPose* pose) {
+  return detection.reported || (pose != nullptr && pose->status == PoseStatus::kValid);
 }
 
 }  // namespace houghstream

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/stage_time.hpp"
 
@@ -47,11 +48,18 @@ struct ObjectPose {
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
 };
 
+/// Whether the object counts as found: its detection is sure enough by itself, or is a candidate and has a valid pose.
+/// `pose` is that of the detection; null where there is none.
+bool is_reported(const Detection& detection, const ObjectPose* pose);
+
 /// The poses of one detector's detections in one frame, in their order.
 struct ObjectPoses {
   FrameId frame;  ///< that of the detections
   std::vector<ObjectPose> poses;
   std::vector<StageTime> stages;
 };
+
+/// The pose of a detection; null where there is none.
+const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_index);
 
 }  // namespace houghstream

@@ -60,8 +60,8 @@ RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d
   return last;
 }
 
-/// Judges the pose by points of the view and the outline of an earlier frame, where there is one and that suffices;
-/// else the model is rendered.
+/// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
+/// where there is one and that suffices; else the model is rendered.
 void judge_followed(const SeenObject& seen, const ExpectedObject& expected, const PoseSettings& settings,
                     FollowedPose& followed) {
   const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
@@ -73,12 +73,12 @@ void judge_followed(const SeenObject& seen, const ExpectedObject& expected, cons
     evidence.depth.outline_ends = expected.verified->outline_ends;
     evidence.depth.outline_continues = expected.verified->outline_continues;
     followed.verified = expected.verified;
-    judge(evidence, T, settings, followed.pose);
+    judge(evidence, T, true, settings, followed.pose);
     if (followed.pose.status == PoseStatus::kValid) return;
   }
   evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance);
   followed.verified = evidence.depth;
-  judge(evidence, T, settings, followed.pose);
+  judge(evidence, T, true, settings, followed.pose);
 }
 
 FollowedPose follow_from(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,

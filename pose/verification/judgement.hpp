@@ -6,9 +6,9 @@
 namespace houghstream {
 
 /// Fills in what the evidence for `T_camera_object` says of `pose`: its quality, and the pose itself or the reason why
-/// it is withheld. The class is read from `pose`.
-void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, const PoseSettings& settings,
-           ObjectPose& pose);
+/// it is withheld. The class is read from `pose`. `reported`: see Detection.
+void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
+           const PoseSettings& settings, ObjectPose& pose);
 
 /// Copies what registration says of itself.
 void tell_registration(const RegistrationResult& result, ObjectPose& pose);

@@ -49,8 +49,12 @@ struct QualitySettings {
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
   QualityTerms typical = {2.16, 3.05, -0.17, 1.64, -0.23, 0.77};
-  float least = 0.85F;  ///< poses of lower quality are not published
+  float least = 0.85F;                ///< poses of lower quality are not published...
+  float least_of_candidates = 0.85F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
 };
+
+/// Publishes poses from this quality on, whatever their detections are.
+void publish_from(float quality, QualitySettings& settings);
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);
 

@@ -77,6 +77,31 @@ TEST(Detector, FindsNothingInAnEmptyRoom) {
   EXPECT_TRUE(detect(toy::room(78), 1).detections.empty());
 }
 
+TEST(Detector, CandidatesStandBehindWhatIsReportedAndChangeNothingOfIt) {
+  RgbdFrame frame = toy::room(80);
+  toy::put_tile(0, 90, 100, 0.7, frame);
+  toy::put_tile(1, 230, 120, 0.8, frame);
+  DetectionSettings settings;
+  settings.leaves.first_trees = 1;
+  settings.evidence.threshold = 0.5F;
+  const Detections usual = Detector(toy::forest(), settings).detect(frame);
+  settings.evidence.candidates_from = 0.0F;
+  const Detections all = Detector(toy::forest(), settings).detect(frame);
+  ASSERT_GT(all.detections.size(), usual.detections.size() + 1) << "weak maxima are there";
+  for (std::size_t i = 0; i < all.detections.size(); ++i) {
+    EXPECT_EQ(all.detections[i].reported, i < usual.detections.size());
+    EXPECT_EQ(all.detections[i].reported, all.detections[i].score >= 0.5F);
+    EXPECT_FALSE(all.detections[i].rotations.empty()) << "a pose starts from them";
+  }
+  Detections reported = all;
+  reported.detections.resize(usual.detections.size());
+  expect_same(reported, usual);
+  settings.evidence.max_candidates = 1;
+  const Detections few = Detector(toy::forest(), settings).detect(frame);
+  ASSERT_EQ(few.detections.size(), usual.detections.size() + 1);
+  EXPECT_EQ(few.detections.back().score, all.detections[usual.detections.size()].score) << "the strongest";
+}
+
 TEST(Detector, NothingIsFoundWhereThereIsNoDepth) {
   RgbdFrame frame = toy::room(79);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);

@@ -143,7 +143,7 @@ TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   weak.score = 0.99F * settings.min_score;
   EXPECT_EQ(estimator_for("mug", mug()).estimate(scene.frame, only(weak)).poses.at(0).status, PoseStatus::kLowScore);
   settings.min_score = 0.0F;
-  settings.quality.least = 0.0F;
+  publish_from(0.0F, settings.quality);
   const ObjectPose found = estimator_for("mug", mug(), settings).estimate(scene.frame, only(weak)).poses.at(0);
   EXPECT_EQ(found.status, PoseStatus::kValid);
 }
@@ -170,6 +170,19 @@ TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   doubtful.least = 0.0F;
   EXPECT_EQ(found("mug", doubtful).status, PoseStatus::kValid) << "by its own least quality";
   EXPECT_EQ(found("box", doubtful).quality, by_default.quality) << "another class's";
+}
+
+TEST(PoseEstimator, ACandidateHasALimitOfItsOwn) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  Detection detection = detection_of("mug", scene.object, scene.truth, 5);
+  PoseSettings settings;
+  settings.quality.least_of_candidates = 1.0F;
+  const PoseEstimator estimator = estimator_for("mug", mug(), settings);
+  EXPECT_EQ(estimator.estimate(scene.frame, only(detection)).poses.at(0).status, PoseStatus::kValid);
+  detection.reported = false;
+  const ObjectPose withheld = estimator.estimate(scene.frame, only(detection)).poses.at(0);
+  EXPECT_NE(withheld.status, PoseStatus::kValid);
+  EXPECT_GT(withheld.quality, settings.quality.least);
 }
 
 TEST(PoseEstimator, MissingInputGivesAReasonAndNoPose) {

@@ -40,7 +40,9 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
   return learnt;
 }
 
-void take_from_store(const store::ObjectStore& objects, PoseSettings& settings) {
+void take_from_store(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings) {
+  settings.quality.least = min_quality.value_or(kStoreQuality);
+  settings.quality.least_of_candidates = min_quality.value_or(kStoreCandidateQuality);
   settings.class_quality = stored_quality(objects, settings.quality);
   settings.model.vote_centres = objects.vote_centres();
   settings.region.tone = objects.tone;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "drivers/files/json_file.hpp"
@@ -10,17 +11,20 @@
 namespace houghstream {
 
 /// Smallest quality of a published pose of a store's objects: in practice rooms that the fit has not seen 98 % of the
-/// poses from there on were right.
+/// poses from there on were right. Of a candidate's: the same share in the development rooms, where most candidates are
+/// false.
 constexpr float kStoreQuality = 0.6F;
+constexpr float kStoreCandidateQuality = 0.75F;
 
 /// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }}.
 nlohmann::json quality_to_json(const QualitySettings& settings);
 
-/// What the store has learnt of its objects' qualities, by name; `least` of each is that of `others`. Throws InputError
-/// naming the store for a missing or unknown number.
+/// What the store has learnt of its objects' qualities, by name; the limits of each are those of `others`. Throws
+/// InputError naming the store for a missing or unknown number.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
 
-/// What hs-pose needs to know of a store beside its meshes: qualities, and where detections' centres are.
-void take_from_store(const store::ObjectStore& objects, PoseSettings& settings);
+/// What hs-pose needs to know of a store beside its meshes: qualities, and where detections' centres are. Poses are
+/// published from `min_quality` on, where it is given.
+void take_from_store(const store::ObjectStore& objects, std::optional<float> min_quality, PoseSettings& settings);
 
 }  // namespace houghstream

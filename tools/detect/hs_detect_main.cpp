@@ -93,6 +93,12 @@ int main(int argc, char** argv) {
   app.add_option("--forest", options.forest_file, "forest file of hs-train, instead of --objects");
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   add_search_options(app, options.search);
+  options.search.candidates_from = kCandidatesFrom;
+  app.add_option("--candidates", options.search.candidates_from,
+                 "weaker detections from this score on are handed to hs-pose, which reports those whose pose is right; "
+                 "1: none")
+      .range(0.0, 1.0)
+      .capture_default_str();
   app.add_option("--looks-per-second", options.process.looks_per_second,
                  "look at so many of each camera's frames a second, for hs-pose --follow; default: at each one")
       .range(0.1, 1000.0);

@@ -29,7 +29,7 @@ struct EvaluateOptions {
   std::string channel = ".*";
   std::string objects;
   std::optional<float> operating_score;
-  PoseSettings pose;  // what the store knows
+  PoseSettings pose;  // by which poses are published
   std::string forest;
   std::string models;
   std::string latency;
@@ -37,8 +37,7 @@ struct EvaluateOptions {
   std::vector<std::string> classes;
   EvaluationRules rules;
   SearchOptions search;
-  std::optional<float> asked_quality;
-  float min_quality = QualitySettings{}.least;  // that which holds
+  std::optional<float> min_quality;
   int every = 1;
 };
 
@@ -180,7 +179,7 @@ void search_in_process(const EvaluateOptions& options, Forest forest, const std:
                        std::vector<OpenScene>& scenes) {
   PublishingRules rules;
   rules.score = options.rules.operating_score;
-  rules.quality = options.min_quality;
+  if (!options.operating_score) rules.candidates_from = kCandidatesFrom;
   rules.pose = options.pose;
   const DetectionSettings settings = options.search.settings_for(forest);
   InProcess process(std::move(forest), settings, options.search.engine(), meshes, rules);
@@ -228,8 +227,7 @@ void run(EvaluateOptions options) {
   if (!options.log.empty()) add_log(options, !forest, truth, scenes.front());
   choose_frames(options, scenes);
   if (options.log.empty()) {
-    options.rules.published_score = options.rules.operating_score;
-    options.rules.min_quality = options.min_quality;
+    options.rules.min_quality = options.pose.quality.least;
     search_in_process(options, *std::move(forest), meshes, scenes);
   }
   const Figures figures = measure(options, scenes, classes, make_models(options, classes, meshes));
@@ -265,9 +263,9 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
       .capture_default_str();
   app.add_option(
       "--operating-score", options.operating_score,
-      "score from which precision and false detections count; in-process, poses of weaker ones are withheld; "
-      "default: what hs-detect publishes");
-  app.add_option("--min-quality", options.asked_quality,
+      "score from which precision and false detections count; in-process, weaker ones are no candidates either; "
+      "default: as hs-detect reports them, and candidates that have a pose");
+  app.add_option("--min-quality", options.min_quality,
                  "in-process: poses of lower quality are withheld; default: as by hs-pose")
       .range(0.0, 1.0);
   app.add_flag("--processed-only", rules.processed_only, "leave skipped frames out; default: they count as missed");
@@ -283,8 +281,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 static EvaluateOptions with_store(EvaluateOptions options) {
   const float published = options.objects.empty() ? EvidenceSettings{}.threshold : kStoreThreshold;
   options.rules.operating_score = options.operating_score.value_or(published);
-  const float least = options.objects.empty() ? QualitySettings{}.least : kStoreQuality;
-  options.min_quality = options.asked_quality.value_or(least);
+  if (options.min_quality) publish_from(*options.min_quality, options.pose.quality);
   if (options.objects.empty()) return options;
   if (!options.search.threshold) options.search.threshold = kStoreThreshold;
   require(options.forest.empty() && options.models.empty(),
@@ -292,7 +289,7 @@ static EvaluateOptions with_store(EvaluateOptions options) {
   const store::ObjectStore objects = store::read_store(options.objects);
   options.forest = objects.forest_file().string();
   options.models = objects.models_folder().string();
-  take_from_store(objects, options.pose);
+  take_from_store(objects, options.min_quality, options.pose);
   return options;
 }
 

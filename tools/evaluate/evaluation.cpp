@@ -40,11 +40,11 @@ std::map<std::string, double> stage_medians(const std::vector<EvaluatedFrame>& f
 }
 
 /// A frame that hs-pose passed over counts as the skipped frames do: its detections have no poses, or are left out. So
-/// are detections that would not have been published.
+/// are candidates that no pose has confirmed.
 std::vector<JudgedPose> counted_poses(std::vector<JudgedPose> judged, const std::vector<EvaluatedFrame>& frames,
                                       const EvaluationRules& rules) {
   const auto left_out = [&](const JudgedPose& pose) {
-    return (rules.processed_only && !frames[pose.frame].poses) || pose.score < rules.published_score;
+    return (rules.processed_only && !frames[pose.frame].poses) || !pose.reported;
   };
   judged.erase(std::remove_if(judged.begin(), judged.end(), left_out), judged.end());
   return judged;
@@ -99,14 +99,14 @@ Evaluation evaluate(const std::vector<EvaluatedFrame>& all_frames, const std::ve
   int required = 0;
   for (const std::string& name : class_names) {
     out.classes.push_back(evaluate_class(frames, name, rules.detection));
-    out.operating[name] = {count_verdicts(out.classes.back(), Verdict::kTrue, rules.operating_score),
-                           count_verdicts(out.classes.back(), Verdict::kFalse, rules.operating_score)};
+    out.operating[name] = {count_reported(out.classes.back(), Verdict::kTrue, rules.operating_score),
+                           count_reported(out.classes.back(), Verdict::kFalse, rules.operating_score)};
     required += out.classes.back().required;
   }
   out.detection_calibration = calibrate(score_statements(out.classes), required);
   for (const std::string& name : detected_classes(frames)) {
     const ClassResult result = evaluate_class(frames, name, rules.detection);
-    out.false_detections += count_verdicts(result, Verdict::kFalse, rules.operating_score);
+    out.false_detections += count_reported(result, Verdict::kFalse, rules.operating_score).all();
   }
   evaluate_poses(frames, models, rules, out);
   judge_qualities(frames, models, out);

@@ -14,18 +14,17 @@ namespace houghstream {
 struct EvaluationRules {
   DetectionRules detection;
   double pose_min_visible = 0.5;  ///< poses of less visible objects do not enter the recall
-  float operating_score = 0.0F;   ///< precision, recall and false detections count detections from this score on
-  /// The recall of poses counts those of detections from this score on: others would not have been published.
-  float published_score = 0.0F;
+  /// Precision, recall and false detections count detections from this score on, and candidates that have a pose.
+  float operating_score = 0.0F;
   /// Leave skipped frames out instead of counting their objects, and the poses of what was found there, as missed.
   bool processed_only = false;
   std::optional<float> min_quality;  ///< poses of lower quality were withheld; nothing where others decided that
 };
 
-/// How the detections of one class fared from the operating score on.
+/// What was reported of one class.
 struct OperatingPoint {
-  int true_count = 0;
-  int false_count = 0;
+  ReportedCount right;  ///< objects that are there
+  ReportedCount wrong;
 };
 
 /// The poses that were published of listed classes with a model, but those of ignored detections.
@@ -41,7 +40,7 @@ struct Evaluation {
   int frames_with_poses = 0;
   std::vector<ClassResult> classes;  ///< as listed
   std::map<std::string, OperatingPoint> operating;
-  int false_detections = 0;  ///< of all classes, listed or not, from the operating score on
+  int false_detections = 0;  ///< reported, of all classes, listed or not
   /// Of the scores of all detections of listed classes that there are, however low, but ignored ones; its recall is
   /// over all required objects. Below the threshold with which they were found nothing is known.
   Calibration detection_calibration;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "detector/stages.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -10,21 +11,37 @@
 namespace houghstream {
 namespace {
 
-PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, const PublishingRules& rules, float quality,
-                             int threads) {
-  PoseSettings settings = rules.pose;
+PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, PoseSettings settings, int threads) {
   settings.threads = threads;
-  settings.min_score = rules.pose_score;
-  settings.quality.least = quality;
-  for (auto& [name, learnt] : settings.class_quality) learnt.least = quality;
-  return {models, settings};
+  return {models, std::move(settings)};
 }
 
-/// The first ones, which are the strongest.
-Detections from_score_on(Detections found, float score) {
-  const auto is_weaker = [&](const Detection& detection) { return detection.score < score; };
-  found.detections.erase(std::find_if(found.detections.begin(), found.detections.end(), is_weaker),
-                         found.detections.end());
+PoseSettings withholding_none(PoseSettings settings) {
+  publish_from(0.0F, settings.quality);
+  for (auto& [name, learnt] : settings.class_quality) publish_from(0.0F, learnt);
+  return settings;
+}
+
+/// `settings`, but that all is found which would be sent.
+DetectionSettings finding_all(DetectionSettings settings, const PublishingRules& rules) {
+  float& threshold = settings.evidence.threshold;
+  threshold = std::min({threshold, rules.score, rules.candidates_from});
+  return settings;
+}
+
+DetectionSettings as_published(DetectionSettings settings, const PublishingRules& rules) {
+  settings.evidence.threshold = rules.score;
+  settings.evidence.candidates_from = rules.candidates_from;
+  return settings;
+}
+
+/// Those that would be sent to hs-pose: the first ones, which are the strongest.
+Detections sent_of(Detections found, const PublishingRules& rules, int max_candidates) {
+  std::vector<Detection>& all = found.detections;
+  const auto sent = std::find_if(all.begin(), all.end(), [&](const Detection& it) {
+    return it.score < rules.score && (it.score < rules.candidates_from || --max_candidates < 0);
+  });
+  all.erase(sent, all.end());
   return found;
 }
 
@@ -44,7 +61,7 @@ void add_unpublished(const Detections& all, ObjectPoses& published) {
 
 struct InProcess::State {
   Detector detector;
-  std::optional<Detector> publishing;  ///< where `detector` finds weaker ones too
+  std::optional<Detector> publishing;  ///< where `detector` finds more than is sent
   bool has_models;
   PoseEstimator estimator;
   PoseEstimator withholding_none;
@@ -80,17 +97,16 @@ struct InProcess::State {
 
 InProcess::InProcess(Forest forest, const DetectionSettings& settings, const Engine& engine,
                      const std::map<std::string, Mesh>& models, const PublishingRules& rules)
-    : state_(std::make_unique<State>(State{Detector(std::move(forest), settings, engine),
+    : state_(std::make_unique<State>(State{Detector(std::move(forest), finding_all(settings, rules), engine),
                                            std::nullopt,
                                            !models.empty(),
-                                           make_estimator(models, rules, rules.quality, settings.threads),
-                                           make_estimator(models, rules, 0.0F, settings.threads),
+                                           make_estimator(models, rules.pose, settings.threads),
+                                           make_estimator(models, withholding_none(rules.pose), settings.threads),
                                            rules,
                                            {}})) {
-  if (models.empty() || settings.evidence.threshold >= rules.score) return;
-  DetectionSettings publishing = settings;
-  publishing.evidence.threshold = rules.score;
-  state_->publishing.emplace(state_->detector.forest(), publishing, engine);
+  const float least = std::min(rules.score, rules.candidates_from);
+  if (models.empty() || state_->detector.settings().evidence.threshold >= least) return;
+  state_->publishing.emplace(state_->detector.forest(), as_published(settings, rules), engine);
 }
 
 InProcess::~InProcess() = default;
@@ -99,8 +115,11 @@ void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) 
   for (EvaluatedFrame& out : frames) {
     const RgbdFrame frame = scene.read_frame(out.image);
     Detections all = state_->detect(frame);
+    const PublishingRules& rules = state_->rules;
+    for (Detection& detection : all.detections) detection.reported = detection.score >= rules.score;
     if (state_->has_models) {
-      ObjectPoses published = state_->estimator.estimate(frame, from_score_on(all, state_->rules.score));
+      const int max_candidates = state_->detector.settings().evidence.max_candidates;
+      ObjectPoses published = state_->estimator.estimate(frame, sent_of(all, rules, max_candidates));
       add_unpublished(all, published);
       out.poses_nothing_withheld = state_->estimate_all(frame, all, published);
       out.poses = std::move(published);

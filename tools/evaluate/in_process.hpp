@@ -15,10 +15,9 @@ namespace houghstream {
 
 /// What would be published of what is found.
 struct PublishingRules {
-  float score = 0.0F;                           ///< least of a detection
-  float quality = QualitySettings{}.least;      ///< least of a pose
-  float pose_score = PoseSettings{}.min_score;  ///< least of a detection whose pose is looked for
-  PoseSettings pose = {};  ///< what a store knows, see take_from_store; score and quality are those above
+  float score = 0.0F;            ///< least of a detection that is reported by itself
+  float candidates_from = 1.0F;  ///< see EvidenceSettings
+  PoseSettings pose = {};        ///< from which score on poses are looked for, and from which quality on published
 };
 
 /// Detects, and estimates poses where there are models, without LCM.
@@ -30,8 +29,9 @@ class InProcess {
             const std::map<std::string, Mesh>& models, const PublishingRules& rules);
   ~InProcess();
 
-  /// Fills in the results of these frames of the scene: all detections, without their rotations; the poses that would
-  /// be published, those of other detections being kLowScore; the poses of all from PublishingRules::pose_score on.
+  /// Fills in the results of these frames of the scene: all detections, without their rotations, and whether each would
+  /// be reported or be a candidate; the poses that would be published, those of detections that would not be sent being
+  /// kLowScore; the poses of all from PoseSettings::min_score on.
   /// Where there are models, the stages' times are those of a search for what would be published.
   void run(const BopScene& scene, std::vector<EvaluatedFrame>& frames);
 

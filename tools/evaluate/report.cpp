@@ -42,8 +42,8 @@ void add_detection_figures(const Evaluation& evaluation, OrderedJson& json) {
     const OperatingPoint& point = evaluation.operating.at(result.class_name);
     json["auc"][result.class_name] = number(result.auc);
     json["required"][result.class_name] = result.required;
-    json["precision"][result.class_name] = ratio(point.true_count, point.true_count + point.false_count);
-    json["recall"][result.class_name] = ratio(point.true_count, result.required);
+    json["precision"][result.class_name] = ratio(point.right.all(), point.right.all() + point.wrong.all());
+    json["recall"][result.class_name] = ratio(point.right.all(), result.required);
   }
   json["auc"]["mean"] = number(mean_auc(evaluation.classes));
   json["auc"]["weighted"] = number(weighted_auc(evaluation.classes));
@@ -52,15 +52,20 @@ void add_detection_figures(const Evaluation& evaluation, OrderedJson& json) {
 OrderedJson operating_json(const Evaluation& evaluation) {
   OperatingPoint all;
   int required = 0;
+  const auto add = [](const ReportedCount& some, ReportedCount& sum) {
+    sum.detections += some.detections;
+    sum.confirmed += some.confirmed;
+  };
   for (const ClassResult& result : evaluation.classes) {
-    all.true_count += evaluation.operating.at(result.class_name).true_count;
-    all.false_count += evaluation.operating.at(result.class_name).false_count;
+    add(evaluation.operating.at(result.class_name).right, all.right);
+    add(evaluation.operating.at(result.class_name).wrong, all.wrong);
     required += result.required;
   }
-  return {{"precision", ratio(all.true_count, all.true_count + all.false_count)},
-          {"recall", ratio(all.true_count, required)},
-          {"true", all.true_count},
-          {"false", all.false_count},
+  return {{"precision", ratio(all.right.all(), all.right.all() + all.wrong.all())},
+          {"recall", ratio(all.right.all(), required)},
+          {"true", all.right.all()},
+          {"false", all.wrong.all()},
+          {"confirmed", {{"true", all.right.confirmed}, {"false", all.wrong.confirmed}}},
           {"required", required}};
 }
 
@@ -192,7 +197,7 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
     const OperatingPoint& point = evaluation.operating.at(result.class_name);
     const auto recall = evaluation.add_s_recall.find(result.class_name);
     text += fmt::format("{:<20}{:>8}{:>8.3f}{:>8}{:>8}{:>12}\n", result.class_name, result.required, result.auc,
-                        point.true_count, point.false_count,
+                        point.right.all(), point.wrong.all(),
                         recall != evaluation.add_s_recall.end() ? fmt::format("{:.3f}", recall->second) : "-");
   }
   text +=
@@ -211,7 +216,8 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
                       evaluation.detection_calibration.ece, evaluation.pose_calibration.ece);
   if (evaluation.frames_with_poses > 0)
     text += fmt::format("poses published {}, right {}\n", evaluation.published.count, evaluation.published.right);
-  text += fmt::format("false detections {} from score {} on\n", evaluation.false_detections, rules.operating_score);
+  text += fmt::format("false detections {} from score {} on, or confirmed by a pose\n", evaluation.false_detections,
+                      rules.operating_score);
   for (const auto& [stage, median] : evaluation.stage_ms) text += fmt::format("{:<28}{:>8.2f} ms\n", stage, median);
   return text;
 }

@@ -16,6 +16,7 @@ Detector make_detector(const store::ObjectStore& store, const FinderOptions& opt
   SearchOptions search;
   search.threads = options.threads;
   search.threshold = options.threshold.value_or(kStoreThreshold);
+  search.candidates_from = kCandidatesFrom;
   const DetectionSettings settings = search.settings_for(forest);
   return Detector(std::move(forest), settings);
 }
@@ -23,8 +24,7 @@ Detector make_detector(const store::ObjectStore& store, const FinderOptions& opt
 PoseEstimator make_estimator(const store::ObjectStore& store, const FinderOptions& options) {
   PoseSettings settings;
   settings.threads = options.threads;
-  settings.quality.least = options.min_quality.value_or(kStoreQuality);
-  take_from_store(store, settings);
+  take_from_store(store, options.min_quality, settings);
   return PoseEstimator(store::load_store_meshes(store), settings);
 }
 

@@ -47,11 +47,12 @@ std::vector<FrameResult> read_results(const std::filesystem::path& log_file, Los
 }
 
 const ObjectPose* pose_of(const FrameResult& frame, std::size_t detection) {
-  if (!frame.poses) return nullptr;
-  for (const ObjectPose& pose : frame.poses->poses) {
-    if (pose.detection_index == static_cast<int>(detection)) return &pose;
-  }
-  return nullptr;
+  return frame.poses ? find_pose(*frame.poses, detection) : nullptr;
+}
+
+/// Candidates that no pose has confirmed are none of the frame's objects.
+bool is_reported(const FrameResult& frame, std::size_t detection) {
+  return is_reported(frame.detections.detections[detection], pose_of(frame, detection));
 }
 
 /// Empty for what is not finite.
@@ -111,6 +112,7 @@ OrderedJson frame_json(const FrameResult& frame) {
   OrderedJson json = {{"utime", frame.detections.frame.utime}, {"source_channel", frame.detections.frame.channel}};
   json["detections"] = OrderedJson::array();
   for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) {
+    if (!is_reported(frame, i)) continue;
     const Detection& d = frame.detections.detections[i];
     json["detections"].push_back(
         {{"class_id", d.class_id},
@@ -220,7 +222,9 @@ std::int64_t export_results_csv(const std::filesystem::path& log_file, const std
       "utime,source_channel,detection,class_id,class_name,score,box_x,box_y,box_width,box_height,"
       "centre_x,centre_y,centre_z,pose_status,x,y,z,qw,qx,qy,qz,quality\n";
   for (const FrameResult& frame : results) {
-    for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) text += row(frame, i) + '\n';
+    for (std::size_t i = 0; i < frame.detections.detections.size(); ++i) {
+      if (is_reported(frame, i)) text += row(frame, i) + '\n';
+    }
   }
   write_whole_file(out_file, text);
   return static_cast<std::int64_t>(results.size());

@@ -84,7 +84,7 @@ void run_with_models(PoseOptions options) {
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   const int threads = threads_to_start(options.settings.threads);
   std::map<std::string, Mesh> meshes = load_models(options, threads);
-  if (options.min_quality) options.settings.quality.least = *options.min_quality;
+  if (options.min_quality) publish_from(*options.min_quality, options.settings.quality);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
   const auto estimator = warmed_up(std::move(meshes), options.settings, {threads, made_up.get()});
   LcmBus bus(options.url, options.output_log);
@@ -93,12 +93,11 @@ void run_with_models(PoseOptions options) {
 
 /// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
 void run_with_store(PoseOptions options) {
-  options.settings.quality.least = options.min_quality.value_or(kStoreQuality);
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   const int threads = threads_to_start(options.settings.threads);  // of the first store: later ones are loaded alone
   const auto load = [&](const store::ObjectStore& store) {
     PoseSettings settings = options.settings;
-    take_from_store(store, settings);
+    take_from_store(store, options.min_quality, settings);
     return warmed_up(store::load_store_meshes(store, threads), settings, {threads, made_up.get()});
   };
   store::StoreWatch<PoseEstimator> watch(options.objects, load);
@@ -128,8 +127,8 @@ int main(int argc, char** argv) {
       .capture_default_str();
   app.add_option("--min-quality", options.min_quality,
                  fmt::format("poses that are right with a lower probability are withheld, and it is said why; default: "
-                             "{}, of a store's objects {}",
-                             options.settings.quality.least, kStoreQuality))
+                             "{}, of a store's objects {}, of candidates of these {}",
+                             options.settings.quality.least, kStoreQuality, kStoreCandidateQuality))
       .range(0.0, 1.0);
   app.add_flag(
       "--follow", options.follow,

@@ -16,7 +16,6 @@ from studies.measured import threads
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
 LAST_WORDS = 20  # lines
-SHOWN = 0.5  # score from which hs-view draws: the demo's detector publishes even its weakest detections
 
 
 class ProcessFailed(Exception):
@@ -248,7 +247,7 @@ class Stream:
         if self.show:
             running.start("view", programs / "hs-view", *self.with_models, "--snapshot", self.out / "overlay.png",
                           "--after", self.frames // 9 + 1, "--video", self.out / "overlay.mp4", "--pictures",
-                          self.out / "pictures", "--min-score", SHOWN)  # fmt: skip
+                          self.out / "pictures")  # fmt: skip
             running.start("logger", "lcm-logger", "-f", f"--lcm-url={self._logger_url()}", "-c", "HOUGHSTREAM_.*",
                           self.out / "results.lcmlog")  # fmt: skip
         for name in running.by_name.keys() - {"logger"}:

@@ -76,6 +76,13 @@ TEST(ResultMessages, DetectionsComeBack) {
   EXPECT_EQ(back.stages[1].stage, "detect.leaves");
 }
 
+TEST(ResultMessages, CandidatesStayCandidates) {
+  Detections found = make_detections();
+  EXPECT_TRUE(detections_from_message(over_the_wire(to_message(found))).detections[0].reported);
+  found.detections[0].reported = false;
+  EXPECT_FALSE(detections_from_message(over_the_wire(to_message(found))).detections[0].reported);
+}
+
 TEST(ResultMessages, EmptyResultsAreResults) {
   Detections none;
   none.frame.utime = 5;

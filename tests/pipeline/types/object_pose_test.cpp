@@ -18,5 +18,27 @@ TEST(PoseStatus, EachHasWordsOfItsOwn) {
   EXPECT_STREQ(to_string(static_cast<PoseStatus>(99)), "unknown");
 }
 
+TEST(IsReported, ACandidateIsConfirmedByAValidPoseAlone) {
+  Detection detection;
+  ObjectPose pose;
+  pose.status = PoseStatus::kRejectedByDepth;
+  EXPECT_TRUE(is_reported(detection, nullptr));
+  EXPECT_TRUE(is_reported(detection, &pose)) << "found, though its pose is withheld";
+  detection.reported = false;
+  EXPECT_FALSE(is_reported(detection, nullptr));
+  EXPECT_FALSE(is_reported(detection, &pose));
+  pose.status = PoseStatus::kValid;
+  EXPECT_TRUE(is_reported(detection, &pose));
+}
+
+TEST(FindPose, GoesByTheDetectionNotByTheOrder) {
+  ObjectPoses poses;
+  poses.poses.resize(2);
+  poses.poses[0].detection_index = 4;
+  poses.poses[1].detection_index = 1;
+  EXPECT_EQ(find_pose(poses, 1), &poses.poses[1]);
+  EXPECT_EQ(find_pose(poses, 0), nullptr);
+}
+
 }  // namespace
 }  // namespace houghstream

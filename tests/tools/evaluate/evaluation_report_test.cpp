@@ -93,7 +93,12 @@ TEST(EvaluationReport, PrecisionAndRecallOfAllClassesAreThoseOfTheOperatingScore
   frames[0].detections->detections.push_back(detect("mug", {200, 200, 50, 50}, 0.6F));
   frames[0].detections->detections.push_back(detect("can", {200, 200, 50, 50}, 0.4F));
   const OrderedJson operating = summary_json(evaluate(frames, {"mug", "can"}, {}, rules), rules, {})["operating"];
-  EXPECT_EQ(operating, (OrderedJson{{"precision", 0.5}, {"recall", 0.5}, {"true", 1}, {"false", 1}, {"required", 2}}));
+  EXPECT_EQ(operating, (OrderedJson{{"precision", 0.5},
+                                    {"recall", 0.5},
+                                    {"true", 1},
+                                    {"false", 1},
+                                    {"confirmed", {{"true", 0}, {"false", 0}}},
+                                    {"required", 2}}));
 }
 
 TEST(EvaluationReport, CalibrationsHaveTheirErrorsBinsAndThresholds) {

@@ -84,8 +84,8 @@ TEST(DetectionMetrics, OtherClassesDoNotCount) {
   EXPECT_EQ(evaluate_class(frames, "mug", {}).auc, 0.0);
   const ClassResult can = evaluate_class(frames, "can", {});
   EXPECT_TRUE(std::isnan(can.auc));
-  EXPECT_EQ(count_verdicts(can, Verdict::kFalse, 0.0F), 1);
-  EXPECT_EQ(count_verdicts(can, Verdict::kFalse, 0.95F), 0);
+  EXPECT_EQ(count_reported(can, Verdict::kFalse, 0.0F).all(), 1);
+  EXPECT_EQ(count_reported(can, Verdict::kFalse, 0.95F).all(), 0);
   ASSERT_EQ(can.curve.size(), 1U) << "it counts where another scene has cans";
   EXPECT_EQ(can.curve[0].recall, 0.0);
 }
@@ -290,14 +290,31 @@ TEST(PoseMetrics, QualityIsJudgedByWithheldPosesToo) {
   EXPECT_EQ(evaluation.add_s_recall.at("mug"), 0.0) << "as published";
 }
 
-TEST(PoseMetrics, DetectionsThatWereNotPublishedDoNotEnterTheRecall) {
-  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
-  frames[1].detections->detections[0].score = 0.2F;
-  frames[2].detections->detections[0].score = 0.2F;
+TEST(PoseMetrics, CandidatesCountWhereAPoseHasConfirmedThem) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);  // right, wrong, none
+  frames[0].detections->detections[0].reported = false;
+  frames[2].detections->detections[0].reported = false;
   EvaluationRules rules;
-  rules.published_score = 0.5F;
+  rules.operating_score = 0.4F;
   const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
-  EXPECT_EQ(evaluate(frames, {"mug"}, models, rules).add_s_recall.at("mug"), 1.0);
+  const Evaluation evaluation = evaluate(frames, {"mug"}, models, rules);
+  EXPECT_EQ(evaluation.add_s_recall.at("mug"), 0.5) << "the third is not reported";
+  EXPECT_EQ(evaluation.operating.at("mug").right.detections, 1);
+  EXPECT_EQ(evaluation.operating.at("mug").right.confirmed, 1);
+  rules.operating_score = 0.6F;
+  EXPECT_EQ(evaluate(frames, {"mug"}, models, rules).operating.at("mug").right.all(), 1)
+      << "confirmed, whatever its score";
+}
+
+TEST(PoseMetrics, AConfirmedCandidateThatIsNotThereIsAFalseDetection) {
+  std::vector<EvaluatedFrame> frames = posed_frames(1.0);
+  frames[0].detections->detections.push_back(detection("mug", kRight, 0.2F));
+  frames[0].detections->detections[1].reported = false;
+  EXPECT_EQ(evaluate(frames, {"mug"}, {}, {}).false_detections, 0);
+  ObjectPose of_false = frames[0].poses->poses[0];
+  of_false.detection_index = 1;
+  frames[0].poses->poses.push_back(of_false);
+  EXPECT_EQ(evaluate(frames, {"mug"}, {}, {}).false_detections, 1);
 }
 
 fs::path write_csv(const std::string& text) {

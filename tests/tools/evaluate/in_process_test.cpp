@@ -61,8 +61,8 @@ TEST(InProcess, PosesOfWeakDetectionsAreKnownButNotPublished) {
   const BopScene scene = two_tiles("in_process_weak");
   PublishingRules rules;
   rules.score = 0.5F;
-  rules.quality = 0.0F;
-  rules.pose_score = 0.0F;
+  publish_from(0.0F, rules.pose.quality);
+  rules.pose.min_score = 0.0F;
   const std::vector<EvaluatedFrame> ranked = run(scene, 0.0F, rules);
   const std::vector<EvaluatedFrame> usual = run(scene, 0.5F, rules);
   ASSERT_EQ(ranked.size(), 2U);
@@ -97,9 +97,9 @@ TEST(InProcess, PosesOfLowQualityAreKnownButNotPublished) {
   const BopScene scene = two_tiles("in_process_quality");
   PublishingRules rules;
   rules.score = 0.5F;
-  rules.quality = 0.0F;
+  publish_from(0.0F, rules.pose.quality);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
-  rules.quality = 2.0F;
+  publish_from(2.0F, rules.pose.quality);
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(count_poses(none[i].poses), 0);
@@ -109,9 +109,27 @@ TEST(InProcess, PosesOfLowQualityAreKnownButNotPublished) {
   }
 }
 
+TEST(InProcess, CandidatesHavePosesThatArePublishedByALimitOfTheirOwn) {
+  const BopScene scene = two_tiles("in_process_candidates");
+  PublishingRules rules{0.5F, 0.0F, {}};
+  rules.pose.min_score = 0.0F;
+  publish_from(0.0F, rules.pose.quality);
+  const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
+  rules.pose.quality.least_of_candidates = 2.0F;
+  const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::vector<Detection>& found = all[i].detections->detections;
+    const auto reported = std::count_if(found.begin(), found.end(), [](const auto& it) { return it.reported; });
+    ASSERT_GT(reported, 0);
+    ASSERT_GT(found.size(), static_cast<std::size_t>(reported)) << "whatever was asked to be found";
+    EXPECT_GT(count_poses(all[i].poses), count_poses(none[i].poses));
+    EXPECT_LE(count_poses(none[i].poses), reported);
+  }
+}
+
 TEST(InProcess, TimesAreThoseOfASearchForWhatIsPublished) {
   const BopScene scene = two_tiles("in_process_times");
-  const std::vector<EvaluatedFrame> frames = run(scene, 0.0F, {0.5F, 0.0F, 0.1F});
+  const std::vector<EvaluatedFrame> frames = run(scene, 0.0F, {0.5F, 0.2F, {}});
   std::set<std::string> stages;
   for (const StageTime& stage : frames[0].poses->stages)
     EXPECT_TRUE(stages.insert(stage.stage).second) << stage.stage << " twice";

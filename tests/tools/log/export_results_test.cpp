@@ -99,6 +99,23 @@ TEST(ExportResults, JsonHasEmptyFramesToo) {
   EXPECT_TRUE(frames[1]["detections"].empty());
 }
 
+TEST(ExportResults, CandidatesThatNoPoseConfirmsAreLeftOut) {
+  const fs::path file = fresh_folder("results_candidates") / "results.lcmlog";
+  TestLog log(file);
+  Detections found = make_detections(10, 2);
+  for (Detection& detection : found.detections) detection.reported = false;
+  log.add(channel::kDetections, to_message(found));
+  log.add(channel::kPoses, to_message(make_poses(10)));
+  log.close();
+  LossAccount losses;
+  export_results_csv(file, file.parent_path() / "a.csv", losses);
+  const std::string csv = read_text(file.parent_path() / "a.csv");
+  EXPECT_NE(csv.find(",bowl,"), std::string::npos) << "it has a pose";
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
+  export_results_json(file, file.parent_path() / "a.json", losses);
+  EXPECT_EQ(read_json_object(file.parent_path() / "a.json").at("frames")[0]["detections"].size(), 1U);
+}
+
 TEST(ExportResults, CamerasOfEqualTimesAndSeveralDetectorsAreAllThere) {
   const fs::path folder = fresh_folder("results_two_cameras");
   TestLog log(folder / "log");

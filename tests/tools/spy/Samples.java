@@ -103,6 +103,7 @@ final class Samples {
     detection.class_id = 4;
     detection.class_name = "soda_can";
     detection.score = 0.75F;
+    detection.reported = true;
     detection.box_x = 20;
     detection.box_y = 18;
     detection.box_width = 24;

@@ -25,6 +25,7 @@ public final class ViewersTest {
     ImagesTest.run();
     PluginsTest.run();
     Check.test("box and axes are drawn where they belong", ViewersTest::overlay);
+    Check.test("candidates are drawn where a pose confirms them", ViewersTest::candidates);
     Check.test("pictures fit every size", ViewersTest::sizes);
     Check.test("the panel of detections survives every size", ViewersTest::panel);
     Check.test("the sphere fills from where the object was seen", ViewersTest::teaching);
@@ -65,11 +66,29 @@ public final class ViewersTest {
   }
 
   private static BufferedImage drawn(byte status, double minScore) throws Exception {
+    return drawn(Samples.detections(5), status, minScore);
+  }
+
+  private static BufferedImage drawn(detections_t detections, byte status, double minScore) throws Exception {
     RgbdFrame frame = RgbdFrame.decode(frame(5));
     PicturePane pane = new PicturePane();
     pane.show(List.of(frame.colour),
-        new DetectionOverlay(Samples.detections(5), Samples.poses(5, status), frame.camera, minScore));
+        new DetectionOverlay(detections, Samples.poses(5, status), frame.camera, minScore));
     return painted(pane, 10 * Samples.WIDTH, 10 * Samples.HEIGHT);
+  }
+
+  private static void candidates() throws Exception {
+    detections_t detections = Samples.detections(5);
+    detections.detections[0].reported = false;
+    BufferedImage confirmed = drawn(detections, object_pose_t.VALID, 0.0);
+    Check.that(count(confirmed, DetectionOverlay.classColour(4)) > 50, "its pose is valid");
+    BufferedImage open = drawn(detections, object_pose_t.REJECTED_BY_DEPTH, 0.0);
+    Check.equal(count(open, DetectionOverlay.classColour(4)), 0);
+    ObjectsTable table = new ObjectsTable();
+    table.show(detections, Samples.poses(5, object_pose_t.VALID), 0.0);
+    Check.equal(table.getRowCount(), 1);
+    table.show(detections, null, 0.0);
+    Check.equal(table.getRowCount(), 0);
   }
 
   private static void overlay() throws Exception {

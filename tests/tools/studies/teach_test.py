@@ -148,10 +148,10 @@ class Parts(unittest.TestCase):
             message.name, message.state = name, state
             return message.encode()
 
-        def detections(name):
+        def detections(name, reported=True):
             message = detections_t()
             message.n_detections, message.detections = 1, [detection_t()]
-            message.detections[0].class_name = name
+            message.detections[0].class_name, message.detections[0].reported = name, reported
             return message.encode()
 
         log = self.write_log([
@@ -160,6 +160,7 @@ class Parts(unittest.TestCase):
             (3_000_000, "HOUGHSTREAM_TEACHING", teaching(teaching_t.FUSING)),
             (5_000_000, "HOUGHSTREAM_TEACHING", teaching(teaching_t.DONE)),
             (6_000_000, "HOUGHSTREAM_DETECTIONS", detections("cup")),
+            (6_500_000, "HOUGHSTREAM_DETECTIONS", detections("mug", reported=False)),
             (7_000_000, "HOUGHSTREAM_DETECTIONS", detections("mug")),
         ])  # fmt: skip
         with open(log, "ab") as more:

@@ -15,6 +15,11 @@ bool is_required(const NamedObject& object, const DetectionRules& rules) {
   return is_target && !object.truth.box_visible_px.empty();
 }
 
+bool has_pose(const EvaluatedFrame& frame, std::size_t detection) {
+  const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection) : nullptr;
+  return pose != nullptr && pose->status == PoseStatus::kValid;
+}
+
 /// The class's detections over all frames, strongest first.
 std::vector<JudgedDetection> ranked_detections(const std::vector<EvaluatedFrame>& frames, const std::string& class_name,
                                                int max_per_class) {
@@ -25,7 +30,8 @@ std::vector<JudgedDetection> ranked_detections(const std::vector<EvaluatedFrame>
     const std::vector<Detection>& detections = frames[f].detections->detections;
     std::vector<JudgedDetection> here;
     for (std::size_t i = 0; i < detections.size(); ++i) {
-      if (detections[i].class_name == class_name) here.push_back({f, i, detections[i].score, Verdict::kFalse, 0});
+      if (detections[i].class_name != class_name) continue;
+      here.push_back({f, i, detections[i].score, Verdict::kFalse, 0, !detections[i].reported, has_pose(frames[f], i)});
     }
     std::stable_sort(here.begin(), here.end(), stronger);
     if (here.size() > static_cast<std::size_t>(max_per_class)) here.resize(static_cast<std::size_t>(max_per_class));
@@ -146,10 +152,14 @@ double weighted_auc(const std::vector<ClassResult>& classes) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-int count_verdicts(const ClassResult& result, Verdict verdict, float min_score) {
-  return static_cast<int>(std::count_if(result.judged.begin(), result.judged.end(), [&](const JudgedDetection& d) {
-    return d.verdict == verdict && d.score >= min_score;
-  }));
+ReportedCount count_reported(const ClassResult& result, Verdict verdict, float min_score) {
+  ReportedCount count;
+  for (const JudgedDetection& it : result.judged) {
+    if (it.verdict != verdict) continue;
+    count.detections += !it.is_candidate && it.score >= min_score ? 1 : 0;
+    count.confirmed += it.is_candidate && it.has_pose ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace houghstream

@@ -23,7 +23,9 @@ struct JudgedDetection {
   std::size_t index = 0;  ///< in the frame's detections
   float score = 0.0F;
   Verdict verdict = Verdict::kFalse;
-  std::size_t object = 0;  ///< in the frame's objects; only meaningful where true
+  std::size_t object = 0;     ///< in the frame's objects; only meaningful where true
+  bool is_candidate = false;  ///< not Detection::reported
+  bool has_pose = false;      ///< a published one
 };
 
 /// Judges all detections of a class, strongest first over all frames (ties by frame, then index). A detection is true
@@ -71,7 +73,14 @@ double mean_auc(const std::vector<ClassResult>& classes);
 /// Mean AUC weighted by the number of required objects; NaN where none appears.
 double weighted_auc(const std::vector<ClassResult>& classes);
 
-/// Detections of verdict `verdict` with at least `min_score`.
-int count_verdicts(const ClassResult& result, Verdict verdict, float min_score);
+/// What is reported of a class, judged.
+struct ReportedCount {
+  int detections = 0;  ///< by their score
+  int confirmed = 0;   ///< candidates by their pose
+  int all() const { return detections + confirmed; }
+};
+
+/// Detections of verdict `verdict` with at least `min_score`, and candidates with a pose whatever their score.
+ReportedCount count_reported(const ClassResult& result, Verdict verdict, float min_score);
 
 }  // namespace houghstream

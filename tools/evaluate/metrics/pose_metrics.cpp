@@ -15,13 +15,6 @@ Points transformed(const Points& points, const Eigen::Isometry3d& T) {
   return out;
 }
 
-const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_index) {
-  for (const ObjectPose& pose : poses.poses) {
-    if (pose.detection_index == static_cast<int>(detection_index)) return &pose;
-  }
-  return nullptr;
-}
-
 double recall(const std::vector<JudgedPose>& poses, double JudgedPose::*error, double diameter, double min_visible) {
   int counted = 0;
   int good = 0;
@@ -73,6 +66,7 @@ std::vector<JudgedPose> judge_poses(const std::vector<EvaluatedFrame>& frames, c
     row.class_name = detections.class_name;
     row.visible_fraction = truth.visible_fraction;
     row.score = detection.score;
+    row.reported = !detection.is_candidate || detection.has_pose;
     row.scene = frame.scene;
     row.image_id = frame.image_id;
     const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection.index) : nullptr;

@@ -42,6 +42,7 @@ struct JudgedPose {
   double add_s = std::numeric_limits<double>::quiet_NaN();  ///< metres; NaN without a pose
   float score = 0.0F;                                       ///< of the detection
   float quality = 0.0F;                                     ///< of the pose, also of one that was withheld
+  bool reported = true;                                     ///< false: a candidate without a published pose
   std::string scene;
   int image_id = 0;
 };

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
     const houghstream::FoundObjects found = finder.find(frame);
     for (std::size_t i = 0; i < found.detections.detections.size(); ++i) {
       const houghstream::ObjectPose& pose = found.poses.poses[i];
+      if (!houghstream::is_reported(found.detections.detections[i], &pose)) continue;
       std::printf("%-20s score %.2f, ", pose.class_name.c_str(), pose.detection_score);
       if (!pose.T_camera_object) {
         std::printf("%s\n", houghstream::to_string(pose.status));

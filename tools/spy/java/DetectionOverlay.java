@@ -24,7 +24,7 @@ final class DetectionOverlay implements PicturePane.Overlay {
   private final camera_t camera;
   private final double minScore;
 
-  /** `poses` and `camera` may be null. Detections with scores below `minScore` and their poses are not drawn. */
+  /** `poses` and `camera` may be null. Detections with scores below `minScore` or not reported, and their poses, are not drawn. */
   DetectionOverlay(detections_t detections, object_poses_t poses, camera_t camera, double minScore) {
     this.detections = detections;
     this.poses = poses;
@@ -34,8 +34,8 @@ final class DetectionOverlay implements PicturePane.Overlay {
 
   @Override
   public void paint(Graphics2D graphics, double scale) {
-    for (detection_t detection : detections.detections) {
-      if (detection.score >= minScore) paintBox(graphics, detection, scale);
+    for (int i = 0; i < detections.n_detections; ++i) {
+      if (isShown(i)) paintBox(graphics, detections.detections[i], scale);
     }
     if (poses != null && camera != null) {
       for (object_pose_t pose : poses.poses) {
@@ -44,9 +44,13 @@ final class DetectionOverlay implements PicturePane.Overlay {
     }
     // Weakest first: nothing covers the name of the surest object.
     for (int i = detections.n_detections; i-- > 0;) {
-      detection_t detection = detections.detections[i];
-      if (detection.score >= minScore) paintLabel(graphics, detection, scale);
+      if (isShown(i)) paintLabel(graphics, detections.detections[i], scale);
     }
+  }
+
+  private boolean isShown(int i) {
+    detection_t detection = detections.detections[i];
+    return detection.score >= minScore && ObjectsTable.isReported(detection, ObjectsTable.poseOf(i, poses));
   }
 
   private static void paintBox(Graphics2D graphics, detection_t detection, double scale) {

@@ -163,7 +163,7 @@ final class FrameResults {
   }
 
   private static boolean same(detection_t a, detection_t b) {
-    return a.class_id == b.class_id && a.class_name.equals(b.class_name) && a.score == b.score && a.box_x == b.box_x
+    return a.class_id == b.class_id && a.class_name.equals(b.class_name) && a.score == b.score && a.reported == b.reported && a.box_x == b.box_x
         && a.box_y == b.box_y && a.box_width == b.box_width && a.box_height == b.box_height
         && a.vote_weight == b.vote_weight && a.n_votes_total == b.n_votes_total;
   }

@@ -8,7 +8,7 @@ import java.util.ArrayList;
 import java.util.List;
 import javax.swing.table.AbstractTableModel;
 
-/** A row per detection: what it is, how sure, where, and what became of its pose. */
+/** A row per detection that is reported: what it is, how sure, where, and what became of its pose. */
 @SuppressWarnings("serial")
 final class ObjectsTable extends AbstractTableModel {
   private static final String[] COLUMNS = {"object", "score", "x, y, z in m", "pose", "quality"};
@@ -18,13 +18,20 @@ final class ObjectsTable extends AbstractTableModel {
   void show(detections_t detections, object_poses_t poses, double minScore) {
     List<String[]> newRows = new ArrayList<>();
     for (int i = 0; i < detections.n_detections; ++i) {
-      if (detections.detections[i].score >= minScore) newRows.add(row(detections.detections[i], poseOf(i, poses)));
+      detection_t detection = detections.detections[i];
+      object_pose_t pose = poseOf(i, poses);
+      if (detection.score >= minScore && isReported(detection, pose)) newRows.add(row(detection, pose));
     }
     rows = newRows;
     fireTableDataChanged();
   }
 
-  private static object_pose_t poseOf(int detection, object_poses_t poses) {
+  /** A candidate counts where its pose is valid. `pose` may be null. */
+  static boolean isReported(detection_t detection, object_pose_t pose) {
+    return detection.reported || (pose != null && pose.status == object_pose_t.VALID);
+  }
+
+  static object_pose_t poseOf(int detection, object_poses_t poses) {
     if (poses == null) return null;
     for (object_pose_t pose : poses.poses) {
       if (pose.detection_index == detection) return pose;

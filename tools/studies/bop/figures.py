@@ -12,7 +12,7 @@ FIGURES = (
     "ece_score", "ece_quality", "ms_detect_median", "ms_pose_median", "linemod_auc", "ar_prerejective", "ar_ppf",
     "ar_on_rival_frames",
 )  # fmt: skip
-COUNTS = ("targets", "objects", "true", "false", "published", "frames", "linemod_frames", "rival_frames")
+COUNTS = ("targets", "objects", "true", "false", "confirmed", "published", "frames", "linemod_frames", "rival_frames")
 
 
 def share(part, whole):
@@ -62,10 +62,13 @@ def area(judged, required):
 
 
 def counts_at_default(evaluations):
-    """True and false detections of what was found at the default threshold, and objects that are there."""
-    true = sum(is_true for one in evaluations for judged in one.judged.values() for _, is_true in judged)
+    """True and false detections of what is reported at the defaults, how many of the true ones are candidates that a pose
+    has confirmed, and objects that are there."""
+    operating = [one.summary["operating"] for one in evaluations]
+    true, confirmed = sum(one["true"] for one in operating), sum(one["confirmed"]["true"] for one in operating)
     false = sum(one.summary["false_detections"] for one in evaluations)
-    return {"true": true, "false": false, "objects": sum(sum(one.required.values()) for one in evaluations)}
+    objects = sum(sum(one.required.values()) for one in evaluations)
+    return {"true": true, "false": false, "confirmed": confirmed, "objects": objects}
 
 
 def weighted(pairs):

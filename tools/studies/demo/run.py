@@ -47,9 +47,10 @@ class Demo:
         make(self.store, options.fresh)
 
     def stream(self, name, frames, models):
-        """hs-detect shows even its weakest detections here: precision and recall are drawn over all scores."""
+        """hs-detect sends even its weakest detections here, as candidates: precision and recall are drawn over all scores.
+        hs-pose looks at none but those that it would be sent."""
         return Stream(self.programs, self.store.path("forest"), models, frames, self.out / name,
-                      detect=("--threshold", "0.01"), pose=("--threads", 1), show=True)  # fmt: skip
+                      detect=("--candidates", 0.01), pose=("--threads", 1, "--min-score", 0.2), show=True)  # fmt: skip
 
     def replay(self, name, log, scene, models=None):
         """The log through the stream, and what came out beside the truth of the scene. Returns how many frames were sent."""

@@ -40,8 +40,8 @@ BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, const Bench
   settings.registration.engine = register_pcl;
   makers.each_frame[kPcl] = estimator_maker(meshes, settings);
   settings = options.pose;
-  settings.quality.least = 0.0F;
-  for (auto& [name, learnt] : settings.class_quality) learnt.least = 0.0F;
+  publish_from(0.0F, settings.quality);
+  for (auto& [name, learnt] : settings.class_quality) publish_from(0.0F, learnt);
   makers.each_frame[kUnchecked] = estimator_maker(meshes, settings);
   if (options.no_rivals) return makers;
   makers.rivals[kPrerejective] = rival_maker(make_prerejective_rival(meshes, options.pose, PrerejectiveSettings{}));
@@ -110,8 +110,7 @@ BenchOptions with_store(BenchOptions options) {
   const store::ObjectStore objects = store::read_store(options.objects);
   options.forest = objects.forest_file().string();
   options.models = objects.models_folder().string();
-  options.pose.quality.least = kStoreQuality;
-  take_from_store(objects, options.pose);
+  take_from_store(objects, std::nullopt, options.pose);
   return options;
 }
 

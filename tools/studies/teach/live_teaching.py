@@ -49,7 +49,7 @@ def times_of(found, name):
 
     def is_found(channel, data):
         return channel == "HOUGHSTREAM_DETECTIONS" and any(
-            it.class_name == name for it in detections_t.decode(data).detections
+            it.class_name == name and it.reported for it in detections_t.decode(data).detections
         )
 
     return {"take_over": first_time(found, in_state(teaching_t.FUSING)), "done": first_time(found, in_state(teaching_t.DONE)),

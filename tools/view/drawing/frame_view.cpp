@@ -25,7 +25,9 @@ ViewedFrame without_weak(ViewedFrame viewed, float min_score) {
   std::vector<Detection> strong;
   std::vector<int> new_index(viewed.detections.detections.size(), -1);
   for (std::size_t i = 0; i < new_index.size(); ++i) {
-    if (viewed.detections.detections[i].score < min_score) continue;
+    const Detection& detection = viewed.detections.detections[i];
+    const ObjectPose* pose = viewed.poses ? find_pose(*viewed.poses, i) : nullptr;
+    if (detection.score < min_score || !is_reported(detection, pose)) continue;
     new_index[i] = static_cast<int>(strong.size());
     strong.push_back(std::move(viewed.detections.detections[i]));
   }

@@ -44,7 +44,7 @@ struct StreamView {
 /// Depth (CV_32FC1, metres) as BGR: near is warm, far is cold, no measurement is black.
 cv::Mat colour_depth(const cv::Mat& depth, float near, float far);
 
-/// The frame without detections weaker than `min_score`, which are counted, and without their poses.
+/// The frame without detections weaker than `min_score` or not reported, which are counted, and without their poses.
 ViewedFrame without_weak(ViewedFrame viewed, float min_score);
 
 /// The colour image with all that is drawn over it. Throws InputError as draw_overlay does.

@@ -69,11 +69,7 @@ std::string object_line(const Detection& detection, const ObjectPose* pose) {
 }
 
 const ObjectPose* pose_of(const ViewedFrame& viewed, std::size_t detection) {
-  if (!viewed.poses) return nullptr;
-  for (const ObjectPose& pose : viewed.poses->poses) {
-    if (pose.detection_index == static_cast<int>(detection)) return &pose;
-  }
-  return nullptr;
+  return viewed.poses ? find_pose(*viewed.poses, detection) : nullptr;
 }
 
 void draw_objects(Block block, const ViewedFrame& viewed) {

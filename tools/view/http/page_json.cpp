@@ -29,11 +29,7 @@ json counted(std::int64_t lost) {
 }
 
 const ObjectPose* pose_of(const ViewedFrame& viewed, std::size_t detection) {
-  if (!viewed.poses) return nullptr;
-  for (const ObjectPose& pose : viewed.poses->poses) {
-    if (pose.detection_index == static_cast<int>(detection)) return &pose;
-  }
-  return nullptr;
+  return viewed.poses ? find_pose(*viewed.poses, detection) : nullptr;
 }
 
 json pose_json(const ObjectPose& pose) {

@@ -70,5 +70,20 @@ TEST(FrameView, WeakDetectionsAreLeftOutWithTheirPoses) {
   EXPECT_EQ(strong.poses->poses[1].detection_index, 1);
 }
 
+TEST(FrameView, CandidatesAreDrawnWhereAPoseConfirmsThem) {
+  ViewedFrame viewed;
+  viewed.detections.detections.resize(3);
+  for (const std::size_t i : {1, 2}) viewed.detections.detections[i].reported = false;
+  EXPECT_EQ(without_weak(viewed, 0.0F).detections.detections.size(), 1U);
+  viewed.poses.emplace();
+  viewed.poses->poses.resize(1);
+  viewed.poses->poses[0].detection_index = 2;
+  viewed.poses->poses[0].status = PoseStatus::kValid;
+  const ViewedFrame shown = without_weak(viewed, 0.0F);
+  ASSERT_EQ(shown.detections.detections.size(), 2U);
+  EXPECT_EQ(shown.poses->poses.at(0).detection_index, 1);
+  EXPECT_EQ(shown.weak, 1U);
+}
+
 }  // namespace
 }  // namespace houghstream::view

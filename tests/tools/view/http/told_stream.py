@@ -53,7 +53,7 @@ def detections_message(utime, channel, objects):
     message.utime, message.source_channel = utime, channel
     for class_id, (name, score, _) in enumerate(objects, 1):
         found = detection_t()
-        found.class_id, found.class_name, found.score = class_id, name, score
+        found.class_id, found.class_name, found.score, found.reported = class_id, name, score, True
         found.box_x, found.box_y, found.box_width, found.box_height = 10.0 * class_id, 8.0, 14.0, 20.0
         found.centre_camera = [0.1, 0.0, 0.9]
         message.detections.append(found)
