@@ -13,6 +13,7 @@ class FoundObject(NamedTuple):
     box: tuple  # x, y, width, height in pixels
     centre: tuple  # metres
     encoded: bytes  # all that was said of it
+    reported: bool
 
 
 class FoundPose(NamedTuple):
@@ -31,6 +32,7 @@ def detections_of(data):
             (one.box_x, one.box_y, one.box_width, one.box_height),
             tuple(one.centre_camera),
             one.encode(),
+            bool(one.reported),
         )
         for one in detections_t.decode(data).detections
     ]
