@@ -5,7 +5,9 @@
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream::store {
 namespace {
@@ -31,11 +33,10 @@ bool truth(const nlohmann::json& entry, const char* key, const std::string& wher
 
 /// That of a store that does not say it is the origin.
 Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& where) {
-  constexpr float kFarthest = 10.0F;  // a mesh is smaller
   if (!entry.contains("vote_centre_m")) return Eigen::Vector3f::Zero();
   const std::vector<double> xyz = json_numbers(entry, "vote_centre_m", 3, where);
   const Eigen::Vector3f centre = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).cast<float>();
-  require(centre.norm() < kFarthest, "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where,
+  require(centre.norm() < kFarthestCentre_m, "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where,
           entry.at("vote_centre_m").dump());
   return centre;
 }
@@ -92,6 +93,12 @@ std::vector<StoredObject> parse_objects(const nlohmann::json& json, const std::s
 void require_file(const fs::path& file, const fs::path& store) {
   require(fs::is_regular_file(file), "{}: missing, expected it in the object store {}: half written; teach it anew",
           file.string(), store.string());
+}
+
+/// Of an object store, a torn one included: its version is what it begins with.
+bool is_list_of_store(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return false;
+  return read_file(file, "the list of an object store").find(fmt::format("\"{}\"", kVersionKey)) != std::string::npos;
 }
 
 /// The models of the store must be those of its list.
@@ -228,9 +235,13 @@ void write_store_json(const ObjectStore& store) {
   write_json(json, store.json_file());
 }
 
+void require_utf8_name(const std::string& name, const std::string& where) {
+  require(is_utf8(name), "{}: the name '{}' is not UTF-8, expected one that JSON can hold", where, printable(name));
+}
+
 bool may_be_replaced(const fs::path& folder) {
   if (!fs::exists(folder)) return true;
-  return fs::is_directory(folder) && (fs::is_empty(folder) || fs::exists(folder / kJsonFile));
+  return fs::is_directory(folder) && (fs::is_empty(folder) || is_list_of_store(folder / kJsonFile));
 }
 
 }  // namespace houghstream::store

@@ -18,6 +18,9 @@ namespace houghstream::store {
 /// Of store.json; another one is refused.
 constexpr int kStoreVersion = 1;
 
+/// A vote centre is nearer to the origin than this, metres: farther away coordinates lose what a mesh shows.
+constexpr float kFarthestCentre_m = 10.0F;
+
 /// A taught object, as store.json says it.
 struct StoredObject {
   int id = 0;             ///< from 1, that of its model and of its class in the forest
@@ -65,7 +68,12 @@ void require_same_objects(const ObjectStore& store, const std::vector<std::strin
 /// Writes FOLDER/store.json, last of all files: a folder without it is half written.
 void write_store_json(const ObjectStore& store);
 
-/// Whether the folder holds a store or what is left of one, which may be replaced; nothing else may.
+/// Throws InputError naming `where` for an object's name that is not UTF-8: JSON would hold another one (RFC 8259,
+/// section 8.1), and the parts of the store would contradict one another.
+void require_utf8_name(const std::string& name, const std::string& where);
+
+/// Whether the folder is empty or holds a store or what is left of one, which may be replaced; nothing else may. A
+/// store.json of anybody else makes no store.
 bool may_be_replaced(const std::filesystem::path& folder);
 
 }  // namespace houghstream::store

@@ -18,9 +18,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Where a store lies, symbolic links followed: the store is exchanged, not the link to it.
+fs::path place_of_store(const fs::path& store) {
+  std::error_code error;
+  fs::path whole = fs::absolute(store, error);
+  if (!error) whole = fs::weakly_canonical(whole, error);
+  require(!error, "'{}': cannot be looked for: {}, expected the folder of an object store", store.string(),
+          error.message());
+  fs::path place = (whole / "").parent_path();
+  require(!fs::is_symlink(place), "{}: a symbolic link to nothing, expected an object store, or nothing yet",
+          place.string());
+  return place;
+}
+
+int open_folder(const fs::path& folder) {
+  return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+/// Who looks whether anybody works on a store, and says then that he does, is alone with that: two who begin together
+/// would both find nobody. Waits for those before, who take a moment. Leaves no file beside the store.
+class Turn {
+ public:
+  explicit Turn(const fs::path& folder) : file_(open_folder(folder)) {
+    while (file_ >= 0 && flock(file_, LOCK_EX) != 0) {
+      if (errno == EINTR) continue;
+      close(file_);
+      file_ = -1;
+    }
+    require(file_ >= 0, "{}: cannot be locked: {}, expected a folder to make a store in", folder.string(),
+            std::strerror(errno));
+  }
+  ~Turn() { close(file_); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  int file_;
+};
+
 /// An open folder that nobody else has locked, or -1. The lock ends with its process, however that ends.
 int try_lock(const fs::path& folder) {
-  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int file = open_folder(folder);
   if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return file;
   if (file >= 0) close(file);
   return -1;
@@ -71,12 +109,21 @@ bool exchange(const fs::path& one, const fs::path& other) {
 
 }  // namespace
 
-StoreBuild::StoreBuild(const fs::path& store) : store_(fs::absolute(store / "").lexically_normal().parent_path()) {
-  require(may_be_replaced(store_), "{}: holds no store.json, expected an object store, or nothing yet: not replaced",
-          store_.string());
+void bring_back_store(const fs::path& store) {
+  const fs::path place = place_of_store(store);
+  if (fs::exists(place) || !fs::exists(place_of_old(place))) return;
+  const Turn turn(place.parent_path());
+  remove_leftovers(place);
+  bring_back_old(place);
+}
+
+StoreBuild::StoreBuild(const fs::path& store) : store_(place_of_store(store)) {
+  require(may_be_replaced(store_),
+          "{}: holds no store.json of an object store, expected one, or nothing yet: not replaced", store_.string());
   std::error_code error;
   fs::create_directories(store_.parent_path(), error);
   require(!error, "{}: cannot make this folder: {}", store_.parent_path().string(), error.message());
+  const Turn turn(store_.parent_path());
   remove_leftovers(store_);
   bring_back_old(store_);
   partial_ = store_.parent_path() / (partial_prefix(store_) + std::to_string(getpid()));

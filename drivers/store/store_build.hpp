@@ -5,12 +5,12 @@
 namespace houghstream::store {
 
 /// A store that is being made, in the folder `.STORE.partial-PID` beside STORE; STORE stays whole until publish(),
-/// which puts the new one into its place in one step. What an interrupted teaching left is removed when the next
-/// begins. One at a time works on a store.
+/// which puts the new one into its place in one step. Where STORE is a symbolic link, all this is where it leads. What
+/// an interrupted teaching left is removed when the next begins. One at a time works on a store, of all processes.
 class StoreBuild {
  public:
-  /// Throws InputError where STORE is a folder of something else, another teaching works on it, or the folder beside it
-  /// cannot be made.
+  /// Throws InputError where STORE is a folder of something else or a link to nothing, another teaching works on it, or
+  /// the folder beside it cannot be made.
   explicit StoreBuild(const std::filesystem::path& store);
   ~StoreBuild();  ///< removes what was not published
   StoreBuild(const StoreBuild&) = delete;
@@ -27,5 +27,10 @@ class StoreBuild {
   std::filesystem::path partial_;
   int lock_ = -1;
 };
+
+/// On a file system that cannot exchange folders, a teaching that is interrupted in the wrong moment leaves no STORE,
+/// but the old one beside it: this one is put back into its place. Else nothing is done. For those who read a store
+/// before they change it. Throws InputError where another teaching works on it, or it cannot be moved.
+void bring_back_store(const std::filesystem::path& store);
 
 }  // namespace houghstream::store

@@ -53,4 +53,13 @@ std::string printable_lines(std::string_view text) {
   return shown(text, true);
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
 }  // namespace houghstream

@@ -13,4 +13,7 @@ std::string printable(std::string_view text);
 /// The same for what may have several lines.
 std::string printable_lines(std::string_view text);
 
+/// Whether all of it is UTF-8 (RFC 3629).
+bool is_utf8(std::string_view text);
+
 }  // namespace houghstream

@@ -5,6 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/drivers/store/small_store.hpp"
 
 namespace houghstream::store {
@@ -94,6 +97,12 @@ TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
   EXPECT_EQ(read_store(folder).tone.most_deviation, 255.0F);
 }
 
+TEST(ObjectStore, ANameIsUtf8) {
+  EXPECT_EQ(error_of([] { require_utf8_name("größe 4 \xe6\x9d\xaf", "a.ply"); }), "");
+  EXPECT_EQ(error_of([] { require_utf8_name("m\xfcg", "a.ply"); }),
+            "a.ply: the name 'm\\xfcg' is not UTF-8, expected one that JSON can hold");
+}
+
 TEST(ObjectStore, PartsThatContradictOneAnotherAreRefused) {
   const fs::path names = whole_store("store_names");
   replace_in_file(names / "models" / "names.json", "brick", "stone");
@@ -159,6 +168,90 @@ TEST(StoreBuild, OneAtATimeAndNothingElseIsReplaced) {
   write_text(other / "holiday.jpg", "");
   expect_says(error_of([&] { StoreBuild build(other); }), {other.string(), "not replaced"});
   EXPECT_TRUE(fs::exists(other / "holiday.jpg"));
+}
+
+TEST(StoreBuild, AStoreJsonOfAnybodyElseMakesNoStore) {
+  const fs::path shop = fresh_folder("store_shop");
+  write_text(shop / "store.json", "{\"opens\": 9}");
+  EXPECT_FALSE(may_be_replaced(shop));
+  expect_says(error_of([&] { StoreBuild build(shop); }), {shop.string(), "holds no store.json of an object store"});
+  const fs::path torn = whole_store("store_torn");
+  const std::string text = read_text(torn / "store.json");
+  write_text(torn / "store.json", text.substr(0, text.size() / 2));
+  EXPECT_TRUE(may_be_replaced(torn)) << "what is left of a store";
+}
+
+/// Of another process: says 'y' where it works on the store, else 'n', and works until `go_on` is closed.
+[[noreturn]] void begin_and_tell(const fs::path& folder, int told, int go_on) {
+  const auto tell = [&](char byte) {
+    if (write(told, &byte, 1) != 1) _exit(2);
+  };
+  try {
+    const StoreBuild build(folder);
+    tell('y');
+    char byte = 0;
+    while (read(go_on, &byte, 1) > 0) continue;
+  } catch (const InputError&) {
+    tell('n');
+  } catch (...) {
+    _exit(3);
+  }
+  _exit(0);
+}
+
+TEST(StoreBuild, OfManyThatBeginTogetherOneWorks) {
+  constexpr int kMany = 8;
+  const fs::path folder = whole_store("store_together");
+  for (int round = 0; round < 20; ++round) {
+    int told[2];
+    int go_on[2];
+    ASSERT_EQ(pipe(told), 0);
+    ASSERT_EQ(pipe(go_on), 0);
+    std::vector<pid_t> children;
+    for (int i = 0; i < kMany; ++i) {
+      const pid_t child = fork();
+      if (child == 0) {
+        close(go_on[1]);
+        begin_and_tell(folder, told[1], go_on[0]);
+      }
+      children.push_back(child);
+    }
+    close(told[1]);
+    std::string answers;
+    for (char byte = 0; static_cast<int>(answers.size()) < kMany && read(told[0], &byte, 1) == 1;) answers += byte;
+    for (const int file : {told[0], go_on[0], go_on[1]}) close(file);
+    for (const pid_t child : children) waitpid(child, nullptr, 0);
+    EXPECT_EQ(answers.size(), static_cast<std::size_t>(kMany)) << "round " << round;
+    EXPECT_EQ(std::count(answers.begin(), answers.end(), 'y'), 1) << "round " << round;
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
+}
+
+TEST(StoreBuild, AStoreThatALinkNamesIsExchangedWhereItLies) {
+  const fs::path folder = whole_store("store_linked");
+  const fs::path link = folder.parent_path() / "link";
+  fs::create_directory_symlink(folder, link);
+  exchange(link, "bowl");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_store(folder).objects[1].name, "bowl");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 2);
+  fs::remove_all(folder);
+  expect_says(error_of([&] { StoreBuild build(link); }), {link.string(), "a symbolic link to nothing"});
+}
+
+TEST(StoreBuild, WhoReadsBeforeItsChangesBringsTheOldOneBack) {
+  const fs::path folder = whole_store("store_brought_back");
+  const fs::path aside = folder.parent_path() / ".store.before";
+  fs::rename(folder, aside);
+  bring_back_store(folder);
+  EXPECT_FALSE(fs::exists(aside));
+  EXPECT_EQ(read_store(folder).objects[1].name, "brick");
+  bring_back_store(folder.parent_path() / "nowhere");
+  EXPECT_FALSE(fs::exists(folder.parent_path() / "nowhere")) << "nothing is made";
+  const StoreBuild at_work(folder);
+  fs::rename(folder, aside);
+  expect_says(error_of([&] { bring_back_store(folder); }), {folder.string(), "another teaching"});
+  EXPECT_TRUE(fs::exists(aside)) << "he puts his own there in a moment";
 }
 
 /// The name of the second object; throws where any part of the store is missing or of another one.

@@ -29,6 +29,13 @@ TEST(Printable, ShowsWhatIsNotUtf8) {
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // a surrogate
 }
 
+TEST(Printable, TellsWhetherAllIsUtf8) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(is_utf8("Becher größer 杯 🙂\n"));
+  EXPECT_FALSE(is_utf8("m\xfcg"));
+  EXPECT_FALSE(is_utf8("cut \xe2\x82"));
+}
+
 TEST(Printable, KeepsLinesWhereTheyAreMeant) {
   EXPECT_EQ(printable_lines("a\nb\x1b"), "a\nb\\x1b");
 }
