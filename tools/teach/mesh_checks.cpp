@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/model/surface_tree.hpp"
@@ -41,6 +42,14 @@ void require_size(const std::string& where, double unit_m, const Mesh& mesh) {
   }
   fail("{}: {:.4g} m across when read in {}, expected {} to {} m, what the camera sees{}{}", where, size,
        unit_name(unit_m), kSmallest_m, kLargest_m, fitting.empty() ? "" : ": ", fmt::join(fitting, ", "));
+}
+
+/// CAD in an assembly's coordinates may lie far beside its origin.
+void require_near_origin(const std::string& where, const Mesh& mesh) {
+  const float away = mesh_bounds(mesh).center().norm();
+  require(away < store::kFarthestCentre_m,
+          "{}: its middle lies {:.4g} m from the origin of its coordinates, expected less than {:.0f} m", where, away,
+          store::kFarthestCentre_m);
 }
 
 /// Vertices at one place have one number: where texture is cut, the surface is not.
@@ -131,6 +140,7 @@ double largest_distance(const std::vector<Eigen::Vector3f>& points, const Surfac
 
 void check_mesh(const std::string& where, double unit_m, Mesh& mesh) {
   require_size(where, unit_m, mesh);
+  require_near_origin(where, mesh);
   const Topology found = examine(mesh);
   constexpr double kLeastVolume = 1e-3;  // of the box's: below, a plate has no inside
   if (found.volume_m3 < -kLeastVolume * found.box_volume_m3) {

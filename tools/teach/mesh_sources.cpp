@@ -116,6 +116,10 @@ void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& me
   }
 }
 
+void require_names(const std::vector<TaughtMesh>& meshes) {
+  for (const TaughtMesh& mesh : meshes) store::require_utf8_name(mesh.name, mesh.file.string());
+}
+
 void require_different(const std::vector<TaughtMesh>& meshes) {
   std::map<std::string, std::string> files;  // by name
   std::map<int, std::string> files_by_id;
@@ -149,6 +153,7 @@ std::vector<TaughtMesh> read_meshes(const MeshSources& sources) {
   }
   require(any_bop || sources.ids.empty(), "--ids goes with a BOP models folder (with models_info.json)");
   rename(sources.names, meshes);
+  require_names(meshes);
   require_different(meshes);
   return meshes;
 }

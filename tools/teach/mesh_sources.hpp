@@ -29,7 +29,7 @@ struct TaughtMesh {
 };
 
 /// Reads and checks them all (mesh_checks.hpp). Throws InputError with one line for what cannot be taught, for two
-/// objects of one name or id, and for names and ids that have no effect.
+/// objects of one name or id, a name that is not UTF-8, and for names and ids that have no effect.
 std::vector<TaughtMesh> read_meshes(const MeshSources& sources);
 
 }  // namespace houghstream::teach

@@ -8,6 +8,8 @@
 #include "detector/training/pictures/camera_variation.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 #include "detector/training/score_training.hpp"
+#include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pose/verification/quality_training.hpp"
 #include "tools/teach/quality_examples.hpp"
@@ -41,6 +43,14 @@ std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>&
     }
   });
   return frames;
+}
+
+void warn_of(const std::vector<std::string>& names, int rooms) {
+  for (const std::string& name : names)
+    log_warning(
+        "{}: seen in none of {} practice rooms, expected some: what its scores and poses are worth is not learnt (too "
+        "large for a table, or too few --practice-rooms)",
+        name, rooms);
 }
 
 training::ValidationSource validation_source(const std::vector<world::SceneFrame>& frames) {
@@ -84,10 +94,27 @@ quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, con
 
 }  // namespace
 
+std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,
+                                    const std::vector<PractisedObject>& objects, const std::set<int>& new_ids) {
+  std::set<int> seen;
+  for (const world::SceneFrame& frame : frames) {
+    for (const TrueObject& object : frame.objects) seen.insert(object.object_id);
+  }
+  std::vector<std::string> names;
+  for (const PractisedObject& object : objects) {
+    const int id = object.in_room.id;
+    if (new_ids.count(id) > 0 && seen.count(id) == 0) names.push_back(object.name);
+  }
+  return names;
+}
+
 std::map<std::string, QualitySettings> practise(const std::vector<PractisedObject>& objects,
                                                 const std::set<int>& new_ids, const PracticeSettings& settings,
                                                 Forest& forest) {
+  require(settings.rooms <= PracticeSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory",
+          settings.rooms, PracticeSettings::kMostRooms);
   const std::vector<world::SceneFrame> frames = render_frames(objects, settings);
+  warn_of(never_seen(frames, objects, new_ids), settings.rooms);
   Profile profile = training::profile_of(forest);
   profile.training.threads = settings.threads;
   training::train_score_model(validation_source(frames), new_ids, 0, profile, forest);

@@ -22,6 +22,8 @@ struct PractisedObject {
 };
 
 struct PracticeSettings {
+  static constexpr int kMostRooms = 500;  ///< whose pictures, 6.5 MB a room, are all in memory at once: 3 GB
+
   int rooms = 60;                  ///< each is looked at world::PracticeScenes::kFramesPerRoom times
   double surface_variation = 0.6;  ///< strength of the changes of objects' colours, see training::resurface
   double camera_share = 0.8;       ///< of the frames, that another camera sees than the one that taught
@@ -30,9 +32,14 @@ struct PracticeSettings {
   int threads = 2;
 };
 
+/// Names of the new objects that none of the frames shows: of such nothing can be learnt.
+std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,
+                                    const std::vector<PractisedObject>& objects, const std::set<int>& new_ids);
+
 /// Looks for the objects in rendered rooms (world::PracticeScenes) through widely varied cameras, and learns what its
 /// detections and poses are worth: the scores' weights in `forest`, and the qualities, by name; both of the classes in
-/// `new_ids` only. Same result for any number of threads.
+/// `new_ids` only. A line of the log names those of them that stand in no room. Same result for any number of threads.
+/// Throws InputError for more rooms than PracticeSettings::kMostRooms.
 std::map<std::string, QualitySettings> practise(const std::vector<PractisedObject>& objects,
                                                 const std::set<int>& new_ids, const PracticeSettings& settings,
                                                 Forest& forest);

@@ -10,6 +10,7 @@
 #include "drivers/store/object_store.hpp"
 #include "drivers/store/store_build.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tools/common/stored_forest.hpp"
 #include "tools/teach/contact_sheet.hpp"
 
 namespace houghstream::teach {
@@ -56,12 +57,14 @@ void write_pictures(const ObjectStore& store, const StoredObject& renamed) {
 }  // namespace
 
 void rename_in_store(const fs::path& folder, const std::string& old_name, const std::string& new_name) {
+  store::bring_back_store(folder);
   ObjectStore store = store::read_store(folder);  // nothing is made beside what is no store
   store::StoreBuild build(folder);
   store = store::read_store(folder);  // nobody else changes it from here on
   StoredObject& object = object_called(old_name, store);
   require(!new_name.empty(), "{}: a new name of '{}' without a letter, expected one", store.json_file().string(),
           old_name);
+  store::require_utf8_name(new_name, store.json_file().string());
   const bool is_taken = std::any_of(store.objects.begin(), store.objects.end(),
                                     [&](const StoredObject& other) { return other.name == new_name; });
   require(!is_taken, "{}: has a '{}' already, expected a new name for '{}'", store.json_file().string(), new_name,
@@ -77,6 +80,7 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   write_names(store);
   write_pictures(store, object);
   store::write_store_json(store);
+  load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
   build.publish();
 }
 

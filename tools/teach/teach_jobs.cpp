@@ -246,7 +246,8 @@ Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>
   return old ? training::add_objects(*old, views, profile, report) : training::train_forest(views, profile, report);
 }
 
-/// Everything but the pictures of views, which are there, and store.json last.
+/// Everything but the pictures of views, which are there, and store.json last. All of it is read back: a store that
+/// nothing can read must not take the place of one that works.
 void write_store(ObjectStore list, const std::vector<NamedModel>& models, const Forest& forest) {
   std::sort(list.objects.begin(), list.objects.end(),
             [](const StoredObject& a, const StoredObject& b) { return a.id < b.id; });
@@ -257,6 +258,7 @@ void write_store(ObjectStore list, const std::vector<NamedModel>& models, const 
   write_contact_sheet(pictures, list.contact_sheet());
   list.tone = forest.features.tone;
   store::write_store_json(list);
+  load_store_forest(store::read_store(list.folder));
 }
 
 /// What stays of a store goes into the one that is being made.
@@ -293,6 +295,12 @@ ObjectStore start_store(const fs::path& folder) {
   fs::create_directories(folder / "views", error);
   require(!error, "{}: cannot make this folder: {}", (folder / "views").string(), error.message());
   return made;
+}
+
+/// Nothing is made beside what is no store.
+void require_store(const fs::path& folder) {
+  store::bring_back_store(folder);
+  store::read_store(folder);
 }
 
 void name_lookalikes(const std::vector<NamedModel>& models) {
@@ -351,7 +359,7 @@ void list_store(const fs::path& folder) {
 }
 
 void remove_from_store(const fs::path& folder, const std::string& name) {
-  store::read_store(folder);  // nothing is made beside what is no store
+  require_store(folder);
   store::StoreBuild build(folder);
   const Contents old = read_contents(folder);
   const Forest forest = training::remove_object(*old.forest, name);
@@ -365,7 +373,7 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
 
 void practise_store(const fs::path& folder, const PracticeSettings& settings, const std::vector<std::string>& names) {
   const Progress progress;
-  store::read_store(folder);  // nothing is made beside what is no store
+  require_store(folder);
   store::StoreBuild build(folder);
   const Contents old = read_contents(folder);
   ObjectStore made = start_store(build.folder());

@@ -81,6 +81,21 @@ TEST(MeshSources, FilesHaveTheirNamesAndUnits) {
   expect_says(refusal(from(folder / "notes.txt")), {"notes.txt", "expected a mesh: PLY, OBJ, GLB or glTF"});
 }
 
+TEST(MeshSources, WhatNoStoreCanHoldIsRefused) {
+  const fs::path folder = fresh_folder("sources_unstorable");
+  Mesh far = crooked_part();
+  for (Eigen::Vector3f& vertex : far.vertices) vertex += Eigen::Vector3f(0.0F, 12.0F, 0.0F);
+  save_ply(far, folder / "far.ply");
+  expect_says(refusal(from(folder / "far.ply")), {"far.ply", "12 m from the origin", "expected less than 10 m"});
+  save_ply(crooked_part(), folder / "m\xfcg.ply");
+  MeshSources sources = from(folder / "m\xfcg.ply");
+  expect_says(refusal(sources), {"the name 'm\\xfcg' is not UTF-8"});
+  sources.names = {"m\xfcg=t\xf6pf"};
+  expect_says(refusal(sources), {"the name 't\\xf6pf' is not UTF-8"});
+  sources.names = {"m\xfcg=mug"};
+  EXPECT_EQ(read_meshes(sources).at(0).name, "mug");
+}
+
 TEST(MeshSources, TwoObjectsOfOneNameAreRefused) {
   const fs::path folder = fresh_folder("sources_twice");
   fs::create_directories(folder / "other");

@@ -130,6 +130,10 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
             std::string::npos);
   EXPECT_NE(error_of([&] { rename_in_store(options.out, "shelf support", ""); }).find("expected one"),
             std::string::npos);
+  EXPECT_NE(error_of([&] {
+              rename_in_store(options.out, "shelf support", "m\xfcg");
+            }).find("store.json: the name 'm\\xfcg' is not UTF-8"),
+            std::string::npos);
   rename_in_store(options.out, "shelf support", "bracket");
   expect_named(options.out, "bracket");
   EXPECT_EQ(read_text(before.forest_file()), forest) << "byte for byte";
@@ -186,6 +190,31 @@ TEST(TeachJobs, WhereTheOriginLiesMakesNoDifference) {
   EXPECT_LT(load_forest(options.out / "forest").classes.at(0).radius, 0.1F) << "votes are for its middle";
   for (const TrainingView& view : read_bop_training_views(options.dump_views))
     EXPECT_LT((view.T_camera_object * middle.cast<double>()).head<2>().norm(), 0.1) << "in the mesh's own frame";
+}
+
+TEST(TeachJobs, WhatCannotBeReadBackIsNotPublished) {
+  const fs::path folder = fresh_folder("teach_unreadable");
+  TeachOptions options = quick_options(folder, "");
+  options.meshes.sources.clear();
+  TaughtMesh taught;
+  taught.name = "m\xfcg";  // store.json holds Unicode, the forest any bytes
+  taught.file = "shown";
+  taught.mesh = crooked_part();
+  options.shown = {taught};
+  EXPECT_NE(error_of([&] { teach_meshes(options); }).find("expected the objects of"), std::string::npos);
+  EXPECT_TRUE(fs::is_empty(folder)) << "neither a store nor what is left of one";
+}
+
+TEST(TeachJobs, AStoreThatWasPutAsideIsThereForEveryJob) {
+  const fs::path folder = folder_of_meshes("teach_aside");
+  const TeachOptions options = quick_options(folder, "bracket.ply");
+  teach_meshes(options);
+  fs::rename(options.out, folder / ".store.before");
+  rename_in_store(options.out, "bracket", "support");
+  expect_named(options.out, "support");
+  fs::rename(options.out, folder / ".store.before");
+  EXPECT_NE(error_of([&] { remove_from_store(options.out, "drill"); }).find("drill"), std::string::npos);
+  expect_named(options.out, "support");
 }
 
 TEST(TeachJobs, ARefusedTeachingLosesNothing) {

@@ -93,7 +93,13 @@ ThingPtr look_alike(const Thing& thing, Random& random) {
   return make_thing(thing.name, std::move(mesh), thing.gloss);
 }
 
-/// On the table in one of its attitudes, sometimes leaning.
+/// Of its box, in its own frame.
+Eigen::Vector3d middle_of(const Thing& thing) {
+  return mesh_bounds(thing.mesh).center().cast<double>();
+}
+
+/// On the table in one of its attitudes, sometimes leaning. The middle of its box stands over the group's origin,
+/// wherever its own origin lies: the place on the table is reserved about that.
 Group put_down(const PracticeObject& object, const ThingPtr& thing, int id, Random& random) {
   constexpr double kLeaning = 0.2;
   Eigen::Matrix3d R = random_rotation(random);
@@ -106,7 +112,8 @@ Group put_down(const PracticeObject& object, const ThingPtr& thing, int id, Rand
     }
   }
   Placed placed{thing, Eigen::Isometry3d::Identity(), id, true};
-  placed.T_world_object.translate(Eigen::Vector3d(0.0, 0.0, height_above_table(thing->mesh, R)));
+  const Eigen::Vector3d beside = R * middle_of(*thing);
+  placed.T_world_object.translate(Eigen::Vector3d(-beside.x(), -beside.y(), height_above_table(thing->mesh, R)));
   placed.T_world_object.rotate(R);
   return {placed};
 }
@@ -123,7 +130,7 @@ Camera draw_camera(Random& random) {
 Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   std::vector<Eigen::Vector3d> places;
   for (const Placed& item : world.items) {
-    if (item.object_id != 0) places.push_back(item.T_world_object.translation());
+    if (item.object_id != 0) places.push_back(item.T_world_object * middle_of(*item.thing));
   }
   Eigen::Vector3d target = places.empty() ? Eigen::Vector3d(0.0, 0.0, 0.05) : pick(random, places);
   target += Eigen::Vector3d(random.uniform(-0.2, 0.2), random.uniform(-0.15, 0.15), random.uniform(-0.05, 0.1));

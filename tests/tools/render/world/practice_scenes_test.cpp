@@ -86,6 +86,33 @@ TEST(PracticeScenes, TheTruthAgreesWithTheMeasuredDepth) {
   EXPECT_GE(judged, kFrames);
 }
 
+/// The same object, its origin somewhere else.
+PracticeObject displaced(PracticeObject object, const Eigen::Vector3f& away) {
+  Mesh mesh = object.thing->mesh;
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex += away;
+  object.thing = make_taught_thing(std::move(mesh), true);
+  return object;
+}
+
+TEST(PracticeScenes, WhereTheOriginLiesMakesNoDifference) {
+  const Eigen::Vector3f away(0.8F, -2.3F, 0.5F);
+  const PracticeObject object = brick(5, {0.08, 0.12, 0.18}, {30, 30, 200});
+  const PracticeScenes scenes({object}, 4);
+  const PracticeScenes far_scenes({displaced(object, away)}, 4);
+  int named = 0;
+  for (int room = 0; room < kFrames; ++room) {
+    const SceneFrame view = scenes.render(room).front();
+    const SceneFrame far_view = far_scenes.render(room).front();
+    ASSERT_EQ(far_view.objects.size(), view.objects.size()) << room;
+    for (std::size_t i = 0; i < view.objects.size(); ++i) {
+      const Eigen::Vector3d middle = far_view.objects[i].T_camera_object * away.cast<double>();
+      EXPECT_LT((middle - view.objects[i].T_camera_object.translation()).norm(), 1e-3) << room;
+      ++named;
+    }
+  }
+  EXPECT_GE(named, kFrames / 2);
+}
+
 TEST(PracticeScenes, LookAlikesAreNotNamedInTheTruth) {
   const PracticeScenes scenes({brick(5, {0.08, 0.12, 0.18}, {30, 30, 200})}, 4);
   int named = 0;
