@@ -59,9 +59,20 @@ Eigen::Isometry3d Take::pose_of(const FrameTrack& frame) const {
   return frame.T_camera_keyframe * keyframes[static_cast<std::size_t>(frame.keyframe)].T_camera_world;
 }
 
+/// Masks, levels and boxes of the first frame are laid over all others.
+void ObjectTracker::require_same_size(const RgbdFrame& frame) {
+  const cv::Size size = frame.depth.size();
+  if (take_.frames.empty()) size_ = size;
+  require(size == size_ && frame.colour.size() == size_,
+          "frame {}: colour {}x{} and depth {}x{}, expected {}x{} as of the first frame: a take is of one camera",
+          to_string(frame.id), frame.colour.cols, frame.colour.rows, size.width, size.height, size_.width,
+          size_.height);
+}
+
 const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
   constexpr std::size_t kMostUnplaced = 100;
   const auto begin = std::chrono::steady_clock::now();
+  require_same_size(frame);
   take_.frames.push_back({frame.id, false, false, -1, Eigen::Isometry3d::Identity()});
   ++state_.frames;
   if (map_.empty()) {
@@ -275,10 +286,23 @@ void ObjectTracker::follow_object_only() {
       cv::Rect(box.x - more.width, box.y - more.height, box.width + 2 * more.width, box.height + 2 * more.height) &
       cv::Rect({0, 0}, first_frame_.depth.size());
   map_ = KeyframeMap(map);
+  tie_to_first_keyframe();
   state_.seen = {};
   T_last_ = T_before_ = chosen_.T_camera_stand;
   FrameLevels levels = make_levels(first_frame_, levels_);
   add_keyframe(first_number_, first_frame_, std::move(levels), {});
+}
+
+/// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
+/// them show the object as that one does. In the last of them it moved already, and nobody knows how far.
+void ObjectTracker::tie_to_first_keyframe() {
+  int moved = object_moves_ - 1;  // the last is the present frame, which is not placed yet
+  for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
+    if (!frame->tracked) continue;
+    frame->T_camera_keyframe.setIdentity();
+    frame->tracked = moved-- <= 0;
+    frame->keyframe = frame->tracked ? 0 : -1;
+  }
 }
 
 cv::Mat ObjectTracker::object_pixels(const FrameLevel& level, const Eigen::Isometry3d& T_camera_world) const {

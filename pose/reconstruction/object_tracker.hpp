@@ -78,7 +78,8 @@ class ObjectTracker {
  public:
   explicit ObjectTracker(const TrackerSettings& settings) : settings_(settings), map_(settings.map) {}
 
-  /// The next frame. Throws InputError with the reason where no object was found in the first frames.
+  /// The next frame. Throws InputError with the reason where no object was found in the first frames, and for a frame
+  /// of another size than the first.
   const TrackerState& process(const RgbdFrame& frame);
   const TrackerState& state() const { return state_; }
 
@@ -86,6 +87,7 @@ class ObjectTracker {
   Take finish();
 
  private:
+  void require_same_size(const RgbdFrame& frame);
   void choose(const RgbdFrame& frame);
   Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest);
   std::optional<Alignment> follow(const FrameLevels& levels);
@@ -98,6 +100,7 @@ class ObjectTracker {
   void mark_what_stays(FrameLevels& levels);
   void remove_seen_through(const FrameLevel& level, cv::Mat& mask) const;
   void follow_object_only();
+  void tie_to_first_keyframe();
   void add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
   cv::Mat object_pixels(const FrameLevel& level, const Eigen::Isometry3d& T_camera_world) const;
@@ -111,6 +114,7 @@ class ObjectTracker {
   Motion motion_ = Motion::kUnknown;
   cv::Mat first_light_, about_object_, away_from_object_;  ///< of the first keyframe's finest level
   LevelPoints first_rest_;                                 ///< points away from the object, world frame
+  cv::Size size_;                                          ///< of all frames, pixels
   RgbdFrame first_frame_;
   int first_number_ = 0;
   std::deque<std::vector<cv::Mat>> lights_;  ///< of the last frames, by level, while the object turns

@@ -164,6 +164,7 @@ bool merge_takes(const Take& first, ShownModel& model, const Take& second, Shown
   model.mesh = std::move(fused.mesh);
   model.seen = std::move(fused.seen);
   moved.mesh = model.mesh;
+  moved.seen = model.seen;
   other = std::move(moved);
   for (const auto& [take, shown] : {std::pair{&first, &model}, std::pair{&second, &other}}) {
     parallel_for(settings.threads, static_cast<int>(shown->views.size()), [&, take = take, shown = shown](int i) {
@@ -172,6 +173,8 @@ bool merge_takes(const Take& first, ShownModel& model, const Take& second, Shown
           mask_of(model.mesh, take->keyframes[static_cast<std::size_t>(view.keyframe)].frame, view.T_camera_object);
     });
   }
+  model.agreement_m = disagreement(model.mesh, {{&first, &model.views}, {&second, &other.views}}, settings.threads);
+  other.agreement_m = model.agreement_m;
   return true;
 }
 

@@ -42,8 +42,8 @@ std::vector<TrainingView> training_views(const Take& take, const std::vector<Sho
                                          const std::string& name);
 
 /// Lays the second take's model on the first and makes one of both, in the first one's frame; the views of both get
-/// poses and masks of it. False where the second does not fit, or what comes of both is seen through
-/// (kMostSeenThrough): then nothing is changed.
+/// poses and masks of it, and agreement_m is that of all of them. False where the second does not fit, or what comes of
+/// both is seen through (kMostSeenThrough): then nothing is changed.
 bool merge_takes(const Take& first, ShownModel& model, const Take& second, ShownModel& other,
                  const ModelMaking& settings);
 

@@ -304,6 +304,21 @@ double seen_through_share(const Mesh& mesh, const Take& take, const std::vector<
   return sum.all > 0.0 ? sum.through / sum.all : 0.0;
 }
 
+double disagreement(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads) {
+  std::vector<float> all;
+  for (const ViewsOfTake& of_take : of_takes) {
+    std::vector<std::vector<float>> distances(of_take.views->size());
+    parallel_for(threads, static_cast<int>(distances.size()), [&](int i) {
+      const auto at = static_cast<std::size_t>(i);
+      const ShownView& view = (*of_take.views)[at];
+      const Keyframe& keyframe = of_take.take->keyframes[static_cast<std::size_t>(view.keyframe)];
+      add_distances(mesh, keyframe.frame, view, distances[at]);
+    });
+    for (const std::vector<float>& of_view : distances) all.insert(all.end(), of_view.begin(), of_view.end());
+  }
+  return median(std::move(all));
+}
+
 ShownModel make_model(const Take& take, const ModelMaking& settings) {
   Filled filled = find_object(take, settings);
   Eigen::AlignedBox3d box = filled.box;
@@ -325,21 +340,16 @@ ShownModel make_model(const Take& take, const ModelMaking& settings) {
   for (Eigen::Vector3f& vertex : model.mesh.vertices) vertex -= model.T_world_object.translation().cast<float>();
   const int n = static_cast<int>(take.keyframes.size());
   std::vector<ShownView> shown(static_cast<std::size_t>(n));
-  std::vector<std::vector<float>> distances(static_cast<std::size_t>(n));
   parallel_for(settings.threads, n, [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     const Keyframe& keyframe = take.keyframes[at];
     shown[at] = {i, keyframe.T_camera_world * model.T_world_object, {}};
     shown[at].mask = mask_of(model.mesh, keyframe.frame, shown[at].T_camera_object);
-    add_distances(model.mesh, keyframe.frame, shown[at], distances[at]);
   });
-  std::vector<float> all;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    if (cv::countNonZero(shown[i].mask) == 0) continue;
-    all.insert(all.end(), distances[i].begin(), distances[i].end());
-    model.views.push_back(std::move(shown[i]));
+  for (ShownView& view : shown) {
+    if (cv::countNonZero(view.mask) > 0) model.views.push_back(std::move(view));
   }
-  model.agreement_m = median(std::move(all));
+  model.agreement_m = disagreement(model.mesh, {{&take, &model.views}}, settings.threads);
   model.seen_through = seen_through_share(model.mesh, take, model.views, settings.threads);
   return model;
 }

@@ -20,7 +20,7 @@ struct ShownModel {
   std::vector<bool> seen;  ///< per vertex: some view shows it; the others close the surface
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< world: of the take
   std::vector<ShownView> views;                                      ///< those that show it, in the keyframes' order
-  double agreement_m = 0.0;   ///< median distance of the views' points from the model
+  double agreement_m = 0.0;   ///< see disagreement(), of all views that the model is made of
   double seen_through = 0.0;  ///< see seen_through_share()
 };
 
@@ -36,6 +36,16 @@ struct ModelMaking {
 /// part that hangs together above the table where the object was chosen is kept, and the masks come of that model and
 /// of the depth, so that they hold neither table nor hand. Throws InputError where there is no such part.
 ShownModel make_model(const Take& take, const ModelMaking& settings);
+
+/// Views of one take, which outlive this.
+struct ViewsOfTake {
+  const Take* take = nullptr;
+  const std::vector<ShownView>* views = nullptr;
+};
+
+/// Median distance of all that the takes' views measure on their masks from the model, along its normals, metres; 0
+/// where they measure nothing. Thread-count makes no difference.
+double disagreement(const Mesh& mesh, const std::vector<ViewsOfTake>& of_takes, int threads);
 
 /// DepthView::light of the take's keyframes: `number` where the camera moved and the light stood still about the
 /// object.

@@ -89,6 +89,33 @@ TEST(ObjectTracker, FollowsAnObjectThatTurnsBeforeAStillCamera) {
   ASSERT_TRUE(take.frames.back().tracked);
   const Eigen::Isometry3d moved = take.keyframes.front().T_camera_world.inverse() * take.pose_of(take.frames.back());
   EXPECT_NEAR(Eigen::AngleAxisd(moved.linear()).angle(), 0.03 * 39, 0.03);
+  int untracked = 0;
+  for (std::size_t i = 0; i < take.frames.size(); ++i) {
+    const FrameTrack& frame = take.frames[i];
+    untracked += frame.tracked ? 0 : 1;
+    if (!frame.tracked) continue;
+    ASSERT_GE(frame.keyframe, 0) << i;
+    ASSERT_LT(frame.keyframe, static_cast<int>(take.keyframes.size())) << i;
+    const Eigen::Isometry3d at = take.keyframes.front().T_camera_world.inverse() * take.pose_of(frame);
+    EXPECT_NEAR(Eigen::AngleAxisd(at.linear()).angle(), 0.03 * static_cast<double>(i), 0.2) << i;
+  }
+  EXPECT_GE(untracked, 2) << "it turned before that was known";
+  EXPECT_LT(untracked, 10);
+}
+
+TEST(ObjectTracker, RefusesAFrameOfAnotherSize) {
+  const Mesh table = table_with({});
+  const Camera smaller = {160, 120, 145.0, 145.0, 79.5, 59.5};
+  ObjectTracker tracker{TrackerSettings()};
+  tracker.process(photograph(table, true_pose(0), ShownScene().camera, 1));
+  std::string line;
+  try {
+    tracker.process(photograph(table, true_pose(1), smaller, 33001));
+  } catch (const InputError& error) {
+    line = error.what();
+  }
+  EXPECT_EQ(line.find("frame 33001: colour 160x120 and depth 160x120, expected 320x240 as of the first frame"), 0U)
+      << line;
 }
 
 TEST(ObjectTracker, RefusesATakeWithoutAnObject) {

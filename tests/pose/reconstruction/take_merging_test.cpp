@@ -33,5 +33,48 @@ TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
   EXPECT_NEAR(bounds.sizes().z(), scene.box.z(), 0.01);
 }
 
+/// Pictures of the box on its table from all round, from an azimuth on.
+Take take_about_box(double azimuth) {
+  constexpr int kPictures = 12;
+  const test_scene::ShownScene scene;
+  const Mesh table = test_scene::table_with(scene);
+  Take take;
+  for (int i = 0; i < kPictures; ++i) {
+    Keyframe keyframe;
+    keyframe.T_camera_world = test_scene::camera_at(azimuth + 2.0 * M_PI * i / kPictures, 0.7, 0.6);
+    keyframe.frame = test_scene::photograph(table, keyframe.T_camera_world, scene.camera, i + 1);
+    take.keyframes.push_back(std::move(keyframe));
+  }
+  return take;
+}
+
+/// The true box as the model of a take, which says of itself that it agrees badly.
+ShownModel true_model(const Take& take) {
+  ShownModel model;
+  test_scene::add_box(test_scene::ShownScene().box, 0.0, model.mesh);
+  compute_normals(model.mesh);
+  model.seen.assign(model.mesh.vertices.size(), true);
+  for (std::size_t i = 0; i < take.keyframes.size(); ++i) {
+    const Keyframe& keyframe = take.keyframes[i];
+    model.views.push_back(
+        {static_cast<int>(i), keyframe.T_camera_world, mask_of(model.mesh, keyframe.frame, keyframe.T_camera_world)});
+  }
+  model.agreement_m = 1.0;
+  return model;
+}
+
+TEST(MergeTakes, HowWellTheViewsAgreeIsThatOfBothTakes) {
+  const Take first = take_about_box(0.0);
+  const Take second = take_about_box(0.26);
+  ShownModel model = true_model(first);
+  ShownModel other = true_model(second);
+  ModelMaking settings;
+  settings.voxel_m = 0.003;
+  ASSERT_TRUE(merge_takes(first, model, second, other, settings));
+  EXPECT_LT(model.agreement_m, 0.003);
+  EXPECT_EQ(other.agreement_m, model.agreement_m);
+  EXPECT_EQ(model.agreement_m, disagreement(model.mesh, {{&first, &model.views}, {&second, &other.views}}, 1));
+}
+
 }  // namespace
 }  // namespace houghstream::reconstruction

@@ -45,5 +45,30 @@ TEST(SeenThrough, NothingIsSeenThroughBesideAPixelWithoutDepth) {
   EXPECT_EQ(seen_through_share(box, take, views, 1), 0.0);
 }
 
+TEST(Disagreement, IsTheMedianDistanceOverTheViewsOfAllTakes) {
+  const test_scene::ShownScene scene;
+  const Mesh table = test_scene::table_with(scene);
+  Mesh box;
+  test_scene::add_box(scene.box, 0.0, box);
+  Mesh larger;
+  test_scene::add_box(scene.box + Eigen::Vector3d(0.01, 0.01, 0.005), 0.0, larger);  // 5 mm on every side
+  std::vector<Take> takes(2);
+  std::vector<std::vector<ShownView>> views(2);
+  for (int i = 0; i < 6; ++i) {
+    Keyframe keyframe;
+    keyframe.T_camera_world = test_scene::camera_at(1.0 * i, 0.7, 0.6);
+    keyframe.frame = test_scene::photograph(table, keyframe.T_camera_world, scene.camera, i + 1);
+    const auto of = static_cast<std::size_t>(i % 2);
+    views[of].push_back({i / 2, keyframe.T_camera_world, mask_of(box, keyframe.frame, keyframe.T_camera_world)});
+    takes[of].keyframes.push_back(std::move(keyframe));
+  }
+  const std::vector<ViewsOfTake> both = {{&takes[0], &views[0]}, {&takes[1], &views[1]}};
+  EXPECT_LT(disagreement(box, both, 1), 1e-4);
+  const double apart = disagreement(larger, both, 1);
+  EXPECT_NEAR(apart, 0.005, 0.001);
+  EXPECT_EQ(disagreement(larger, both, 3), apart);
+  EXPECT_EQ(disagreement(box, {}, 1), 0.0);
+}
+
 }  // namespace
 }  // namespace houghstream::reconstruction

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "drivers/store/object_store.hpp"
+#include "drivers/store/store_build.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pose/reconstruction/object_tracker.hpp"
 #include "pose/reconstruction/take_merging.hpp"
@@ -82,12 +83,29 @@ class Telling {
   std::int64_t printed_us_ = 0;
 };
 
-void require_new_name(const ShowOptions& options) {
+/// Nobody can turn the object over between two takes of one camera that begin at once; videos have no second take.
+void check_second(const ShowOptions& options) {
+  if (options.second.empty()) return;
+  require(options.second.rfind("openni2", 0) != 0,
+          "--second {}: a camera, expected a recording: record each take with hs-capture --source openni2 --log FILE, "
+          "then give log:FILE as --source and as --second",
+          options.second);
+  for (const std::string& source : {options.source, options.second})
+    require(!is_turntable_videos(source),
+            "--second goes with takes, but {} holds turntable videos, expected all of an instance in that one folder",
+            source);
+}
+
+/// What can be said before the take, which nobody wants to show twice.
+void check_show_options(const ShowOptions& options) {
   require(!options.name.empty() && options.name.find_first_of("/\\ \t\n,=") == std::string::npos,
           "--name '{}', expected a word without spaces, commas and slashes", options.name);
+  store::require_utf8_name(options.name, "--name");
+  if (!options.keep.empty()) require_keepable(options.keep);
   if (!options.teach) return;
   require(!options.out.empty(), "--out is missing, expected the store to teach into, or --no-teach");
   if (!options.add) return;
+  store::bring_back_store(options.out);
   const store::ObjectStore known = store::read_store(options.out);
   const bool is_known = std::any_of(known.objects.begin(), known.objects.end(),
                                     [&](const store::StoredObject& object) { return object.name == options.name; });
@@ -96,40 +114,64 @@ void require_new_name(const ShowOptions& options) {
           options.name, options.out.string());
 }
 
-void check_shown_frame(const RgbdFrame& frame, const std::string& source) {
-  check_frame(frame, source);
+void check_shown_frame(const RgbdFrame& frame) {
+  const std::string name = fmt::format("frame {}", to_string(frame.id));
+  check_frame(frame, name);
   cv::Scalar mean, deviation;
   cv::meanStdDev(frame.colour, mean, deviation);
-  require(deviation[0] + deviation[1] + deviation[2] > 0.0, "{}: frame {}: no colour, expected a picture", source,
-          to_string(frame.id));
-  require(cv::countNonZero(frame.depth == frame.depth) > 0,
-          "{}: frame {}: no depth at all, expected depth registered to colour", source, to_string(frame.id));
+  require(deviation[0] + deviation[1] + deviation[2] > 0.0, "{}: no colour, expected a picture", name);
+  require(cv::countNonZero(frame.depth == frame.depth) > 0, "{}: no depth at all, expected depth registered to colour",
+          name);
 }
 
-/// A take, its object chosen by itself where `boxed` is empty.
-Take follow(const ShowOptions& options, const std::optional<cv::Rect>& boxed, const ShownFrames& frames,
-            Telling& telling) {
-  const std::string& source = options.source;
+reconstruction::ModelMaking making_of(const ShowOptions& options) {
+  reconstruction::ModelMaking making;
+  making.threads = options.threads;
+  return making;
+}
+
+/// What is followed.
+struct TakeSource {
+  std::string name;             ///< for messages
+  const ShownFrames& frames;    ///< of it
+  std::optional<cv::Rect> box;  ///< of the object in the first frame; none: it is chosen
+};
+
+struct ModelledTake {
+  Take take;
+  ShownModel model;
+};
+
+Take follow(const TakeSource& source, const ShowOptions& options, Telling& telling) {
   constexpr std::size_t kFewest = 20;
   reconstruction::TrackerSettings settings;
-  settings.choice.box_px = boxed;
+  settings.choice.box_px = source.box;
   settings.choice.seed = options.seed;
   settings.map.threads = options.threads;
   ObjectTracker tracker(settings);
+  bool is_first = true;
+  while (const std::optional<RgbdFrame> frame = source.frames()) {
+    if (is_first) check_shown_frame(*frame);
+    is_first = false;
+    telling.frame(frame->id, tracker.process(*frame));
+  }
+  telling.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
+  Take take = tracker.finish();
+  require(take.frames.size() >= kFewest, "{} frames, expected at least {}, of a whole turn", take.frames.size(),
+          kFewest);
+  return take;
+}
+
+/// Errors name the take, of which there may be two.
+ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& options, Telling& telling) {
   try {
-    bool is_first = true;
-    while (const std::optional<RgbdFrame> frame = frames()) {
-      if (is_first) check_shown_frame(*frame, source);
-      is_first = false;
-      telling.frame(frame->id, tracker.process(*frame));
-    }
-    telling.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
-    Take take = tracker.finish();
-    require(take.frames.size() >= kFewest, "{} frames, expected at least {}, of a whole turn", take.frames.size(),
-            kFewest);
-    return take;
+    ModelledTake made;
+    made.take = follow(source, options, telling);
+    telling.step(ShowState::kFusing, 0.3, "the model is made");
+    made.model = make_model(made.take, making_of(options));
+    return made;
   } catch (const InputError& error) {
-    fail("{}: {}", source, error.what());
+    fail("{}: {}", source.name, error.what());
   }
 }
 
@@ -196,21 +238,19 @@ TeachOptions teaching_of(const ShowOptions& options, const Shown& shown) {
 /// Follows one or two takes and makes a model of them.
 Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second, Telling& telling) {
   const auto begin = std::chrono::steady_clock::now();
-  reconstruction::ModelMaking making;
-  making.threads = options.threads;
   Shown shown;
   shown.name = options.name;
-  shown.takes.push_back(follow(options, options.box, frames, telling));
-  telling.step(ShowState::kFusing, 0.3, "the model is made");
-  ShownModel model = make_model(shown.takes.front(), making);
+  ModelledTake first = follow_and_model({options.source, frames, options.box}, options, telling);
+  ShownModel& model = first.model;
+  shown.takes.push_back(std::move(first.take));
   if (second) {
-    Take take = follow(options, std::nullopt, second, telling);
+    const std::string name = options.second.empty() ? "the second take" : options.second;
+    ModelledTake other = follow_and_model({name, second, std::nullopt}, options, telling);
     telling.step(ShowState::kFusing, 0.4, "the second take is laid on the first");
-    ShownModel other = make_model(take, making);
-    shown.second_fits = merge_takes(shown.takes.front(), model, take, other, making);
+    shown.second_fits = merge_takes(shown.takes.front(), model, other.take, other.model, making_of(options));
     if (shown.second_fits) {
-      shown.takes.push_back(std::move(take));
-      shown.views.push_back(std::move(other.views));
+      shown.takes.push_back(std::move(other.take));
+      shown.views.push_back(std::move(other.model.views));
     }
   }
   shown.views.insert(shown.views.begin(), std::move(model.views));
@@ -256,7 +296,7 @@ int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
 
 /// Says why where it fails.
 int told(const ShowOptions& options, ShowObserver* observer, const std::function<Shown(Telling&)>& show) {
-  require_new_name(options);
+  check_show_options(options);
   Telling telling(options, observer);
   try {
     return conclude(options, show(telling), telling);
@@ -274,7 +314,8 @@ int show_object(const ShowOptions& options, const ShownFrames& frames, const Sho
 }
 
 int show_sources(const ShowOptions& options, ShowObserver* observer) {
-  require_new_name(options);
+  check_show_options(options);
+  check_second(options);
   if (is_turntable_videos(options.source))
     return told(options, observer, [&](Telling&) { return show_turntable(options); });
   const ShownFrames second = options.second.empty() ? ShownFrames() : open_shown(options.second, options);

@@ -15,7 +15,7 @@ namespace houghstream::teach {
 /// What hs-teach show is asked for.
 struct ShowOptions {
   std::string source;           ///< log:FILE, bop:DIR, uw:DIR, openni2 ...: what hs-log import and hs-capture read
-  std::string second;           ///< the same of a second take, with the object in another attitude; empty = none
+  std::string second;           ///< a recording of a second take, with the object in another attitude; empty = none
   std::string name;             ///< of the object
   std::filesystem::path out;    ///< the store
   bool add = false;             ///< to the store that is there

@@ -85,6 +85,18 @@ void judge_take(const Take& take, std::vector<std::string>& reasons) {
                                   1e3 * take.gap->shift_m, kDegrees * take.gap->turn));
 }
 
+/// What speaks against each of the takes.
+void judge_takes(const Shown& shown, std::vector<std::string>& reasons) {
+  constexpr std::size_t kFewestKeyframes = 8;
+  for (std::size_t t = 0; t < shown.takes.size(); ++t) {
+    std::vector<std::string> of_take;
+    if (shown.takes[t].motion != Motion::kTurntable) judge_take(shown.takes[t], of_take);
+    if (shown.views[t].size() < kFewestKeyframes)
+      of_take.push_back(fmt::format("only {} keyframes show it", shown.views[t].size()));
+    for (const std::string& reason : of_take) reasons.push_back((t == 0 ? "" : "the second take: ") + reason);
+  }
+}
+
 void write_poses(const Shown& shown, const fs::path& file) {
   std::ofstream out(file);
   out << "frame,utime,tracked,r11,r12,r13,t1,r21,r22,r23,t2,r31,r32,r33,t3\n";
@@ -195,6 +207,37 @@ void write_views(const Shown& shown, const std::vector<TrainingView>& views, con
   write_bop_models({{1, shown.name, shown.mesh, {}}}, folder / "models");
 }
 
+const char* what_moved(Motion motion) {
+  switch (motion) {
+    case Motion::kCamera: return "the camera moved";
+    case Motion::kObject: return "the object moved";
+    case Motion::kTurntable: return "a turntable moved";
+    case Motion::kUnknown: break;
+  }
+  return "nothing moved";
+}
+
+/// How it went, a few lines. Turntable videos are not tracked, nor is their turn closed: their masks place them.
+std::string describe_take(const Take& take) {
+  if (take.motion == Motion::kTurntable)
+    return fmt::format("  {} pictures with masks; {}\n", take.keyframes.size(), what_moved(take.motion));
+  std::string text = fmt::format(
+      "  {} frames in {:.1f} s, {} tracked, {} keyframes, {} blurred, {} badly exposed; {}; tracked at {:.0f} Hz\n",
+      take.frames.size(), second_of(take, static_cast<int>(take.frames.size()) - 1), tracked_frames(take),
+      take.keyframes.size(), take.blurred, take.badly_exposed, what_moved(take.motion), take.tracking_hz);
+  for (const LostSpan& span : take.lost) text += "  " + span_text(take, span) + "\n";
+  text += take.gap
+              ? fmt::format("  the turn's end missed its beginning by {:.1f} mm and {:.2f} degrees, and was closed\n",
+                            1e3 * take.gap->shift_m, kDegrees * take.gap->turn)
+              : "  the turn was not closed\n";
+  return text;
+}
+
+/// Where it lies: a slash at the end names the folder itself, not something in it.
+fs::path kept_folder(const fs::path& folder) {
+  return fs::absolute(folder / "").lexically_normal().parent_path();
+}
+
 void write_page(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
   std::ofstream out(folder / "report.html");
   out << fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
@@ -222,9 +265,8 @@ Verdict judge(const Shown& shown) {
   constexpr double kMostDisagreement_m = 0.003;
   constexpr double kLeastSurface = 0.55;
   constexpr double kLeastOverlap = 0.9;
-  constexpr std::size_t kFewestKeyframes = 8;
   Verdict verdict;
-  if (shown.takes.front().motion != Motion::kTurntable) judge_take(shown.takes.front(), verdict.reasons);
+  judge_takes(shown, verdict.reasons);
   if (shown.agreement_m > kMostDisagreement_m)
     verdict.reasons.push_back(fmt::format("the views disagree by {:.1f} mm, expected less than {:.0f}",
                                           1e3 * shown.agreement_m, 1e3 * kMostDisagreement_m));
@@ -233,8 +275,6 @@ Verdict judge(const Shown& shown) {
                                           *shown.outline_overlap, kLeastOverlap));
   if (seen_surface(shown) < kLeastSurface)
     verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * seen_surface(shown)));
-  if (shown.views.front().size() < kFewestKeyframes)
-    verdict.reasons.push_back(fmt::format("only {} keyframes show it", shown.views.front().size()));
   if (shown.seen_through > reconstruction::kMostSeenThrough)
     verdict.reasons.push_back(
         fmt::format("the model is seen through in {:.0f} % of its outline, expected less than {:.0f}: a hand or the "
@@ -254,32 +294,23 @@ std::string describe(const Shown& shown, const Verdict& verdict) {
   for (const std::string& reason : verdict.reasons) text += "  " + reason + "\n";
   const Eigen::Vector3d front = take.chosen.T_camera_stand.inverse().translation();
   text += fmt::format("  {}\n", reconstruction::describe_seen(seen_by_all(shown), front));
-  for (const Take& one : shown.takes) {
-    text += fmt::format(
-        "  {} frames in {:.1f} s, {} tracked, {} keyframes, {} blurred, {} badly exposed; {} moved; tracked at {:.0f} "
-        "Hz\n",
-        one.frames.size(), second_of(one, static_cast<int>(one.frames.size()) - 1), tracked_frames(one),
-        one.keyframes.size(), one.blurred, one.badly_exposed,
-        one.motion == Motion::kObject   ? "the object"
-        : one.motion == Motion::kCamera ? "the camera"
-                                        : "nothing",
-        one.tracking_hz);
-    for (const LostSpan& span : one.lost) text += "  " + span_text(one, span) + "\n";
-    text += one.gap
-                ? fmt::format("  the turn's end missed its beginning by {:.1f} mm and {:.2f} degrees, and was closed\n",
-                              1e3 * one.gap->shift_m, kDegrees * one.gap->turn)
-                : "  the turn was not closed\n";
-  }
+  for (const Take& one : shown.takes) text += describe_take(one);
   text +=
       fmt::format("  {:.0f} mm across, views agree within {:.2f} mm, {:.0f} % of the surface seen; {:.1f} s\n",
                   1e3 * mesh_diameter(shown.mesh), 1e3 * shown.agreement_m, 100.0 * seen_surface(shown), shown.seconds);
   return text;
 }
 
-void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
-  const fs::path whole = fs::absolute(folder).lexically_normal();
-  require(!fs::exists(whole) || fs::is_empty(whole) || fs::exists(whole / "report.json"),
+void require_keepable(const fs::path& folder) {
+  const fs::path whole = kept_folder(folder);
+  const bool is_earlier = fs::exists(whole / "report.json") && fs::exists(whole / "camera_poses.csv");
+  require(!fs::exists(whole) || (fs::is_directory(whole) && (fs::is_empty(whole) || is_earlier)),
           "{}: holds something else, expected a new folder or one of an earlier showing", folder.string());
+}
+
+void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
+  require_keepable(folder);
+  const fs::path whole = kept_folder(folder);
   const fs::path partial = whole.parent_path() / fmt::format(".{}.partial-{}", whole.filename().string(), getpid());
   try {
     fs::create_directories(partial);

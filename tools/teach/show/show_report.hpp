@@ -29,6 +29,7 @@ struct Verdict {
   std::vector<std::string> reasons;  ///< why not, a line each
 };
 
+/// Of all takes that were merged, and of the model.
 Verdict judge(const Shown& shown);
 
 /// Second of the take at which a frame was taken.
@@ -36,6 +37,10 @@ double second_of(const reconstruction::Take& take, int frame);
 
 /// The verdict and its figures in words, a few lines.
 std::string describe(const Shown& shown, const Verdict& verdict);
+
+/// Throws InputError where a folder holds something else than what was kept of an earlier showing, and would not be
+/// replaced.
+void require_keepable(const std::filesystem::path& folder);
 
 /// What was asked to be kept, in a folder that appears as a whole: model.ply, views/ (BOP: the keyframes with poses and
 /// masks), contact_sheet.jpg, outlines/, camera_poses.csv, report.json and report.html. One of an earlier time is

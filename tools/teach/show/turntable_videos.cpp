@@ -69,7 +69,8 @@ Video make_video(const std::string& name, const std::vector<TrainingView>& views
 }
 
 std::vector<Video> read_videos(const ShowOptions& options) {
-  const fs::path folder = fs::path(options.source.substr(3)).lexically_normal();
+  // CATEGORY/INSTANCE, however it was named: with a slash at its end, or from within CATEGORY.
+  const fs::path folder = fs::absolute(fs::path(options.source.substr(3)) / "").lexically_normal().parent_path();
   UwSelection selection;
   selection.instances = {folder.filename().string()};
   std::map<std::string, std::vector<TrainingView>> by_video;

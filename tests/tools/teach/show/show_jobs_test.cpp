@@ -35,9 +35,9 @@ ShowOptions options_for(const std::string& name) {
   return options;
 }
 
-std::string line_of(const ShowOptions& options, const ShownFrames& frames) {
+std::string line_of(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second = {}) {
   try {
-    show_object(options, frames, {}, nullptr);
+    show_object(options, frames, second, nullptr);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -65,7 +65,11 @@ TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
   EXPECT_NE(text.find("\"poor\""), std::string::npos);
   EXPECT_NE(text.find("too short"), std::string::npos);
   options.go_on = true;
+  options.keep = folder / "";  // as a shell completes it
+  std::ofstream(folder / "earlier.txt") << "goes with the folder";
   EXPECT_EQ(show_object(options, take_of(40, 90.0), {}, nullptr), 0);
+  EXPECT_TRUE(fs::exists(folder / "report.json")) << "replaced";
+  EXPECT_FALSE(fs::exists(folder / "earlier.txt"));
   fs::remove_all(folder);
 }
 
@@ -81,7 +85,46 @@ TEST(ShowJobs, BadInputIsOneLine) {
     if (frame) frame->colour.setTo(cv::Scalar::all(128));
     return frame;
   };
-  EXPECT_NE(line_of(options_for("box"), grey).find("no colour"), std::string::npos);
+  EXPECT_NE(line_of(options_for("box"), grey).find("a take: frame 1033000: no colour"), std::string::npos);
+  EXPECT_NE(line_of(options_for("m\xfcg"), take_of(40, 90.0)).find("--name: the name 'm\\xfcg' is not UTF-8"),
+            std::string::npos);
+}
+
+TEST(ShowJobs, ErrorsOfTheSecondTakeNameIt) {
+  EXPECT_EQ(line_of(options_for("box"), take_of(40, 90.0), take_of(5, 10.0)),
+            "the second take: 5 frames, expected at least 20, of a whole turn");
+  ShowOptions options = options_for("box");
+  options.second = "log:on_its_side.lcmlog";
+  EXPECT_EQ(line_of(options, take_of(40, 90.0), take_of(0, 0.0)).find("log:on_its_side.lcmlog: no frame"), 0U);
+}
+
+TEST(ShowJobs, ACameraHasNoSecondTake) {
+  ShowOptions options = options_for("box");
+  options.second = "openni2:#2";
+  std::string line;
+  try {
+    show_sources(options, nullptr);
+  } catch (const InputError& error) {
+    line = error.what();
+  }
+  EXPECT_EQ(line.find("--second openni2:#2: a camera, expected a recording"), 0U) << line;
+}
+
+TEST(ShowJobs, AFolderThatHoldsSomethingElseIsRefusedBeforeTheTake) {
+  const fs::path folder = fs::temp_directory_path() / "show_jobs_keep_test";
+  fs::create_directories(folder);
+  std::ofstream(folder / "report.json") << "{}";
+  ShowOptions options = options_for("box");
+  options.keep = folder;
+  int taken = 0;
+  const ShownFrames frames = [&]() -> std::optional<RgbdFrame> {
+    ++taken;
+    return std::nullopt;
+  };
+  EXPECT_EQ(line_of(options, frames).find(folder.string() + ": holds something else, expected a new folder"), 0U);
+  EXPECT_EQ(taken, 0);
+  EXPECT_TRUE(fs::exists(folder / "report.json"));
+  fs::remove_all(folder);
 }
 
 }  // namespace

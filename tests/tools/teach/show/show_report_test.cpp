@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/pipeline/geometry/tetrahedron.hpp"
+
 namespace houghstream::teach {
 namespace {
 
@@ -34,6 +36,39 @@ TEST(Verdict, AModelThatIsSeenThroughIsPoor) {
   EXPECT_EQ(
       verdict.reasons[0],
       "the model is seen through in 6 % of its outline, expected less than 2: a hand or the table was taken for it");
+}
+
+/// A whole turn that was closed.
+reconstruction::Take closed_turn() {
+  reconstruction::Take take;
+  take.motion = reconstruction::Motion::kCamera;
+  take.degrees_round = 360;
+  take.gap = reconstruction::LoopGap{0.004, 0.01};
+  return take;
+}
+
+TEST(Verdict, EachTakeIsJudged) {
+  Shown shown = good_turntable();
+  shown.outline_overlap.reset();
+  shown.takes = {closed_turn(), closed_turn()};
+  shown.views.emplace_back(20);
+  EXPECT_TRUE(judge(shown).good);
+  shown.takes[1].degrees_round = 120;
+  shown.views[1].resize(5);
+  EXPECT_EQ(judge(shown).reasons,
+            (std::vector<std::string>{"the second take: too short: seen from 120 degrees of the turn, expected all 360",
+                                      "the second take: only 5 keyframes show it"}));
+}
+
+TEST(Verdict, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
+  Shown shown = good_turntable();
+  shown.mesh = tetrahedron(0.1F);
+  shown.takes.front().keyframes.resize(20);
+  shown.takes.front().chosen.T_camera_stand.translation() = Eigen::Vector3d(0.0, 0.0, 0.8);
+  const std::string text = describe(shown, judge(shown));
+  EXPECT_NE(text.find("  20 pictures with masks; a turntable moved\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("tracked"), std::string::npos) << text;
+  EXPECT_EQ(text.find("not closed"), std::string::npos) << text;
 }
 
 TEST(Verdict, WithoutGivenMasksTheirOverlapIsNotAsked) {
