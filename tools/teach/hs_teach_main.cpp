@@ -88,7 +88,8 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
                   "openni2[:CAMERA], or a recording: log:FILE, FILE.klg, FILE.oni, bop:DIR, uw:DIR, tum:DIR");
   show.add_flag("--from-stream", words.from_stream,
                 "instead: frames of --channel on the bus, while the stream goes on");
-  show.add_option("--second", options.second, "a recording of a second take, the object laid on its side or turned over");
+  show.add_option("--second", options.second,
+                  "a recording of a second take, the object laid on its side or turned over");
   show.add_option("--name", options.name, "of the object").required();
   show.add_option("--out", options.out, "object store to write; one that is there is replaced when all is done");
   show.add_flag("--add", options.add, "the object joins those of the store");
