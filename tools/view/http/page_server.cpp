@@ -23,6 +23,7 @@ namespace {
 constexpr std::size_t kThreads = 4 * PageBoard::kMostViewers;  // a page has one for events, two or three for the rest
 constexpr std::chrono::milliseconds kPatience(1000);           // for an event
 constexpr std::chrono::milliseconds kPicturePatience(2000);    // for a picture of the frame that is shown
+constexpr std::size_t kLongestOrder = 4096;                    // bytes
 constexpr const char* kTokenHeader = "X-Houghstream-Token";
 // Nothing from elsewhere is loaded or asked, and no other page shows this one.
 constexpr const char* kPolicy =
@@ -47,6 +48,26 @@ bool same_token(const std::string& given, const std::string& wanted) {
 void answer(httplib::Response& response, int status, const std::string& words) {
   response.status = status;
   response.set_content(words + "\n", "text/plain");
+}
+
+// What such a request brings stays unread and must not be taken for the next request: so the connection ends.
+void refuse_unread(httplib::Response& response, int status, const std::string& words) {
+  response.status = status;
+  response.set_header("Connection", "close");
+  const std::string text = words + "\n";
+  response.set_content_provider(text.size(), "text/plain",
+                                [text](std::size_t /*offset*/, std::size_t /*length*/, httplib::DataSink& sink) {
+                                  sink.write(text.data(), text.size());
+                                  return false;  // has the library close the connection
+                                });
+}
+
+// The library gathers content whose length is not stated in memory, without an end and before anybody asks for the
+// token. The status that refuses it, or 0.
+int status_of_content(const httplib::Request& request) {
+  if (request.method == "GET" || request.method == "HEAD") return 0;
+  if (request.has_header("Transfer-Encoding") || !request.has_header("Content-Length")) return 411;
+  return request.get_header_value<std::uint64_t>("Content-Length") > kLongestOrder ? 413 : 0;
 }
 
 PageOrders parse_orders(const std::string& body) {
@@ -115,7 +136,7 @@ void PageServer::State::set_limits() {
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server.set_keep_alive_max_count(1'000'000);
   server.set_keep_alive_timeout(1);  // seconds; the program's end waits for it
-  server.set_payload_max_length(4096);
+  server.set_payload_max_length(kLongestOrder);
   server.set_tcp_nodelay(true);
   // The library's own choice lets two programs share a port, each with half of the viewers.
   server.set_socket_options([](socket_t opened) {
@@ -127,9 +148,12 @@ void PageServer::State::set_limits() {
                               {"Referrer-Policy", "no-referrer"},
                               {"Cache-Control", "no-store"}});
   server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-    if (!token.empty() || names_this_machine(request.get_header_value("Host")))
-      return httplib::Server::HandlerResponse::Unhandled;
-    answer(response, 403, "this page is for this machine only: localhost or 127.0.0.1");
+    const bool may_ask = !token.empty() || names_this_machine(request.get_header_value("Host"));
+    const int status = may_ask ? status_of_content(request) : 403;
+    if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
+    refuse_unread(response, status,
+                  may_ask ? fmt::format("expected content of a stated length, at most {} bytes", kLongestOrder)
+                          : "this page is for this machine only: localhost or 127.0.0.1");
     return httplib::Server::HandlerResponse::Handled;
   });
 }

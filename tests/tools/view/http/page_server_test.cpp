@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <httplib.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
 
 namespace houghstream::view {
 namespace {
@@ -19,6 +24,27 @@ struct Served {
   PageServer server;
   httplib::Client client;
 };
+
+/// What comes back until the server ends the connection.
+std::string answer_to(int port, const std::string& request) {
+  const int opened = socket(AF_INET, SOCK_STREAM, 0);
+  const timeval patience{5, 0};
+  setsockopt(opened, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::string heard;
+  if (connect(opened, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 &&
+      send(opened, request.data(), request.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(request.size())) {
+    std::array<char, 1024> part{};
+    ssize_t size = 0;
+    while ((size = recv(opened, part.data(), part.size(), 0)) > 0)
+      heard.append(part.data(), static_cast<std::size_t>(size));
+  }
+  close(opened);
+  return heard;
+}
 
 const httplib::Headers kNoToken = {{"X-Houghstream-Token", "none"}};
 
@@ -86,13 +112,35 @@ TEST(PageServer, OrdersThatAreNoneAreRefused) {
   for (const char* bad : {"", "[]", "{", R"({"pause":true})", R"({"paused":1})", R"({"min_score":1.5})",
                           R"({"min_score":"0.5"})", R"({"next_camera":null})"})
     EXPECT_EQ(served.order(bad, kNoToken), 400) << bad;
-  EXPECT_EQ(served.order(std::string(10'000, 'x'), kNoToken), 413);
   EXPECT_TRUE(served.board.take_orders().empty());
 }
 
 TEST(PageServer, ANameThatSomebodyMadeUpForThisMachineIsRefused) {
   Served served;
   EXPECT_EQ(served.client.Get("/", {{"Host", "evil.example:80"}})->status, 403);
+}
+
+TEST(PageServer, ContentOfNoStatedOrTooLargeALengthIsRefusedUnread) {
+  Served served;
+  const int port = served.server.port();
+  const std::string start = "POST /orders HTTP/1.1\r\nHost: localhost\r\nX-Houghstream-Token: none\r\n";
+  EXPECT_EQ(answer_to(port, start + "\r\n").rfind("HTTP/1.1 411 ", 0), 0U);
+  EXPECT_EQ(answer_to(port, start + "Transfer-Encoding: chunked\r\n\r\n").rfind("HTTP/1.1 411 ", 0), 0U);
+  const std::string too_large = answer_to(port, start + "Content-Length: 10000\r\n\r\n");
+  EXPECT_EQ(too_large.rfind("HTTP/1.1 413 ", 0), 0U) << too_large;
+  EXPECT_NE(too_large.find("expected content of a stated length, at most 4096 bytes"), std::string::npos) << too_large;
+  EXPECT_EQ(answer_to(port, "PUT / HTTP/1.1\r\nHost: localhost\r\n\r\n").rfind("HTTP/1.1 411 ", 0), 0U);
+}
+
+TEST(PageServer, WhatARefusedRequestBringsIsNotTakenForARequest) {
+  Served served;
+  const std::string order = R"({"paused":true})";
+  const std::string hidden =
+      "POST /orders HTTP/1.1\r\nHost: localhost\r\nX-Houghstream-Token: none\r\nContent-Length: " +
+      std::to_string(order.size()) + "\r\n\r\n" + order;
+  answer_to(served.server.port(), "POST /orders HTTP/1.1\r\nHost: evil.example\r\nContent-Length: " +
+                                      std::to_string(hidden.size()) + "\r\n\r\n" + hidden);
+  EXPECT_TRUE(served.board.take_orders().empty());
 }
 
 TEST(PageServer, EndsWhileSomebodyListens) {
