@@ -1,3 +1,5 @@
+#include <functional>
+
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -26,6 +28,16 @@ struct ObserveOptions {
 void write_file(const std::string& file, const std::string& text) {
   if (file.empty()) return;
   write_whole_file(file, text);
+}
+
+/// Handles messages until `done`. Returns what stopped the bus before, for what has come until then is written first.
+std::string receive(LcmBus& bus, const std::function<bool()>& done) {
+  try {
+    while (!stop_requested() && !done()) bus.handle(std::chrono::milliseconds(100));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 void observe(const ObserveOptions& options) {
@@ -59,13 +71,14 @@ void observe(const ObserveOptions& options) {
     return options.expect && static_cast<std::int64_t>(times.frames()) >= *options.expect &&
            since(last) > options.quiet_s;
   };
-  while (!stop_requested() && since(start) < options.duration_s && !complete()) {
-    bus.handle(std::chrono::milliseconds(100));
-  }
+  const std::string failure = receive(bus, [&] { return since(start) >= options.duration_s || complete(); });
   write_file(options.csv, times.csv());
-  const std::string summary = times.summary(options.expect).dump(2) + "\n";
+  // A process's name and last error may hold any bytes; JSON holds Unicode only.
+  const std::string summary =
+      times.summary(options.expect).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   write_file(options.out, summary);
   if (options.out.empty()) std::fputs(summary.c_str(), stdout);
+  require(failure.empty(), "{}; what came before is written", failure);
 }
 
 }  // namespace

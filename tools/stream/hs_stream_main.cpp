@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <memory>
+#include <thread>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -66,6 +68,52 @@ Duration from_seconds(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
+/// Hears what the processes say of themselves. A bus that goes away, as with its server over tcpq, does not end the
+/// stream: it is opened anew once a second.
+class StatusEar {
+ public:
+  /// Throws InputError where the bus cannot be opened.
+  explicit StatusEar(const std::string& url) : url_(url), bus_(open()) {}
+
+  /// Who is told from here on. Processes that are started before do not inherit the sockets that receive.
+  void hear(LcmBus::Handler handler) {
+    handler_ = std::move(handler);
+    bus_->subscribe(channel::kStatus, handler_);
+  }
+
+  /// Hands on one message, or waits for `timeout`. False while nothing can be heard.
+  bool listen(std::chrono::milliseconds timeout) {
+    if (!bus_ && StateBoard::Clock::now() < again_) {
+      std::this_thread::sleep_for(timeout);
+      return false;
+    }
+    try {
+      if (!bus_) {
+        bus_ = open();
+        bus_->subscribe(channel::kStatus, handler_);
+      }
+      return bus_->handle(timeout);
+    } catch (const InputError& error) {
+      log_error("{}; it is tried again each second", error.what());
+      bus_.reset();
+      again_ = StateBoard::Clock::now() + std::chrono::seconds(1);
+      return false;
+    }
+  }
+
+ private:
+  std::unique_ptr<LcmBus> open() const {
+    auto bus = std::make_unique<LcmBus>(url_);
+    require(!bus->is_log(), "{}: is a log; the stream runs on a network", bus->url());
+    return bus;
+  }
+
+  std::string url_;
+  std::unique_ptr<LcmBus> bus_;
+  LcmBus::Handler handler_;
+  StateBoard::Clock::time_point again_;
+};
+
 void run_stream(StreamOptions options, const Pace& pace) {
   require(options.objects.empty() != options.forest.empty(), "expected either --objects STORE or --forest FILE");
   require(options.objects.empty() || options.models.empty(), "--models goes with --forest; --objects has its own");
@@ -75,22 +123,21 @@ void run_stream(StreamOptions options, const Pace& pace) {
     options.view = false;
   }
   catch_stop_signals();
-  LcmBus bus(options.lcm_url);
-  require(!bus.is_log(), "{}: is a log; the stream runs on a network", bus.url());
+  StatusEar ear(options.lcm_url);
   SupervisorSettings settings;
   settings.patience = from_seconds<std::chrono::milliseconds>(pace.patience);
   settings.silence = from_seconds<std::chrono::milliseconds>(pace.hang_patience);
   settings.start_silence = from_seconds<std::chrono::milliseconds>(pace.start_patience);
   Supervisor supervisor(plan_stream(options), settings, [](const std::string& words) { log_info("{}", words); });
   StateBoard board;
-  bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
+  ear.hear([&](const Arrival& arrival) {
     const auto status = decode_message<status_t>(arrival.bytes);
     if (supervisor.note_running(status.pid)) board.note(status, arrival.time);
   });
   const auto period = from_seconds<StateBoard::Clock::duration>(pace.every);
   auto due = StateBoard::Clock::now() + period;
   while (!stop_requested() && supervisor.step()) {
-    bus.handle(std::chrono::milliseconds(20));
+    if (!ear.listen(std::chrono::milliseconds(20))) supervisor.note_deaf();
     if (StateBoard::Clock::now() < due) continue;
     due += period;
     board.keep(supervisor.states());

@@ -124,6 +124,10 @@ bool Supervisor::note_running(pid_t pid) {
   return false;
 }
 
+void Supervisor::note_deaf() {
+  last_step_ = Clock::now();
+}
+
 std::vector<std::string> Supervisor::stop() {
   for (const Member& member : members_) {
     if (member.child) member.child->signal(SIGINT);

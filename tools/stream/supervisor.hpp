@@ -33,7 +33,8 @@ struct SupervisorSettings {
 /// grows with each failure that follows, until it has failed `most_failures` times in a row. One that fails before it
 /// has ever run is not: it would fail again for the same reason. One that hangs, as its silence tells, is asked to end
 /// (SIGTERM), killed where it does not (SIGKILL after `patience`), and started again likewise. Only silence that was
-/// listened to counts: where this process has stood still itself, its children have not. Call it from one thread.
+/// listened to counts: where this process has stood still itself, or its bus was gone, its children have not. Call it
+/// from one thread.
 class Supervisor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -50,6 +51,9 @@ class Supervisor {
 
   /// The process has shown that it runs; expected of each one every second. False where it is none of these.
   bool note_running(pid_t pid);
+
+  /// Since the last step nothing could have been heard of any.
+  void note_deaf();
 
   /// Asks all to end, waits, insists after `patience`. Returns the names of those that had to be killed.
   std::vector<std::string> stop();

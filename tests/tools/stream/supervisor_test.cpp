@@ -130,6 +130,21 @@ TEST(Supervisor, SilenceWhileNobodyListenedDoesNotCount) {
   EXPECT_EQ(lines.size(), 1U) << lines.back();
 }
 
+TEST(Supervisor, SilenceOfABusThatIsGoneDoesNotCount) {
+  SupervisorSettings settings = quick();
+  settings.silence = milliseconds(100);
+  std::vector<std::string> lines;
+  Supervisor supervisor({shell("a", "exec sleep 100")}, settings,
+                        [&](const std::string& words) { lines.push_back(words); });
+  supervisor.note_running(supervisor.states()[0].pid);
+  for (int i = 0; i < 10; ++i) {
+    std::this_thread::sleep_for(milliseconds(30));
+    supervisor.note_deaf();
+    supervisor.step();
+  }
+  EXPECT_EQ(lines.size(), 1U) << lines.back();
+}
+
 TEST(Supervisor, WhoFailsAtItsStartIsNotTriedAgain) {
   Supervisor supervisor({shell("wrong", "exit 3")}, quick(), be_silent);
   try {
