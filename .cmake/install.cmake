@@ -101,8 +101,17 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/examples/" DESTINATION share/doc/
         COMPONENT development PATTERN "README.md" EXCLUDE)
 
 # Python and Java
-install(DIRECTORY "${PROJECT_BINARY_DIR}/python/houghstream" DESTINATION lib/python3/dist-packages COMPONENT python
-        FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+# Debian's Python looks in lib/python3 below /usr, and in the folder of its own version elsewhere. Which prefix it is, is known
+# only when it is installed; cpack's ends with /usr too.
+install(CODE "
+  set(python_folder lib/python3)
+  if(NOT CMAKE_INSTALL_PREFIX MATCHES \"/usr/?$\")
+    execute_process(COMMAND /usr/bin/python3 -c \"import sys; print('lib/python%d.%d' % sys.version_info[:2])\"
+                    OUTPUT_VARIABLE python_folder OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  endif()
+  file(INSTALL \"${PROJECT_BINARY_DIR}/python/houghstream\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/\${python_folder}/dist-packages\"
+       FILES_MATCHING PATTERN \"*.py\" PATTERN \"__pycache__\" EXCLUDE)
+" COMPONENT python)
 if(TARGET houghstream_types_jar)
   install(FILES "${PROJECT_BINARY_DIR}/bin/houghstream_types.jar" "${PROJECT_BINARY_DIR}/bin/houghstream_spy.jar"
           DESTINATION "${CMAKE_INSTALL_DATADIR}/java" COMPONENT java)

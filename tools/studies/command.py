@@ -1,6 +1,7 @@
 """What the commands that a person starts have in common: options, lines of progress, installing and building."""
 
 import argparse
+import glob
 import os
 import re
 import subprocess
@@ -64,13 +65,18 @@ def prepare(options, targets):
     commit_name()  # figures are of what is built, whatever is checked out meanwhile
     if options.bin:
         return know_messages(os.path.realpath(options.bin))
-    if (
-        "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ
-    ):  # else this has been done before the command started itself again
+    if "HOUGHSTREAM_PRIVATE_NETWORK" not in os.environ:  # else this has been done before the command started itself again
         if subprocess.run(["tools/setup"], cwd=REPOSITORY, check=False).returncode != 0:
             die("tools/setup failed")
         step("build")
-        build = ["bash", "-c", 'source tools/common.sh && configure_and_build build Release -- "$@"', "build", "houghstream_python", *targets]
+        build = [
+            "bash",
+            "-c",
+            'source tools/common.sh && configure_and_build build Release -- "$@"',
+            "build",
+            "houghstream_python",
+            *targets,
+        ]
         if subprocess.run(build, cwd=REPOSITORY, check=False).returncode != 0:
             die("the build failed")
     return know_messages(str(REPOSITORY / "build" / "bin"))
@@ -79,8 +85,9 @@ def prepare(options, targets):
 def know_messages(programs):
     """The Python package houghstream that was built or installed with the programs is the one that is imported, by what is
     started from here too. Returns `programs`."""
-    for package in ("../python", "../lib/python3/dist-packages"):
-        folder = os.path.realpath(os.path.join(programs, package))
+    installed = sorted(glob.glob(os.path.join(glob.escape(programs), "../lib/python3*/dist-packages")))
+    for package in (os.path.join(programs, "../python"), *installed):
+        folder = os.path.realpath(package)
         if os.path.isfile(os.path.join(folder, "houghstream", "__init__.py")):
             sys.path.insert(0, folder)
             os.environ["PYTHONPATH"] = ":".join([folder, *filter(None, [os.environ.get("PYTHONPATH")])])

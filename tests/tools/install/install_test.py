@@ -65,6 +65,15 @@ class Libraries(unittest.TestCase):
         self.assertTrue(any((place / "libhoughstream_finder.a").is_file() for place in places), said)
 
 
+class PythonPackage(unittest.TestCase):
+    def test_it_lies_where_debians_python_looks(self):
+        self.assertTrue((HOME / "lib/python3/dist-packages/houghstream/event_log.py").is_file())
+        local = HOME.parent / "local"
+        run("cmake", "--install", BUILD, "--prefix", local, "--component", "python")
+        version = run("/usr/bin/python3", "-c", "import sys; print('python%d.%d' % sys.version_info[:2])").strip()
+        self.assertTrue((local / "lib" / version / "dist-packages/houghstream/event_log.py").is_file())
+
+
 class Programs(unittest.TestCase):
     def test_they_run_from_where_they_are_and_have_manual_pages(self):
         programs = sorted(HOME.glob("bin/hs-*"))

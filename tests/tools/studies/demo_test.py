@@ -1,11 +1,15 @@
 """Tests of the demo's report: accounting for frames, latencies, its page. Usage: PYTHONPATH=tools:build/python demo_test.py"""
 
 import math
+import os
 import pathlib
+import sys
 import tempfile
 import unittest
+from unittest import mock
 
 from houghstream import status_t, teaching_t
+from studies import command
 from studies.demo import live, report, teach
 from studies.measured import write_json
 
@@ -13,6 +17,18 @@ from studies.measured import write_json
 def observed(received, processed, skipped, on_bus):
     detector = {"received": received, "processed": processed, "skipped": skipped}
     return {"processes": {"hs-detect": detector}, "frames_detected": on_bus, "frames_with_poses": on_bus}
+
+
+class Messages(unittest.TestCase):
+    def test_they_are_those_that_were_installed_beside_the_programs(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(sys, "path", sys.path[:]), mock.patch.dict(os.environ):
+            package = pathlib.Path(folder, "lib/python3.99/dist-packages")
+            (package / "houghstream").mkdir(parents=True)
+            (package / "houghstream/__init__.py").touch()
+            programs = pathlib.Path(folder, "bin")
+            programs.mkdir()
+            command.know_messages(str(programs))
+            self.assertEqual(sys.path[0], os.path.realpath(package))
 
 
 class Account(unittest.TestCase):
