@@ -97,7 +97,10 @@ int main(int argc, char** argv) {
   const CommandLine bop = add_export(exporter, "bop", "frames as a BOP scene folder", options);
   const CommandLine png = add_export(exporter, "png", "frames as NNNNNN_color.png, NNNNNN_depth.png", options);
   const CommandLine csv =
-      add_export(exporter, "csv", "detections and poses of all cameras and detectors, one row each", options);
+      add_export(exporter, "csv",
+                 "detections and poses of all cameras and detectors, one row each; of an object that is followed "
+                 "without a detection (hs-pose --follow) detection is -1 and the box is empty",
+                 options);
   const CommandLine json = add_export(
       exporter, "json", "detections and poses of all cameras and detectors by frame, with stage times", options);
   const CommandLine objects_csv =

@@ -12,6 +12,7 @@
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "pipeline/types/frame_results.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 
@@ -97,6 +98,61 @@ TEST(ExportResults, JsonHasEmptyFramesToo) {
   EXPECT_TRUE(frames[0]["detections"][1]["centre"][2].is_null());
   EXPECT_EQ(frames[0]["stages_us"]["pose.refinement"], 500);
   EXPECT_TRUE(frames[1]["detections"].empty());
+}
+
+ObjectPoses make_followed(std::int64_t utime) {
+  ObjectPoses followed = make_poses(utime);
+  followed.poses[0].detection_index = -1;
+  followed.poses[0].detection_score = 0.75F;
+  ObjectPose can = followed.poses[0];
+  can.class_id = 2;
+  can.class_name = "can";
+  can.status = PoseStatus::kOccluded;
+  can.T_camera_object.reset();
+  followed.poses.push_back(can);
+  followed.stages = {{kFollowingStage, 700}};
+  return followed;
+}
+
+TEST(ExportResults, WhatIsFollowedIsWrittenWithoutDetections) {
+  const fs::path file = fresh_folder("results_followed") / "results.lcmlog";
+  TestLog log(file);
+  log.add(channel::kPoses, to_message(make_followed(10)));
+  log.close();
+  LossAccount losses;
+  EXPECT_EQ(export_results_csv(file, file.parent_path() / "a.csv", losses), 1);
+  EXPECT_EQ(losses.line(), "");
+  const std::string csv = read_text(file.parent_path() / "a.csv");
+  EXPECT_NE(csv.find("\n10,OPENNI_FRAME,-1,1,bowl,0.75,,,,,,,," + std::string(to_string(PoseStatus::kValid)) +
+                     ",0.5,0.25,2,1,0,0,0,0.875\n"),
+            std::string::npos)
+      << csv;
+  EXPECT_EQ(export_results_json(file, file.parent_path() / "a.json", losses), 1);
+  const nlohmann::json frame = read_json_object(file.parent_path() / "a.json").at("frames")[0];
+  ASSERT_EQ(frame["detections"].size(), 2U);
+  EXPECT_TRUE(frame["detections"][0]["box"].is_null());
+  EXPECT_EQ(frame["detections"][0]["pose"]["trans"], (nlohmann::json{0.5, 0.25, 2.0}));
+  EXPECT_EQ(frame["detections"][1]["pose"]["status"], to_string(PoseStatus::kOccluded));
+  EXPECT_EQ(frame["stages_us"][kFollowingStage], 700);
+}
+
+TEST(ExportResults, WhatIsFollowedAndDetectedIsWrittenOnce) {
+  for (const bool answered : {true, false}) {
+    const fs::path file = fresh_folder("results_both") / "results.lcmlog";
+    TestLog log(file);
+    log.add(channel::kPoses, to_message(make_followed(10)));
+    log.add(channel::kDetections, to_message(make_detections(10, 1)));
+    if (answered) log.add(channel::kPoses, to_message(make_poses(10)));
+    log.close();
+    LossAccount losses;
+    export_results_json(file, file.parent_path() / "a.json", losses);
+    const nlohmann::json found = read_json_object(file.parent_path() / "a.json").at("frames")[0]["detections"];
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_EQ(found[0]["class_name"], "bowl");
+    EXPECT_EQ(found[0]["box"].is_null(), !answered);
+    EXPECT_EQ(found[0]["pose"]["trans"], (nlohmann::json{0.5, 0.25, 2.0}));
+    EXPECT_EQ(found[1]["class_name"], "can");
+  }
 }
 
 TEST(ExportResults, CandidatesThatNoPoseConfirmsAreLeftOut) {
