@@ -84,6 +84,8 @@ TEST(ObjectMessages, WhatCannotBeSoIsRefusedInOneLine) {
   EXPECT_NE(refusal([](objects_t& m) { m.objects[0].probability = 1.5F; }).find("probability 1.5"), std::string::npos);
   EXPECT_NE(refusal([](objects_t& m) { m.objects[0].covariance[2][2] = std::nan(""); }).find("not finite"),
             std::string::npos);
+  EXPECT_NE(refusal([](objects_t& m) { m.objects[0].trans[0] = -2e9; }).find("expected metres within 1000000000"),
+            std::string::npos);
   EXPECT_NE(refusal([](objects_t& m) { m.camera_trans[1] = std::nan(""); }).find("camera at"), std::string::npos);
 }
 

@@ -37,10 +37,14 @@ struct MapScale {
   double px_per_m = 300.0;
   cv::Size size;
 
+  /// What lies far outside is drawn no nearer than this: OpenCV walks row by row from where a shape begins, and the
+  /// largest places are no whole numbers of pixels.
+  static constexpr double kFarPx = 1e4;
+
   cv::Point at(const Eigen::Vector3d& place) const {
     const Eigen::Vector2d away = px_per_m * (place.head<2>() - middle);
-    return {static_cast<int>(std::lround(0.5 * size.width + away.x())),
-            static_cast<int>(std::lround(0.5 * size.height - away.y()))};
+    return {static_cast<int>(std::lround(std::clamp(0.5 * size.width + away.x(), -kFarPx, kFarPx))),
+            static_cast<int>(std::lround(std::clamp(0.5 * size.height - away.y(), -kFarPx, kFarPx)))};
   }
 };
 
@@ -56,16 +60,19 @@ MapScale scale_of(const WorldState& world, const cv::Size& size) {
 
 void draw_grid(cv::Mat& picture, const MapScale& scale) {
   constexpr double kStepM = 0.1;
+  constexpr double kMostLines = 200.0;
   const Eigen::Vector2d half(0.5 * scale.size.width / scale.px_per_m, 0.5 * scale.size.height / scale.px_per_m);
   const cv::Scalar grey(52, 52, 52);
   for (int axis = 0; axis < 2; ++axis) {
-    const int first = static_cast<int>(std::floor((scale.middle[axis] - half[axis]) / kStepM));
-    const int last = static_cast<int>(std::ceil((scale.middle[axis] + half[axis]) / kStepM));
-    for (int i = first; i <= last && last - first < 200; ++i) {
+    const double first = std::floor((scale.middle[axis] - half[axis]) / kStepM);
+    const double last = std::ceil((scale.middle[axis] + half[axis]) / kStepM);
+    if (last - first >= kMostLines) continue;
+    const int lines = static_cast<int>(last - first);
+    for (int i = 0; i <= lines; ++i) {
       Eigen::Vector3d place = Eigen::Vector3d::Zero();
-      place[axis] = kStepM * i;
+      place[axis] = kStepM * (first + i);
       const cv::Point p = scale.at(place);
-      const cv::Scalar colour = i == 0 ? cv::Scalar(90, 90, 90) : grey;
+      const cv::Scalar colour = first + i == 0.0 ? cv::Scalar(90, 90, 90) : grey;
       if (axis == 0)
         cv::line(picture, {p.x, 0}, {p.x, picture.rows}, colour);
       else
@@ -91,9 +98,9 @@ void draw_object(cv::Mat& picture, const MapScale& scale, const TrackedObject& o
   constexpr int kDisc = 7;  // pixels
   const cv::Scalar colour = class_colour(object.class_id);
   const cv::Point place = scale.at(object.T_world_object.translation());
-  const int sure = static_cast<int>(std::lround(2.0 * deviation_of(object) * scale.px_per_m));
+  const int sure = static_cast<int>(std::lround(std::min(2.0 * deviation_of(object) * scale.px_per_m, 2000.0)));
   cv::circle(picture, place, kDisc, colour, is_seen(object) ? cv::FILLED : 1, cv::LINE_AA);
-  if (sure > kDisc) cv::circle(picture, place, std::min(sure, 2000), colour, 1, cv::LINE_AA);
+  if (sure > kDisc) cv::circle(picture, place, sure, colour, 1, cv::LINE_AA);
   draw_text(picture, label_of(object), place + cv::Point(10, 4), 0.4);
 }
 
@@ -140,7 +147,7 @@ void draw_tracks(cv::Mat& picture, const WorldState& world, const RgbdFrame& fra
     if (!centre || object.state == TrackState::kGone) continue;
     const double depth = (T_camera_world * object.T_world_object.translation()).z();
     const int radius =
-        std::clamp(static_cast<int>(2.0 * deviation_of(object) / frame.camera.metres_per_px(depth)), 4, 400);
+        static_cast<int>(std::clamp(2.0 * deviation_of(object) / frame.camera.metres_per_px(depth), 4.0, 400.0));
     cv::circle(picture, *centre, radius, colour, is_seen(object) ? 2 : 1, cv::LINE_AA);
     draw_text(picture, label_of(object), *centre + cv::Point(radius + 4, 4), 0.4);
   }

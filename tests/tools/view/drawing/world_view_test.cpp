@@ -94,5 +94,20 @@ TEST(WorldView, FromAboveObjectsAndCamerasAreDrawn) {
   EXPECT_EQ(pixels_of(draw_world_from_above({}, {320, 240}), class_colour(2)), 0);
 }
 
+TEST(WorldView, PlacesFarAwayAreSurvived) {
+  for (const double far : {1e8, -1e9}) {
+    WorldState state;
+    state.add(one_can(far));
+    EXPECT_EQ(draw_world_from_above(state, {320, 240}).cols, 320);
+    WorldObjects back = one_can(0.2);
+    back.objects[0].covariance = 1e300 * Covariance6::Identity();
+    state.add(back);
+    EXPECT_EQ(draw_world_from_above(state, {320, 240}).cols, 320) << "its way comes from far away";
+    cv::Mat picture = black_frame(1000000).colour;
+    draw_tracks(picture, state, black_frame(1000000));
+    EXPECT_GT(cv::norm(picture), 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace houghstream::view
