@@ -1,12 +1,23 @@
 #include "tools/view/video_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/stop_signal.hpp"
 
 namespace houghstream::view {
+namespace {
+
+// FFmpeg's writer tells nobody that the disk is full.
+std::int64_t frames_in(const std::filesystem::path& video) {
+  const cv::VideoCapture written(video.string(), cv::CAP_FFMPEG);
+  return written.isOpened() ? std::llround(written.get(cv::CAP_PROP_FRAME_COUNT)) : 0;
+}
+
+}  // namespace
 
 VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::move(file)), rate_hz_(rate_hz) {}
 
@@ -35,7 +46,12 @@ void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
     first_slot_ = slot;
   }
   const cv::Mat fitting = fitted(picture);
-  while (!last_.empty() && frames_written_ < slot - first_slot_) {
+  // Who is asked to end does not fill a gap of hours first.
+  constexpr double kLongGapS = 10.0;
+  const auto is_given_up = [&] {
+    return stop_requested() && static_cast<double>(slot - first_slot_ - frames_written_) > kLongGapS * rate_hz_;
+  };
+  while (!last_.empty() && frames_written_ < slot - first_slot_ && !is_given_up()) {
     writer_.write(last_);
     ++frames_written_;
   }
@@ -47,6 +63,10 @@ void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
 void VideoFile::finish() {
   if (!whole_) return;
   writer_.release();
+  const std::int64_t frames = frames_in(whole_->partial());
+  require(frames == frames_written_,
+          "{}: the video holds {} frames, expected the {} that were drawn; is the disk full?", file_.string(), frames,
+          frames_written_);
   whole_->publish();
   whole_.reset();
 }

@@ -11,7 +11,8 @@
 namespace houghstream::view {
 
 /// Writes an MP4 with H.264, which every browser plays, at a constant rate. A picture belongs to a slot of
-/// 1/rate seconds; a slot without a picture repeats the one before, so that the video lasts as long as the stream did.
+/// 1/rate seconds; a slot without a picture repeats the one before, so that the video lasts as long as the stream did;
+/// but once the program is asked to end, a gap of more than ten seconds is left out.
 class VideoFile {
  public:
   VideoFile(std::filesystem::path file, double rate_hz);
@@ -20,7 +21,8 @@ class VideoFile {
   /// (the camera's mode has changed) is fitted into it. Throws InputError when the file cannot be written.
   void add(const cv::Mat& picture, std::int64_t slot);
 
-  /// Ends the video, which is in its place from here on, and not before (WholeFile). Throws InputError.
+  /// Ends the video, which is in its place from here on, and not before (WholeFile). Throws InputError where it does
+  /// not hold all that was added, as on a full disk; what was in its place stays.
   void finish();
 
   std::int64_t frames_written() const { return frames_written_; }

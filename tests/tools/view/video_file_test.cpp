@@ -1,10 +1,13 @@
 #include "tools/view/video_file.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -47,6 +50,45 @@ TEST(VideoFile, FitsInWhatHasAnotherSize) {
   EXPECT_EQ(picture.size(), kSize);
   EXPECT_LT(picture.at<cv::Vec3b>(24, 2)[0], 60) << "black beside a narrower one";
   EXPECT_GT(picture.at<cv::Vec3b>(24, 32)[0], 140);
+  std::filesystem::remove(file);
+}
+
+/// No file grows beyond so many bytes while it lives: as on a full disk.
+class SmallFiles {
+ public:
+  explicit SmallFiles(rlim_t bytes) : signal_before_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~SmallFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, signal_before_);
+  }
+  SmallFiles(const SmallFiles&) = delete;
+  SmallFiles& operator=(const SmallFiles&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*signal_before_)(int);
+};
+
+TEST(VideoFile, WhatAFullDiskCutsTakesNobodysPlace) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "video_file_test_full.mp4";
+  write_whole_file(file, "what was there before");
+  {
+    VideoFile video(file, 10.0);
+    const SmallFiles full(2000);
+    cv::RNG random(7);
+    for (int i = 0; i < 100; ++i) {
+      cv::Mat noise(kSize, CV_8UC3);
+      random.fill(noise, cv::RNG::UNIFORM, 0, 256);
+      video.add(noise, i);
+    }
+    EXPECT_THROW(video.finish(), InputError);
+  }
+  EXPECT_EQ(read_file(file, "a video"), "what was there before");
   std::filesystem::remove(file);
 }
 
