@@ -121,6 +121,25 @@ TEST(FrameShow, AStoreThatChangesIsFollowed) {
   EXPECT_THROW(FrameShow{settings}, InputError) << "one of both";
 }
 
+TEST(FrameShow, WithoutModelsWhatIsFollowedIsShownToo) {
+  WatchedBus watched;
+  ShowSettings settings = to_pictures("followed");
+  FrameShow frame_show(settings);
+  frame_show.show(matched_frame(1), watched.watcher);
+  MatchedFrame matched = matched_frame(2);
+  ObjectPoses followed;
+  followed.frame = matched.id;
+  followed.poses.resize(1);
+  followed.poses[0].class_id = 1;
+  followed.poses[0].class_name = "plate";
+  followed.poses[0].detection_index = -1;
+  followed.poses[0].status = PoseStatus::kValid;
+  followed.poses[0].T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.6));
+  matched.results.add(std::move(followed));
+  frame_show.show(matched, watched.watcher);
+  EXPECT_GT(difference(settings, 1, 2), 0.0);
+}
+
 TEST(FrameShow, NoModelsOrNoPictureAtAllIsAnError) {
   ShowSettings settings = to_pictures("none");
   FrameShow frame_show(settings);

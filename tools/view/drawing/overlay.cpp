@@ -44,6 +44,18 @@ void draw_label(cv::Mat& image, const Detection& detection, const ObjectPose* po
               text_colour_on(background), 1, cv::LINE_AA);
 }
 
+// What stands for a class without a model: ten centimetres around its origin.
+Mesh unknown_shape() {
+  const float half = static_cast<float>(kDefaultAxis);
+  Mesh cube;
+  for (const float x : {-half, half}) {
+    for (const float y : {-half, half}) {
+      for (const float z : {-half, half}) cube.vertices.emplace_back(x, y, z);
+    }
+  }
+  return cube;
+}
+
 // Where the model may be seen; empty when any of it is at or behind the camera.
 cv::Rect projected_region(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
   Eigen::Vector2d low(1e9, 1e9);
@@ -120,10 +132,12 @@ cv::Scalar class_colour(int class_id) {
 
 BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const Camera& camera) {
   BoxedPoses all{{followed.frame, {}, followed.stages}, {followed.frame, {}, followed.stages}};
+  const Mesh unknown = unknown_shape();
   for (const ObjectPose& pose : followed.poses) {
+    if (!pose.T_camera_object) continue;
     const auto model = models.find(pose.class_name);
-    if (!pose.T_camera_object || model == models.end()) continue;
-    const cv::Rect region = projected_region(model->second, *pose.T_camera_object, camera);
+    const Mesh& shape = model != models.end() ? model->second : unknown;
+    const cv::Rect region = projected_region(shape, *pose.T_camera_object, camera);
     if (region.empty()) continue;
     Detection detection;
     detection.class_id = pose.class_id;
@@ -131,7 +145,7 @@ BoxedPoses boxed(const ObjectPoses& followed, const ClassModels& models, const C
     detection.score = pose.detection_score;
     detection.box_px = region;
     // Where votes of a store are for; the origin of a mesh may lie anywhere.
-    detection.centre_camera = pose.T_camera_object->cast<float>() * mesh_bounds(model->second).center();
+    detection.centre_camera = pose.T_camera_object->cast<float>() * mesh_bounds(shape).center();
     all.poses.poses.push_back(pose);
     all.poses.poses.back().detection_index = static_cast<int>(all.detections.detections.size());
     all.detections.detections.push_back(std::move(detection));

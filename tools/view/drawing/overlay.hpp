@@ -29,8 +29,8 @@ cv::Scalar class_colour(int class_id);
 cv::Mat draw_overlay(const RgbdFrame& frame, const Detections& detections, const std::optional<ObjectPoses>& poses,
                      const ClassModels& models);
 
-/// Poses without detections, as hs-pose --follow sends them, with a detection for each: the box of its model. What has
-/// no model or no pose has no box, and is left out.
+/// Poses without detections, as hs-pose --follow sends them, with a detection for each: the box of its model, or of ten
+/// centimetres around its origin where there is no model. What has no pose has no box, and is left out.
 struct BoxedPoses {
   Detections detections;
   ObjectPoses poses;

@@ -109,10 +109,11 @@ TEST(Overlay, FollowedPosesHaveTheBoxesOfTheirModels) {
   followed.poses[1].T_camera_object.reset();
   followed.poses[1].status = PoseStatus::kOccluded;
   const BoxedPoses all = boxed(followed, {{"box", plate()}}, kCamera);
-  ASSERT_EQ(all.poses.poses.size(), 1U);
-  ASSERT_EQ(all.detections.detections.size(), 1U);
-  EXPECT_EQ(all.poses.poses[0].detection_index, 0);
-  const Detection& detection = all.detections.detections[0];
+  ASSERT_EQ(all.poses.poses.size(), 2U);
+  ASSERT_EQ(all.detections.detections.size(), 2U);
+  EXPECT_EQ(all.poses.poses[1].detection_index, 1);
+  EXPECT_NEAR(all.detections.detections[0].box_px.width, 0.1 / 0.95 * kCamera.fx, 6.0) << "nobody knows its model";
+  const Detection& detection = all.detections.detections[1];
   EXPECT_EQ(detection.score, 0.75F);
   EXPECT_NEAR(detection.box_px.width, 0.2 * kCamera.fx, 6.0);
   EXPECT_NEAR(detection.box_px.x + 0.5 * detection.box_px.width, kCamera.cx, 3.0);
