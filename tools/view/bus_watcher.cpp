@@ -10,6 +10,7 @@
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "pipeline/process/pair_inbox.hpp"
 #include "tools/view/preview.hpp"
 
 namespace houghstream::view {
@@ -23,7 +24,7 @@ std::int64_t microseconds(std::chrono::steady_clock::time_point time) {
 
 BusWatcher::BusWatcher(LcmBus& bus, const std::string& frame_channels, const MatchSettings& match,
                        std::size_t waiting_frames)
-    : bus_(bus), matcher_(match), queue_(waiting_frames) {
+    : bus_(bus), matcher_(match), queue_(waiting_frames, match.kept_bytes) {
   require(!bus_.is_log(), "{}: a log is watched by replaying it with lcm-logplayer, expected a network URL",
           bus_.url());
   subscribe_to_frames(frame_channels);
@@ -84,15 +85,17 @@ LcmBus::Handler BusWatcher::counting_bad(LcmBus::Handler handler) {
 
 void BusWatcher::subscribe_to_results() {
   bus_.subscribe(channel::kDetections, counting_bad([this](const Arrival& arrival) {
+                   PairInbox::require_size(arrival.bytes.size);
                    Detections detections =
                        detections_from_message(decode_message<houghstream::detections_t>(arrival.bytes));
                    if (!cameras_.is_shown(detections.frame.channel)) return;
-                   matcher_.add_detections(std::move(detections), microseconds(arrival.time));
+                   matcher_.add_detections(std::move(detections), microseconds(arrival.time), arrival.bytes.size);
                  }));
   bus_.subscribe(channel::kPoses, counting_bad([this](const Arrival& arrival) {
+                   PairInbox::require_size(arrival.bytes.size);
                    ObjectPoses poses = poses_from_message(decode_message<houghstream::object_poses_t>(arrival.bytes));
                    if (!cameras_.is_shown(poses.frame.channel)) return;
-                   matcher_.add_poses(std::move(poses), microseconds(arrival.time));
+                   matcher_.add_poses(std::move(poses), microseconds(arrival.time), arrival.bytes.size);
                  }));
 }
 
@@ -140,11 +143,11 @@ void BusWatcher::note_drawn(const MatchedFrame& frame) {
 }
 
 void BusWatcher::hand_over() {
-  const std::int64_t before = matcher_.passed_over();
   while (auto frame = matcher_.next(microseconds(std::chrono::steady_clock::now()))) {
-    if (!queue_.push(std::move(*frame))) status_.count_skipped(1);
+    status_.count_skipped(queue_.push(std::move(*frame)));
   }
-  status_.count_skipped(matcher_.passed_over() - before);
+  status_.count_skipped(matcher_.passed_over() - passed_over_told_);
+  passed_over_told_ = matcher_.passed_over();
 }
 
 void BusWatcher::listen() {

@@ -67,6 +67,7 @@ class BusWatcher {
   StatusReporter status_{"hs-view"};
   ShownCamera cameras_;
   FrameMatcher matcher_;
+  std::int64_t passed_over_told_ = 0;  // of the matcher's frames, in the status
   StreamWatch stream_;
   MatchQueue queue_;
   std::atomic<bool> stopping_{false};

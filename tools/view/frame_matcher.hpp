@@ -12,10 +12,11 @@ namespace houghstream::view {
 
 /// How frames wait for their results.
 struct MatchSettings {
-  double rate_hz = 10.0;                ///< at most so many frames a second are handed out
-  std::int64_t wait_us = 500'000;       ///< a frame waits at least so long for its results
-  std::int64_t silence_us = 2'000'000;  ///< when nothing comes for so long, no process is there to send it
-  std::int64_t kept_us = 3'000'000;     ///< a frame is forgotten after this
+  double rate_hz = 10.0;                             ///< at most so many frames a second are handed out
+  std::int64_t wait_us = 500'000;                    ///< a frame waits at least so long for its results
+  std::int64_t silence_us = 2'000'000;               ///< when nothing comes for so long, no process is there to send it
+  std::int64_t kept_us = 3'000'000;                  ///< a frame is forgotten after this
+  std::size_t kept_bytes = std::size_t{192} << 20U;  ///< encoded frames and results that wait; the oldest frames go
 };
 
 /// A frame as it came off the bus, with what was published about it.
@@ -25,6 +26,7 @@ struct MatchedFrame {
   std::int64_t arrival_us = 0;            ///< when the frame arrived, local clock
   std::int64_t slot = 0;                  ///< arrival in units of 1/rate_hz since the first frame
   FrameResults results;
+  std::size_t bytes = 0;           ///< of the frame and its results, encoded
   int detections_heard = 0;        ///< messages
   double detect_latency_ms = 0.0;  ///< from the frame's arrival to its last detections'; meaningless without any
   double pose_latency_ms = 0.0;    ///< from the frame's arrival to its last poses'; meaningless without any
@@ -37,8 +39,9 @@ class FrameMatcher {
   explicit FrameMatcher(MatchSettings settings);
 
   void add_frame(const FrameId& id, std::vector<std::uint8_t> bytes, std::int64_t now_us);
-  void add_detections(Detections detections, std::int64_t now_us);
-  void add_poses(ObjectPoses poses, std::int64_t now_us);
+  /// `bytes`: how many the message has.
+  void add_detections(Detections detections, std::int64_t now_us, std::size_t bytes = 0);
+  void add_poses(ObjectPoses poses, std::int64_t now_us, std::size_t bytes = 0);
 
   /// The next frame worth drawing, in order of arrival, at most `rate_hz` a second: one with the poses of as many
   /// detectors as there are, as soon as these are there; one with fewer after `wait_us`; one with detections only, or
@@ -49,10 +52,16 @@ class FrameMatcher {
   std::int64_t passed_over() const { return passed_over_; }
 
  private:
+  using Waiting = std::map<FrameId, MatchedFrame>;
+
   bool ready(const MatchedFrame& frame, std::int64_t now_us) const;
+  MatchedFrame* frame_with_room(const FrameId& id, std::size_t bytes);
+  Waiting::iterator forget(Waiting::iterator frame);
+  void keep_within_bytes();
 
   MatchSettings settings_;
-  std::map<FrameId, MatchedFrame> waiting_;
+  Waiting waiting_;
+  std::size_t bytes_ = 0;  ///< of all that wait
   DetectorCount detectors_;
   std::optional<std::int64_t> first_arrival_us_;
   std::int64_t last_slot_ = -1;

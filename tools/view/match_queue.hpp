@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -11,32 +12,43 @@
 
 namespace houghstream::view {
 
-/// Hands matched frames from the thread that receives to the one that draws. When it is full the oldest is dropped.
+/// Hands matched frames from the thread that receives to the one that draws. When it is full the oldest are dropped.
 class MatchQueue {
  public:
-  explicit MatchQueue(std::size_t capacity) : capacity_(capacity) {}
+  /// `capacity` frames, and fewer where they and their results have more than so many bytes.
+  MatchQueue(std::size_t capacity, std::size_t most_bytes) : capacity_(capacity), most_bytes_(most_bytes) {}
 
-  /// False when an older one had to be dropped.
-  bool push(MatchedFrame frame) {
+  /// How many older ones had to be dropped.
+  std::int64_t push(MatchedFrame frame) {
     const std::lock_guard lock(mutex_);
-    const bool full = frames_.size() >= capacity_;
-    if (full) frames_.pop_front();
+    std::int64_t dropped = 0;
+    for (; !frames_.empty() && (frames_.size() >= capacity_ || bytes_ + frame.bytes > most_bytes_); ++dropped) {
+      take_first();
+    }
+    bytes_ += frame.bytes;
     frames_.push_back(std::move(frame));
     arrived_.notify_one();
-    return !full;
+    return dropped;
   }
 
   /// The oldest frame, or nothing when none comes within `timeout`.
   std::optional<MatchedFrame> pop(std::chrono::milliseconds timeout) {
     std::unique_lock lock(mutex_);
     if (!arrived_.wait_for(lock, timeout, [this] { return !frames_.empty(); })) return std::nullopt;
-    std::optional<MatchedFrame> frame = std::move(frames_.front());
-    frames_.pop_front();
-    return frame;
+    return take_first();
   }
 
  private:
+  MatchedFrame take_first() {
+    MatchedFrame frame = std::move(frames_.front());
+    frames_.pop_front();
+    bytes_ -= frame.bytes;
+    return frame;
+  }
+
   std::size_t capacity_;
+  std::size_t most_bytes_;
+  std::size_t bytes_ = 0;
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<MatchedFrame> frames_;

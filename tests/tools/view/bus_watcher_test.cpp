@@ -49,6 +49,22 @@ TEST(BusWatcher, WhatIsNoMessageOfTheChannelDoesNotEndIt) {
   EXPECT_EQ(watched.last_words().frames_refused, 1) << "and counts the one that should have been a frame";
 }
 
+TEST(BusWatcher, ResultsThatAreTooLargeAreRefused) {
+  WatchedBus watched;
+  Detections many;
+  many.frame = {channel::kFrame, 1};
+  many.detections.resize(1);
+  many.detections[0].class_name = std::string(std::size_t{2} << 20U, 'x');
+  many.detections[0].box_px = {10.0F, 10.0F, 20.0F, 20.0F};
+  watched.bus.publish(channel::kDetections, to_message(many));
+  watched.publish_frame(1);
+  watched.publish_results(1);
+  const std::optional<MatchedFrame> matched = watched.next();
+  ASSERT_TRUE(matched.has_value());
+  EXPECT_EQ(matched->results.results().size(), 1U);
+  EXPECT_NE(watched.last_words().last_error.find("expected at most 1048576"), std::string::npos);
+}
+
 TEST(BusWatcher, OfTwoCamerasOfEqualTimesOneIsShownAndNothingMixed) {
   WatchedBus watched("LEFT|RIGHT");
   for (std::int64_t i = 1; i <= 2; ++i) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
+#include "tools/view/match_queue.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -160,6 +161,43 @@ TEST(FrameMatcher, AFrameWaitsForAllDetectorsOfItsCameraButNotForEver) {
   add(3, "bowl", 210 * kMs);
   EXPECT_FALSE(matcher.next(699 * kMs));
   EXPECT_TRUE(matcher.next(701 * kMs)) << "the other one has skipped this frame";
+}
+
+TEST(FrameMatcher, WhatWaitsHasSoManyBytesAndTheOldestGoes) {
+  MatchSettings settings;
+  settings.kept_bytes = 100;
+  FrameMatcher matcher(settings);
+  matcher.add_frame({"TEST", 3}, std::vector<std::uint8_t>(40), 0);
+  matcher.add_frame({"TEST", 1}, std::vector<std::uint8_t>(40), 100 * kMs);
+  EXPECT_EQ(matcher.passed_over(), 0);
+  matcher.add_frame({"TEST", 2}, std::vector<std::uint8_t>(40), 200 * kMs);
+  EXPECT_EQ(matcher.passed_over(), 1) << "the one that came first";
+  matcher.add_detections(detections_of(2), 210 * kMs, 30);
+  EXPECT_EQ(matcher.passed_over(), 2) << "results have bytes too";
+  matcher.add_poses(poses_of(2), 220 * kMs, 31);
+  const std::optional<MatchedFrame> none = matcher.next(221 * kMs);
+  EXPECT_FALSE(none) << "there was no room for its poses";
+  matcher.add_poses(poses_of(2), 230 * kMs, 30);
+  ASSERT_TRUE(matcher.next(231 * kMs));
+  matcher.add_frame({"TEST", 4}, std::vector<std::uint8_t>(400), 400 * kMs);
+  EXPECT_EQ(matcher.passed_over(), 2) << "one stays, however large";
+}
+
+TEST(MatchQueue, HoldsSoManyFramesAndSoManyBytes) {
+  MatchQueue queue(2, 100);
+  const auto frame = [](std::int64_t utime, std::size_t bytes) {
+    MatchedFrame out;
+    out.id.utime = utime;
+    out.bytes = bytes;
+    return out;
+  };
+  EXPECT_EQ(queue.push(frame(1, 10)), 0);
+  EXPECT_EQ(queue.push(frame(2, 10)), 0);
+  EXPECT_EQ(queue.push(frame(3, 10)), 1) << "too many";
+  EXPECT_EQ(queue.push(frame(4, 95)), 2) << "too many bytes";
+  EXPECT_EQ(queue.push(frame(5, 500)), 1);
+  EXPECT_EQ(queue.pop(std::chrono::milliseconds(0))->id.utime, 5);
+  EXPECT_EQ(queue.push(frame(6, 100)), 0);
 }
 
 TEST(FrameMatcher, AbsurdRateIsRefused) {
