@@ -88,8 +88,12 @@ KeyAction ViewWindow::handle_keys(FrameViewSettings& settings) {
 void ViewWindow::save() const {
   if (shown_.empty()) return;
   const std::string file = fmt::format("view_{}_{}.png", channel::camera_name(id_.channel), id_.utime);
-  write_picture(file, shown_);
-  log_info("saved {}", file);
+  try {
+    write_picture(file, shown_);
+    log_info("saved {}", file);
+  } catch (const InputError& error) {  // the stream can be looked at all the same
+    log_error("{}", error.what());
+  }
 }
 
 }  // namespace houghstream::view

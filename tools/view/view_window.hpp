@@ -8,7 +8,7 @@
 
 namespace houghstream::view {
 
-/// The window; its keys are those of apply_key, and s, which saves the picture.
+/// The window; its keys are those of apply_key, and s, which saves the picture; where that fails it is logged.
 class ViewWindow {
  public:
   /// Throws InputError, naming the headless options, where there is no display.
