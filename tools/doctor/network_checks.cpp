@@ -8,6 +8,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "pipeline/base/printable.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
@@ -20,6 +21,18 @@ constexpr const char* kJavaBuffer = "Java's buffer";
 constexpr const char* kSenders = "who may send";
 constexpr const char* kSelfTest = "LCM self test";
 const std::string kRouteRemedy = "sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo";
+
+/// Text off the wire, which is anybody's.
+std::string off_the_wire(const std::string& text) {
+  constexpr std::size_t kLongest = 300;
+  return printable(text.substr(0, kLongest));
+}
+
+std::string server_remedy(const BusPlace& server) {
+  const bool is_here = server.address == "127.0.0.1" || server.address == "localhost";
+  return fmt::format("{}java -cp /usr/share/java/lcm.jar lcm.lcm.TCPService {}",
+                     is_here ? "" : fmt::format("on {}: ", server.address), server.port);
+}
 
 /// The interface through which packets to the address leave, by /proc/net/route: the narrowest route, then the
 /// smallest metric. Numbers there are in the order of the network, read as those of this machine, like inet_addr().
@@ -89,7 +102,7 @@ Finding check_self_test(const Machine& machine, const std::string& url, std::siz
       group    ? fmt::format("sudo iptables -I INPUT -p udp -d {} --dport {} -j ACCEPT", group->address, group->port)
       : server ? fmt::format("sudo iptables -I INPUT -p tcp --dport {} -j ACCEPT", server->port)
                : "";
-  if (!test.error.empty()) return wrong(kSelfTest, test.error, kRouteRemedy);
+  if (!test.error.empty()) return wrong(kSelfTest, test.error, server ? server_remedy(*server) : kRouteRemedy);
   const std::string what = fmt::format("{} of {} messages of {} kB came back", test.received, test.sent, bytes / 1000);
   if (test.received == test.sent) return ok(kSelfTest, what);
   if (test.received == 0) return wrong(kSelfTest, what + "; is there a firewall?", firewall);
@@ -101,8 +114,9 @@ Findings check_processes(const Machine& machine, const std::string& url) {
   Findings findings;
   for (const auto& [process, error] : machine.heard_errors(url)) {
     const bool contradiction = process == "hs-track" && error.find("one of their places is wrong") != std::string::npos;
-    findings.push_back(contradiction ? wrong(process, error, "hs-track --check -c CAMERAS, and correct --cameras")
-                                     : note(process, "says: " + error));
+    findings.push_back(contradiction
+                           ? wrong(process, off_the_wire(error), "hs-track --check -c CAMERAS, and correct --cameras")
+                           : note(off_the_wire(process), "says: " + off_the_wire(error)));
   }
   return findings;
 }

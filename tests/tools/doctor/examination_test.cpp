@@ -170,7 +170,11 @@ TEST(Examination, ABusWithoutDatagramsNeedsNoRouteAndNoBuffers) {
   plant(machine.machine.root / "proc/net/route", "");
   EXPECT_EQ(count_wrong(examine(machine.machine, machine.settings)), 0);
   machine.machine.self_test = [](const std::string&, std::size_t) { return SelfTest{0, 0, "no server"}; };
-  EXPECT_EQ(count_wrong(examine(machine.machine, machine.settings)), 1);
+  const Findings findings = examine(machine.machine, machine.settings);
+  EXPECT_EQ(count_wrong(findings), 1);
+  EXPECT_NE(to_text(findings).find("on robot: java -cp /usr/share/java/lcm.jar lcm.lcm.TCPService 7700\n"),
+            std::string::npos)
+      << to_text(findings);
 }
 
 }  // namespace

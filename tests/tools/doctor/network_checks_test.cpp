@@ -104,6 +104,17 @@ TEST(NetworkChecks, WhatProcessesComplainOfIsToldCamerasThatContradictAreWrong) 
   EXPECT_NE(track.remedy.find("hs-track --check"), std::string::npos);
 }
 
+TEST(NetworkChecks, WhatProcessesSayDoesNotSteerATerminal) {
+  HealthyMachine healthy("network_checks_rubbish");
+  healthy.machine.heard_errors = [](const std::string&) {
+    return std::map<std::string, std::string>{{"hs\033[2J", std::string(5000, '\a')}};
+  };
+  const Finding said = check_network(healthy.machine, kBus).back();
+  EXPECT_EQ(said.name, "hs\\x1B[2J");
+  EXPECT_EQ(said.what.substr(0, 14), "says: \\x07\\x07");
+  EXPECT_LE(said.what.size(), 6U + 4U * 300U);
+}
+
 TEST(NetworkChecks, WhoMaySendIsSaidWithWhatKeepsOthersOut) {
   HealthyMachine healthy("network_senders");
   healthy.machine.refuses_others = [](const std::string&) { return false; };
