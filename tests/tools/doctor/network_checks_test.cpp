@@ -110,7 +110,7 @@ TEST(NetworkChecks, WhatProcessesSayDoesNotSteerATerminal) {
     return std::map<std::string, std::string>{{"hs\033[2J", std::string(5000, '\a')}};
   };
   const Finding said = check_network(healthy.machine, kBus).back();
-  EXPECT_EQ(said.name, "hs\\x1B[2J");
+  EXPECT_EQ(said.name, "hs\\x1b[2J");
   EXPECT_EQ(said.what.substr(0, 14), "says: \\x07\\x07");
   EXPECT_LE(said.what.size(), 6U + 4U * 300U);
 }

@@ -11,6 +11,7 @@ import houghstream.object_poses_t;
 import houghstream.objects_t;
 import houghstream.pose_t;
 import houghstream.rigid_transform_t;
+import houghstream.stage_time_t;
 import houghstream.status_t;
 import houghstream.teaching_t;
 import javax.swing.JDesktopPane;
@@ -28,6 +29,8 @@ final class PluginsTest {
     Check.test("spy knows every type that is sent", PluginsTest::types);
     Check.test("frames, detections and poses meet by the frame's name", PluginsTest::matching);
     Check.test("cameras of equal times and several detectors are kept apart", PluginsTest::cameras);
+    Check.test("what is followed needs no detections", PluginsTest::followed);
+    Check.test("an answer without the models takes no other's place", PluginsTest::withoutModels);
   }
 
   private static void plugins() {
@@ -115,5 +118,46 @@ final class PluginsTest {
     Check.equal(right.id.channel(), "RIGHT");
     Check.equal(right.results.detections().n_detections, 1);
     Check.equal(right.results.poses(), null);
+  }
+
+  private static void followed() throws Exception {
+    ResultMatcher matcher = new ResultMatcher();
+    matcher.addFrame(CHANNEL, ViewersTest.frame(5));
+    matcher.addDetections(Samples.detections(4));
+    matcher.addPoses(Samples.poses(4, object_pose_t.VALID), 0);
+    object_poses_t followed = Samples.poses(5, object_pose_t.VALID);
+    followed.poses[0].detection_index = -1;
+    matcher.addPoses(followed, 0);
+    ResultMatcher.Snapshot newest = matcher.snapshot(1);
+    Check.equal(newest.entry().utime, 5L);
+    Check.equal(newest.followed(), followed);
+    Check.equal(newest.detections(), null);
+    matcher.addDetections(Samples.detections(5));
+    Check.equal(newest.detections(), null); // as it was
+    object_poses_t valid = FollowedPoses.valid(followed);
+    Check.equal(valid.poses[0].detection_index, 0);
+    Check.equal(followed.poses[0].detection_index, -1);
+    detections_t boxed = FollowedPoses.boxed(valid, RgbdFrame.decode(newest.frame()).camera);
+    Check.equal(boxed.detections[0].class_name, "soda_can");
+    Check.that(Math.abs(boxed.detections[0].box_width - 12) < 1e-3, "ten centimetres half a metre away");
+    Check.equal(FollowedPoses.valid(Samples.poses(5, object_pose_t.OCCLUDED)).n_poses, 0);
+    object_poses_t none = Samples.poses(6, object_pose_t.VALID);
+    none.poses = new object_pose_t[0];
+    none.n_poses = 0;
+    none.stages = new stage_time_t[] {new stage_time_t()};
+    none.stages[0].stage = "pose.following";
+    none.n_stages = 1;
+    matcher.addPoses(none, 0);
+    Check.equal(matcher.arrivedPercent(), 33);
+  }
+
+  private static void withoutModels() {
+    for (boolean validFirst : new boolean[] {true, false}) {
+      ResultMatcher matcher = new ResultMatcher();
+      matcher.addDetections(Samples.detections(5));
+      matcher.addPoses(Samples.poses(5, validFirst ? object_pose_t.VALID : object_pose_t.NO_MODEL), 0);
+      matcher.addPoses(Samples.poses(5, validFirst ? object_pose_t.NO_MODEL : object_pose_t.VALID), 0);
+      Check.equal(matcher.snapshot(1).poses().poses[0].status, object_pose_t.VALID);
+    }
   }
 }

@@ -1,5 +1,6 @@
 package houghstream.spy;
 
+import houghstream.camera_t;
 import houghstream.detections_t;
 import houghstream.object_poses_t;
 import houghstream.spy.Wire.BadMessage;
@@ -92,44 +93,52 @@ final class DetectionViewer implements Viewer {
   }
 
   private void work() {
-    ResultMatcher.Entry entry = matcher.newest(RateMeter.nowUs());
+    ResultMatcher.Snapshot newest = matcher.snapshot(RateMeter.nowUs());
     String said = problem;
-    if (entry == null || entry == drawn && entry.changes == drawnChanges && said.isEmpty()) {
+    if (newest == null || newest.entry() == drawn && newest.changes() == drawnChanges && said.isEmpty()) {
       if (!said.isEmpty()) SwingUtilities.invokeLater(() -> panel.complain(said));
       return;
     }
-    drawn = entry;
-    drawnChanges = entry.changes;
+    drawn = newest.entry();
+    drawnChanges = newest.changes();
     List<String> cameras = matcher.cameras();
-    RgbdFrame frame = frameOf(entry);
+    RgbdFrame frame = frameOf(newest);
     BufferedImage picture = frame == null || frame.colour == null ? blank : frame.colour;
     if (picture != blank && picture.getWidth() != blank.getWidth()) {
       blank = new BufferedImage(picture.getWidth(), picture.getHeight(), BufferedImage.TYPE_INT_RGB);
     }
-    DetectionPanel.Shown shown = new DetectionPanel.Shown(picture, entry.results.detections(), entry.results.poses(),
-        frame == null ? null : frame.camera);
+    DetectionPanel.Shown shown = shown(newest, picture, frame == null ? null : frame.camera);
+    String channel = newest.entry().id.channel();
     String text = String.format("%s, frame %.3f s, %.1f results a second, %d %% of their frames arrived",
-        entry.id.channel(), entry.utime * 1e-6, arrivals.hertz(RateMeter.nowUs()), matcher.arrivedPercent());
-    String complaint = said.isEmpty() ? complaint(entry, frame) : said;
+        channel, newest.entry().utime * 1e-6, arrivals.hertz(RateMeter.nowUs()), matcher.arrivedPercent());
+    String complaint = said.isEmpty() ? complaint(newest, frame) : said;
     SwingUtilities.invokeLater(() -> {
-      panel.offer(cameras, entry.id.channel());
+      panel.offer(cameras, channel);
       panel.show(shown);
       panel.say(text, complaint);
     });
   }
 
-  private RgbdFrame frameOf(ResultMatcher.Entry entry) {
-    if (entry.frame == null) return null;
+  private static DetectionPanel.Shown shown(ResultMatcher.Snapshot newest, BufferedImage picture, camera_t camera) {
+    if (newest.followed() == null) {
+      return new DetectionPanel.Shown(picture, newest.detections(), newest.poses(), camera);
+    }
+    object_poses_t poses = FollowedPoses.valid(newest.followed());
+    return new DetectionPanel.Shown(picture, FollowedPoses.boxed(poses, camera), poses, camera);
+  }
+
+  private RgbdFrame frameOf(ResultMatcher.Snapshot newest) {
+    if (newest.frame() == null) return null;
     try {
-      return RgbdFrame.decode(entry.frame);
+      return RgbdFrame.decode(newest.frame());
     } catch (BadMessage bad) {
       problem = bad.getMessage();
       return null;
     }
   }
 
-  private String complaint(ResultMatcher.Entry entry, RgbdFrame frame) {
-    if (entry.frame == null) {
+  private String complaint(ResultMatcher.Snapshot newest, RgbdFrame frame) {
+    if (newest.frame() == null) {
       return "Java's receive buffer is too small for frames; HOUGHSTREAM_PREVIEW fits";
     }
     if (frame == null) return problem;

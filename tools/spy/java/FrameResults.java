@@ -16,6 +16,8 @@ import java.util.stream.IntStream;
  * objects: each result has its own poses. As pipeline/types/frame_results.hpp.
  */
 final class FrameResults {
+  private static final String FOLLOWING_STAGE = "pose.following"; // poses with its time answer no detections
+
   private static final class Result {
     detections_t detections;
     object_poses_t poses;
@@ -27,20 +29,31 @@ final class FrameResults {
 
   private final List<Result> results = new ArrayList<>();
   private final List<object_poses_t> unmatched = new ArrayList<>();
+  private object_poses_t followed;
 
   /** One that finds the very same objects as an earlier one takes its place: it is a log that is played again. */
   void add(detections_t detections) {
+    boolean isKnown = false;
     for (Result known : results) {
-      if (!sameFind(known.detections, detections)) continue;
+      if (isKnown || !sameFind(known.detections, detections)) continue;
       known.detections = detections;
-      return;
+      isKnown = true;
     }
-    results.add(new Result(detections));
+    if (!isKnown) results.add(new Result(detections));
     unmatched.removeIf(this::place);
   }
 
   void add(object_poses_t poses) {
-    if (!place(poses)) unmatched.add(poses);
+    if (areFollowed(poses)) {
+      followed = poses;
+    } else if (!place(poses)) {
+      unmatched.add(poses);
+    }
+  }
+
+  /** The poses of the objects that hs-pose follows from frame to frame; null where it follows none. */
+  object_poses_t followed() {
+    return followed;
   }
 
   int size() {
@@ -140,8 +153,18 @@ final class FrameResults {
       bestRank = Math.max(bestRank, rank);
     }
     if (best == null) return false;
-    best.poses = poses;
+    if (best.poses == null || !withoutModels(poses)) best.poses = poses;
     return true;
+  }
+
+  private static boolean areFollowed(object_poses_t poses) {
+    if (poses.poses.length > 0) return poses.poses[0].detection_index < 0;
+    return Arrays.stream(poses.stages).anyMatch(stage -> stage.stage.equals(FOLLOWING_STAGE));
+  }
+
+  // Answered by an hs-pose without models of these objects: on another host one may have them.
+  private static boolean withoutModels(object_poses_t poses) {
+    return Arrays.stream(poses.poses).allMatch(pose -> pose.status == object_pose_t.NO_MODEL);
   }
 
   private static boolean answers(object_poses_t poses, detections_t detections) {

@@ -30,6 +30,10 @@ final class ResultMatcher {
     }
   }
 
+  /** An entry as it is at one moment: what comes later does not change it. All but `entry` may be null. */
+  record Snapshot(Entry entry, int changes, byte[] frame, detections_t detections, object_poses_t poses,
+      object_poses_t followed) {}
+
   private static final int KEPT = 60; // of each camera two seconds at 30 Hz: results come later than their frame
   private static final long SILENCE_US = 1_500_000; // when no poses come for so long, nobody makes them
   private static final long OLD_US = 1_000_000;
@@ -69,17 +73,26 @@ final class ResultMatcher {
     shown = camera;
   }
 
+  /** What newest() is at this moment; null where there is none. */
+  synchronized Snapshot snapshot(long nowUs) {
+    Entry entry = newest(nowUs);
+    if (entry == null) return null;
+    FrameResults results = entry.results;
+    return new Snapshot(entry, entry.changes, entry.frame, results.detections(), results.poses(), results.followed());
+  }
+
   /**
-   * The camera's newest frame with detections, and with poses unless there are none these days; null where there is
-   * none. One whose frame arrived goes before those without, unless it is more than a second older; one on which all
-   * detectors have worked goes before others, unless it is more than half a second older.
+   * The camera's newest frame with followed poses, or with detections, and with poses unless there are none these days;
+   * null where there is none. One whose frame arrived goes before those without, unless it is more than a second older;
+   * one on which all detectors have worked goes before others, unless it is more than half a second older.
    */
   synchronized Entry newest(long nowUs) {
     boolean posesExpected = nowUs - lastPosesUs < SILENCE_US;
     int detectors = entries.values().stream().filter(this::isShown).mapToInt(e -> e.results.size()).max().orElse(0);
-    Entry any = newest(e -> e.results.size() > 0 && (e.results.anyPosed() || !posesExpected));
-    Entry full = newest(e -> e.results.size() > 0 && e.results.size() >= detectors
-        && (e.results.allPosed() || !posesExpected));
+    Entry any = newest(e -> e.results.followed() != null
+        || (e.results.size() > 0 && (e.results.anyPosed() || !posesExpected)));
+    Entry full = newest(e -> e.results.followed() != null || (e.results.size() > 0 && e.results.size() >= detectors
+        && (e.results.allPosed() || !posesExpected)));
     return full != null && Math.abs(any.utime - full.utime) <= PATIENCE_US ? full : any;
   }
 
@@ -95,12 +108,12 @@ final class ResultMatcher {
     return recent ? newestWithFrame : newest;
   }
 
-  /** How many of the camera's frames with detections arrived themselves, in percent; 0 where there are none. */
+  /** How many of the camera's frames with results arrived themselves, in percent; 0 where there are none. */
   synchronized int arrivedPercent() {
     int arrived = 0;
     int wanted = 0;
     for (Entry entry : entries.values()) {
-      if (!isShown(entry) || entry.results.size() == 0) continue;
+      if (!isShown(entry) || (entry.results.size() == 0 && entry.results.followed() == null)) continue;
       ++wanted;
       if (entry.frame != null) ++arrived;
     }
