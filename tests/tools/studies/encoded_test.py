@@ -4,6 +4,7 @@ import pathlib
 import struct
 import tempfile
 import unittest
+import zlib
 
 from houghstream import detections_t
 from houghstream.event_log import DamagedLog, read_log, write_event
@@ -32,6 +33,32 @@ class Log(unittest.TestCase):
         for log in (whole[:-1], whole[:10], struct.pack(">I", 7) + whole[4:], whole + b"\0" * 28):
             self.file.write_bytes(log)
             with self.assertRaisesRegex(DamagedLog, "a.lcmlog"):
+                list(read_log(self.file))
+
+    def test_a_channel_that_is_no_text_is_damage(self):
+        whole = self.write((2, "AB", b"xyz"))
+        self.file.write_bytes(whole.replace(b"AB", b"\xff\xfe"))
+        with self.assertRaisesRegex(DamagedLog, "event 0 has a channel of"):
+            list(read_log(self.file))
+
+    def test_seals_are_checked_and_not_shown(self):
+        events = [(2, "A", b"xyz"), (5, "AB", b"")]
+        sums = [zlib.crc32(struct.pack(">q", time) + name.encode() + data) for time, name, data in events]
+        seal = (2, "HOUGHSTREAM_SEAL", b"HSSEAL1\0" + struct.pack(">III", 2, *sums))
+        whole = self.write(seal, *events, seal, *events)
+        self.assertEqual(list(read_log(self.file)), events * 2)
+        self.file.write_bytes(whole.replace(b"xyz", b"xYz"))
+        with self.assertRaisesRegex(DamagedLog, "event 1 on A is damaged"):
+            list(read_log(self.file))
+        self.write(seal, events[0])
+        with self.assertRaisesRegex(DamagedLog, "1 sealed events are missing at its end"):
+            list(read_log(self.file))
+        self.write(seal, events[0], seal, *events)
+        with self.assertRaisesRegex(DamagedLog, "1 sealed events are missing before event 2"):
+            list(read_log(self.file))
+        for wrong in (seal[2][:-1], b"HSSEAL1\0", b"HSSEAL2" + seal[2][7:]):
+            self.write((2, "HOUGHSTREAM_SEAL", wrong), *events)
+            with self.assertRaisesRegex(DamagedLog, "a damaged seal"):
                 list(read_log(self.file))
 
 

@@ -25,60 +25,80 @@ def decode_frame(message):
     """The Frame of an images_t, or of its encoded bytes. Raises ValueError naming what is missing or does not fit."""
     if isinstance(message, (bytes, bytearray, memoryview)):
         message = images_t.decode(bytes(message))
-    colour = _colour(_image(message, "colour", images_t.LEFT))
-    depth = _depth(_image(message, "depth", images_t.DEPTH_MM, images_t.DEPTH_MM_ZIPPED))
+    _, colour_image = _image(message, "colour", images_t.LEFT)
+    kind, depth_image = _image(message, "depth", images_t.DEPTH_MM, images_t.DEPTH_MM_ZIPPED)
+    colour = _colour(colour_image)
+    depth = _depth(depth_image, kind == images_t.DEPTH_MM_ZIPPED)
     if colour.shape[:2] != depth.shape:
         raise ValueError(f"frame {message.utime}: colour {colour.shape[:2]} and depth {depth.shape} differ in size")
     return Frame(message.utime, colour, depth, _camera(message))
 
 
 def _image(message, what, *kinds):
+    """The first image of these kinds, and which it is."""
     for kind, image in zip(message.image_types, message.images):
         if kind in kinds:
-            return image
+            return kind, image
     raise ValueError(f"frame {message.utime}: no {what} among its {message.n_images} images")
 
 
-def _rows(image, data, bytes_per_pixel):
+def _rows(image, bytes_per_pixel):
+    """A raw image's bytes, row by row, without the padding that rows, but the last one, end with."""
     used = image.width * bytes_per_pixel
     stride = image.row_stride or used
-    if image.width <= 0 or image.height <= 0 or stride < used or len(data) < stride * image.height:
-        raise ValueError(f"image {image.utime}: {len(data)} bytes for {image.width} x {image.height} pixels")
-    rows = numpy.frombuffer(data, numpy.uint8, stride * image.height).reshape(image.height, stride)
+    whole = stride * image.height
+    fits = image.width > 0 and image.height > 0 and stride >= used and whole - stride + used <= len(image.data) <= whole
+    if not fits:
+        raise ValueError(
+            f"image {image.utime}: {len(image.data)} bytes with row stride {image.row_stride}, "
+            f"expected {image.width} x {image.height} pixels of {bytes_per_pixel} bytes"
+        )
+    rows = numpy.frombuffer(bytes(image.data).ljust(whole, b"\0"), numpy.uint8).reshape(image.height, stride)
     return numpy.ascontiguousarray(rows[:, :used])
 
 
 def _colour(image):
     if image.pixelformat == image_t.PIXEL_FORMAT_MJPEG:
-        from PIL import Image
-
-        with Image.open(io.BytesIO(image.data)) as picture:
-            if picture.size != (image.width, image.height):
-                raise ValueError(f"image {image.utime}: a JPEG of {picture.size}, expected {image.width} x {image.height}")
-            return numpy.asarray(picture.convert("RGB"))
+        return _jpeg(image)
     channels = CHANNELS.get(image.pixelformat)
     if channels is None:
         raise ValueError(f"image {image.utime}: pixel format {image.pixelformat}, expected GRAY, RGB, BGR, RGBA, BGRA or MJPEG")
-    pixels = _rows(image, image.data, channels).reshape(image.height, image.width, channels)
+    pixels = _rows(image, channels).reshape(image.height, image.width, channels)
     if channels == 1:
         return pixels.repeat(3, axis=2)
     return numpy.ascontiguousarray(pixels[:, :, 2::-1] if image.pixelformat in BLUE_FIRST else pixels[:, :, :3])
 
 
-def _depth(image):
-    data = image.data
-    if image.row_stride == 0 or len(data) != image.row_stride * image.height:
-        unpacker = zlib.decompressobj()
-        try:
-            data = unpacker.decompress(data, 2 * image.width * image.height + 1)
-        except zlib.error as error:
-            raise ValueError(f"image {image.utime}: depth does not unpack: {error}") from error
-        if len(data) != 2 * image.width * image.height:
-            raise ValueError(f"image {image.utime}: depth of {len(data)} bytes, expected {image.width} x {image.height} pixels")
-    stride = image.row_stride if len(data) == image.row_stride * image.height else 2 * image.width
-    pixels = numpy.frombuffer(data, numpy.uint8).reshape(image.height, stride)[:, : 2 * image.width]
-    millimetres = numpy.ascontiguousarray(pixels).view("<u2").astype(numpy.float32)
+def _jpeg(image):
+    from PIL import Image
+
+    try:
+        with Image.open(io.BytesIO(image.data)) as picture:
+            size = picture.size
+            if size == (image.width, image.height):
+                return numpy.asarray(picture.convert("RGB"))
+    except (OSError, SyntaxError, EOFError, Image.DecompressionBombError) as error:
+        raise ValueError(f"image {image.utime}: a JPEG of {len(image.data)} bytes that is damaged or cut: {error}") from error
+    raise ValueError(f"image {image.utime}: a JPEG of {size}, expected {image.width} x {image.height}")
+
+
+def _depth(image, zipped):
+    pixels = _unzipped(image) if zipped else _rows(image, 2)
+    millimetres = pixels.view("<u2").astype(numpy.float32)
     return numpy.where(millimetres > 0, millimetres * numpy.float32(1e-3), numpy.float32("nan"))
+
+
+def _unzipped(image):
+    size = 2 * image.width * image.height
+    if image.width <= 0 or image.height <= 0:
+        raise ValueError(f"image {image.utime}: depth of {image.width} x {image.height} pixels")
+    try:
+        data = zlib.decompressobj().decompress(image.data, size + 1)
+    except zlib.error as error:
+        raise ValueError(f"image {image.utime}: depth does not unpack: {error}") from error
+    if len(data) != size:
+        raise ValueError(f"image {image.utime}: depth of {len(data)} bytes, expected {image.width} x {image.height} pixels")
+    return numpy.frombuffer(data, numpy.uint8).reshape(image.height, 2 * image.width)
 
 
 def _camera(message):

@@ -16,6 +16,7 @@ def subscribe(channels, handler, url=None):
             "no Python module 'lcm': install it with `pip install lcm`, or read a log with houghstream.event_log"
         ) from error
     bus = lcm.LCM(url or os.environ.get("LCM_DEFAULT_URL") or URL)
-    bus.subscribe(channels, handler).set_queue_capacity(1)
+    # LCM puts ^ and $ around it, which would belong to the first and the last alternative only.
+    bus.subscribe(f"({channels})", handler).set_queue_capacity(1)
     while True:
         bus.handle()

@@ -1,0 +1,99 @@
+"""Tests of the Python package: frames as arrays, what a subscriber asks for. Usage: PYTHONPATH=build/python package_test.py"""
+
+import io
+import sys
+import types
+import unittest
+import zlib
+from unittest import mock
+
+import numpy
+from houghstream import image_t, images_t, subscriber
+from houghstream.frames import decode_frame
+from PIL import Image
+
+WIDTH, HEIGHT = 6, 4
+DEPTH = numpy.arange(WIDTH * HEIGHT, dtype="<u2").reshape(HEIGHT, WIDTH) * 100
+
+
+def image_of(data, pixelformat, stride=0):
+    image = image_t()
+    image.utime, image.width, image.height = 5, WIDTH, HEIGHT
+    image.row_stride, image.pixelformat = stride, pixelformat
+    image.data, image.size = data, len(data)
+    return image
+
+
+def grey():
+    return image_of(bytes(WIDTH * HEIGHT), image_t.PIXEL_FORMAT_GRAY, WIDTH)
+
+
+def jpeg():
+    out = io.BytesIO()
+    Image.new("RGB", (WIDTH, HEIGHT), (9, 9, 9)).save(out, "JPEG")
+    return image_of(out.getvalue(), image_t.PIXEL_FORMAT_MJPEG)
+
+
+def raw_depth(stride=0, data=DEPTH.tobytes()):
+    return image_of(data, image_t.PIXEL_FORMAT_LE_GRAY16, stride)
+
+
+def frame_of(colour, depth, kind=images_t.DEPTH_MM):
+    frame = images_t()
+    frame.utime, frame.n_images = 5, 2
+    frame.image_types, frame.images = [images_t.LEFT, kind], [colour, depth]
+    return decode_frame(frame.encode())
+
+
+class Depth(unittest.TestCase):
+    def check(self, frame):
+        self.assertEqual(frame.depth.dtype, numpy.float32)
+        self.assertTrue(numpy.isnan(frame.depth[0, 0]))
+        numpy.testing.assert_allclose(frame.depth[1:], 1e-3 * DEPTH[1:], rtol=1e-6)
+
+    def test_raw_with_and_without_a_row_stride(self):
+        self.check(frame_of(grey(), raw_depth()))
+        self.check(frame_of(grey(), raw_depth(2 * WIDTH)))
+        padded = numpy.pad(DEPTH, ((0, 0), (0, 2))).tobytes()
+        self.check(frame_of(grey(), raw_depth(2 * WIDTH + 4, padded)))
+        self.check(frame_of(grey(), raw_depth(2 * WIDTH + 4, padded[:-4])))
+
+    def test_zipped_is_what_is_said_to_be_so(self):
+        zipped = zlib.compress(DEPTH.tobytes())
+        self.check(frame_of(grey(), raw_depth(0, zipped), images_t.DEPTH_MM_ZIPPED))
+        self.check(frame_of(grey(), raw_depth(2 * WIDTH, zipped), images_t.DEPTH_MM_ZIPPED))
+        for wrong in (zipped[:-8], zipped[2:], zlib.compress(bytes(7)), zlib.compress(bytes(1000))):
+            with self.assertRaisesRegex(ValueError, "image 5: depth"):
+                frame_of(grey(), raw_depth(0, wrong), images_t.DEPTH_MM_ZIPPED)
+        with self.assertRaisesRegex(ValueError, "expected 6 x 4 pixels of 2 bytes"):
+            frame_of(grey(), raw_depth(0, zipped))
+
+    def test_raw_of_another_size_is_refused(self):
+        for stride, size in ((0, 47), (0, 49), (10, 48), (16, 59), (16, 65)):
+            with self.assertRaisesRegex(ValueError, "expected 6 x 4 pixels of 2 bytes"):
+                frame_of(grey(), raw_depth(stride, bytes(size)))
+
+
+class Colour(unittest.TestCase):
+    def test_a_jpeg_is_decoded(self):
+        self.assertEqual(frame_of(jpeg(), raw_depth()).colour.shape, (HEIGHT, WIDTH, 3))
+
+    def test_a_jpeg_that_is_cut_or_none_is_a_value_error(self):
+        whole = jpeg().data
+        for size in (0, 1, 10, len(whole) // 2, len(whole) - 20):
+            with self.assertRaisesRegex(ValueError, "image 5: a JPEG of .* damaged or cut"):
+                frame_of(image_of(whole[:size], image_t.PIXEL_FORMAT_MJPEG), raw_depth())
+
+
+class Subscriber(unittest.TestCase):
+    def test_the_whole_name_must_match(self):
+        bus = mock.Mock()
+        bus.handle.side_effect = KeyboardInterrupt
+        with mock.patch.dict(sys.modules, {"lcm": types.SimpleNamespace(LCM=lambda url: bus)}):
+            with self.assertRaises(KeyboardInterrupt):
+                subscriber.subscribe("LEFT|RIGHT", print)
+        bus.subscribe.assert_called_once_with("(LEFT|RIGHT)", print)
+
+
+if __name__ == "__main__":
+    unittest.main()
