@@ -1,6 +1,7 @@
 #include "pose/region.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -19,6 +20,18 @@ cv::Rect enlarged(const cv::Rect2f& box, double by, const cv::Size& image) {
 
 bool in_range(const DepthRegion& region, float z) {
   return z >= region.nearest && z <= region.farthest;  // false for NaN
+}
+
+cv::Mat clipped_pixels(const cv::Mat& colour) {
+  constexpr double kWithin = 249.0;  // JPEG and sharpening leave what is clipped a little below 255
+  std::array<cv::Mat, 3> channels;
+  cv::split(colour, channels.data());
+  cv::Mat brightest;
+  cv::max(channels[0], channels[1], brightest);
+  cv::max(brightest, channels[2], brightest);
+  cv::threshold(brightest, brightest, kWithin, 255.0, cv::THRESH_BINARY);
+  cv::dilate(brightest, brightest, cv::Mat());
+  return brightest;
 }
 
 }  // namespace
@@ -52,7 +65,7 @@ std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRe
 }
 
 LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneCurve& tone) {
-  LabRegion region{{}, part_px.tl()};
+  LabRegion region{{}, part_px.tl(), clipped_pixels(frame.colour(part_px))};
   cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
   if (tone.changes()) apply_tone(tone, region.lab, region.lab);
   cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);

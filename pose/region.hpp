@@ -51,6 +51,8 @@ std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRe
 struct LabRegion {
   cv::Mat lab;          ///< CV_8UC3, 8-bit CIE L*a*b*, of the part; neighbouring pixels averaged against noise
   cv::Point origin_px;  ///< its first pixel in the frame
+  /// CV_8UC1, not 0 where a channel is at the camera's limit, or a neighbour's is: there is no colour to compare.
+  cv::Mat clipped;
 };
 /// `tone` is that of the whole frame. `part_px` must lie inside the image and not be empty.
 LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneCurve& tone);

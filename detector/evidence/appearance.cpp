@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/evidence/relief_tilt.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -35,7 +37,10 @@ void mark_rim(Appearance& appearance) {
 }  // namespace
 
 Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
-                               double centre_depth) {
+                               const Eigen::Vector3f& centre_camera) {
+  const ReliefTilt tilt = relief_tilt(centre_camera);
+  const Eigen::Vector2d centre_px = view.camera.project(centre_camera.cast<double>());
+  const double metres_per_px = view.camera.metres_per_px(centre_camera.z());
   Appearance appearance;
   appearance.mm.fill(Appearance::kBeside);
   cv::Mat lab;
@@ -46,7 +51,8 @@ Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const
       const int x = box_px.x + static_cast<int>((i + 0.5) * box_px.width / Appearance::kBoxSide);
       const int y = box_px.y + static_cast<int>((j + 0.5) * box_px.height / Appearance::kBoxSide);
       if (mask.at<std::uint8_t>(y, x) == 0) continue;
-      const double offset_mm = 1000.0 * (view.depth.at<float>(y, x) - centre_depth);
+      const double gained = metres_per_px * (tilt.right * (x - centre_px.x()) + tilt.down * (y - centre_px.y()));
+      const double offset_mm = 1000.0 * (view.depth.at<float>(y, x) - centre_camera.z() - gained);
       const auto cell = static_cast<std::size_t>((j + Appearance::kRim) * kSide + i + Appearance::kRim);
       const auto& colour = lab.at<cv::Vec3b>(j, i);
       appearance.lab[cell] = {colour[0], colour[1], colour[2]};

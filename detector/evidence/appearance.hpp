@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 
@@ -15,13 +16,14 @@ struct Appearance {
   static constexpr std::int16_t kBeside = -32768;   ///< the cell does not show the object
   static constexpr std::int16_t kNoDepth = -32767;  ///< it does, but no depth was measured
   using Cells = std::array<std::int16_t, kSide * kSide>;
-  Cells mm{};      ///< row by row
+  Cells mm{};      ///< row by row; as it lies across the ray to the centre, see ReliefTilt
   Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
   std::array<std::array<std::uint8_t, 3>, kSide * kSide> lab{};  ///< colour, 8-bit CIE L*a*b*; of the object only
 };
 
-/// What is to be remembered of a view: `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_depth`
-/// the depth of the object's centre, metres.
-Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px, double centre_depth);
+/// What is to be remembered of a view: `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_camera`
+/// the object's centre, metres.
+Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
+                               const Eigen::Vector3f& centre_camera);
 
 }  // namespace houghstream

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "detector/evidence/likeness.hpp"
+#include "detector/evidence/relief_tilt.hpp"
 #include "pipeline/base/no_value.hpp"
 
 namespace houghstream {
@@ -30,6 +31,7 @@ struct Comparison {
   float top = 0.0F;
   float cell_width = 0.0F;
   float cell_height = 0.0F;
+  cv::Point2f centre_px;  // of the view, as cell_centre()
 
   /// Frame pixels from the left upper edge of the first pixel.
   cv::Point2f cell_centre(std::size_t row, std::size_t column) const {
@@ -45,8 +47,9 @@ void place(const TrainedView& view, const Eigen::Vector3f& centre, const Camera&
   out.cell_width = px_per_metre * (view.box[2] - view.box[0]) / Appearance::kBoxSide;
   out.cell_height = px_per_metre * (view.box[3] - view.box[1]) / Appearance::kBoxSide;
   // pixel centres are whole numbers to the camera, while a box counts from the first pixel's edge
-  out.left = static_cast<float>(centre_px.x()) + 0.5F + px_per_metre * view.box[0] - Appearance::kRim * out.cell_width;
-  out.top = static_cast<float>(centre_px.y()) + 0.5F + px_per_metre * view.box[1] - Appearance::kRim * out.cell_height;
+  out.centre_px = {static_cast<float>(centre_px.x()) + 0.5F, static_cast<float>(centre_px.y()) + 0.5F};
+  out.left = out.centre_px.x + px_per_metre * view.box[0] - Appearance::kRim * out.cell_width;
+  out.top = out.centre_px.y + px_per_metre * view.box[1] - Appearance::kRim * out.cell_height;
 }
 
 /// Without branches on what the cells are, which nobody could predict.
@@ -54,18 +57,29 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
   Comparison out;
   place(view, centre, frame.camera, size, out);
   const float metres = 0.001F * size;  // per millimetre of the view
+  const ReliefTilt tilt = relief_tilt(centre);
+  const auto metres_per_px = static_cast<float>(frame.camera.metres_per_px(centre.z()));
+  const cv::Point2f centre_px = out.centre_px;
   std::array<int, kSide> column_px{};
-  for (std::size_t column = 0; column < kSide; ++column)
-    column_px[column] = static_cast<int>(std::floor(out.cell_centre(0, column).x));
+  std::array<float, kSide> expected{};  // depth that the relief is counted from, in a row
+  std::array<float, kSide> gained{};
+  for (std::size_t column = 0; column < kSide; ++column) {
+    const float x = out.cell_centre(0, column).x;
+    column_px[column] = static_cast<int>(std::floor(x));
+    gained[column] = tilt.right * metres_per_px * (x - centre_px.x);
+  }
   for (std::size_t row = 0; row < kSide; ++row) {
-    const int y = static_cast<int>(std::floor(out.cell_centre(row, 0).y));
+    const float y_px = out.cell_centre(row, 0).y;
+    const int y = static_cast<int>(std::floor(y_px));
     if (y < 0 || y >= frame.depth.rows) continue;
     const auto* depth = frame.depth.ptr<float>(y);
+    const float row_depth = centre.z() + tilt.down * metres_per_px * (y_px - centre_px.y);
+    for (std::size_t column = 0; column < kSide; ++column) expected[column] = row_depth + gained[column];
     for (std::size_t column = 0; column < kSide; ++column) {
       const int x = column_px[column];
       if (x < 0 || x >= frame.depth.cols) continue;
       const std::size_t cell = row * kSide + column;
-      const float beyond_centre = depth[x] - centre.z();
+      const float beyond_centre = depth[x] - expected[column];
       const std::int16_t remembered = view.appearance.mm[cell];
       const std::int16_t neighbour = view.appearance.beside[cell];
       out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),

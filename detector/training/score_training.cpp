@@ -20,11 +20,9 @@ constexpr double kMinVisible = 0.1;
 /// As many objects as make most of a picture without hiding each other, and nearly twice as many that look like them.
 constexpr ComposedThings kThings = {6, 5};
 
-using Examples = std::map<int, std::vector<ScoreExample>>;  // by class id
-
 /// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
-Examples judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
-  Examples examples;
+ScoreExamples judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
+  ScoreExamples examples;
   std::vector<const Detection*> kept;
   for (const Candidate& candidate : candidates) {
     const Detection& found = candidate.detection;
@@ -83,15 +81,15 @@ ValidationSource composed_frames(const std::vector<const TrainingView*>& objects
           }};
 }
 
-void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
-                       const Profile& profile, Forest& forest) {
-  const TrainingSettings& settings = profile.training;
+std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, std::uint32_t first_view,
+                                               const Profile& profile, const Forest& forest) {
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
-  std::vector<Examples> by_frame(static_cast<std::size_t>(source.count));
+  const int threads = profile.training.threads;
+  std::vector<ScoreExamples> by_frame(static_cast<std::size_t>(source.count));
   PerWorker<DetectorWorkspace> workspaces;
-  workspaces.make_room(settings.threads);
-  parallel_for_workers(settings.threads, source.count, [&](int worker, int f) {
+  workspaces.make_room(threads);
+  parallel_for_workers(threads, source.count, [&](int worker, int f) {
     const ValidationFrame validation = source.frame(f);
     std::vector<std::uint32_t> shown = validation.look_alikes;
     for (const ValidationFrame::Object& object : validation.objects) {
@@ -102,9 +100,14 @@ void train_score_model(const ValidationSource& source, const std::set<int>& clas
     by_frame[static_cast<std::size_t>(f)] =
         judge(search_frame(search, validation.frame, workspaces[worker]), validation);
   });
-  Examples by_class;
+  return by_frame;
+}
+
+void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, double stiffness,
+                Forest& forest) {
+  ScoreExamples by_class;
   std::vector<ScoreExample> all;
-  for (const Examples& part : by_frame) {
+  for (const ScoreExamples& part : by_frame) {
     for (const auto& [class_id, examples] : part) {
       std::vector<ScoreExample>& own = by_class[class_id];
       own.insert(own.end(), examples.begin(), examples.end());
@@ -114,8 +117,13 @@ void train_score_model(const ValidationSource& source, const std::set<int>& clas
   const ScoreModel common = fit_score_model(all, ScoreModel{});
   for (ObjectClass& object : forest.classes) {
     if (class_ids.count(object.class_id) == 0) continue;  // an older object, judged before
-    object.score_model = fit_score_model(by_class[object.class_id], common, source.stiffness);
+    object.score_model = fit_score_model(by_class[object.class_id], common, stiffness);
   }
+}
+
+void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
+                       const Profile& profile, Forest& forest) {
+  fit_scores(find_score_examples(source, first_view, profile, forest), class_ids, source.stiffness, forest);
 }
 
 }  // namespace houghstream::training

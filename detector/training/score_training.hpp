@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <set>
 #include <vector>
 
+#include "detector/evidence/score.hpp"
 #include "detector/forest/forest.hpp"
 #include "detector/profiles.hpp"
 #include "detector/training/pictures/validation_frames.hpp"
@@ -24,10 +26,20 @@ struct ValidationSource {
 ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
                                  const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings);
 
+/// What the forest finds in a frame, compared with what is there: by class id.
+using ScoreExamples = std::map<int, std::vector<ScoreExample>>;
+
+/// Of each frame, in their order. The first of the views that ValidationFrame names is the forest's number
+/// `first_view`. Same result for any number of threads.
+std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, std::uint32_t first_view,
+                                               const Profile& profile, const Forest& forest);
+
 /// Learns the weights of the score (evidence/score_model.hpp) of each class in `class_ids`, beginning from those of all
-/// of them together: the forest looks for the objects in the frames, and what it finds is compared with what is there.
-/// The first of the views that ValidationFrame names is the forest's number `first_view`. Same result for any number of
-/// threads.
+/// of them together. `stiffness`: see ValidationSource.
+void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, double stiffness,
+                Forest& forest);
+
+/// Both.
 void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
                        const Profile& profile, Forest& forest);
 

@@ -90,6 +90,7 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
     const Look& look = seen.looks[i];
     const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
     if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
+    if (!colours.clipped.empty() && colours.clipped.at<std::uint8_t>(inside) != 0) continue;
     const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
     points[count++] = {about_grey(seen.view.colours[i]),
                        about_grey(colours.lab.at<cv::Vec3b>(inside)),

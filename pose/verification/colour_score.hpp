@@ -10,7 +10,8 @@
 
 namespace houghstream {
 
-/// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree.
+/// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
+/// and the camera was not at its limit.
 struct ColourComparison {
   int points = 0;  ///< compared
   /// 1 less the share of the seen variance that is left over, with each channel's gain (within limits) and offset free,

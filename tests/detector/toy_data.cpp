@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "detector/evidence/relief_tilt.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/random.hpp"
 
@@ -44,19 +45,40 @@ RgbdFrame room(std::uint64_t seed) {
   return frame;
 }
 
-cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame) {
+namespace {
+
+struct TilePlace {
+  double u_px;
+  double v_px;
+  double distance;
+  ReliefTilt tilt;
+};
+
+cv::Mat draw_tile(int kind, const TilePlace& place, RgbdFrame& frame) {
   cv::Mat mask = cv::Mat::zeros(frame.colour.size(), CV_8UC1);
   for (int y = 0; y < mask.rows; ++y) {
     for (int x = 0; x < mask.cols; ++x) {
-      const double tile_x = (x - u_px) * distance / kCamera.fx;
-      const double tile_y = (y - v_px) * distance / kCamera.fy;
+      const double tile_x = (x - place.u_px) * place.distance / kCamera.fx;
+      const double tile_y = (y - place.v_px) * place.distance / kCamera.fy;
       if (std::fabs(tile_x) > kHalfSide || std::fabs(tile_y) > kHalfSide) continue;
       mask.at<std::uint8_t>(y, x) = 255;
       frame.colour.at<cv::Vec3b>(y, x) = tile_colour(kind, tile_x, tile_y);
-      frame.depth.at<float>(y, x) = static_cast<float>(distance + tile_relief(kind, tile_x, tile_y));
+      const double gained = place.tilt.right * tile_x + place.tilt.down * tile_y;
+      frame.depth.at<float>(y, x) = static_cast<float>(place.distance + gained + tile_relief(kind, tile_x, tile_y));
     }
   }
   return mask;
+}
+
+}  // namespace
+
+cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame) {
+  const ReliefTilt tilt = relief_tilt(kCamera.backproject(u_px, v_px, distance).cast<float>());
+  return draw_tile(kind, {u_px, v_px, distance, tilt}, frame);
+}
+
+cv::Mat put_upright_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame) {
+  return draw_tile(kind, {u_px, v_px, distance, {}}, frame);
 }
 
 std::vector<TrainingView> training_views() {

@@ -12,8 +12,11 @@ namespace houghstream::toy {
 RgbdFrame room(std::uint64_t seed);
 
 /// Puts a 0.12 m wide relief tile with a pattern of its kind (0 or 1) into a frame, its centre `distance` away at pixel
-/// (u, v), and returns its mask.
+/// (u, v), and returns its mask. It faces the camera: it lies across the ray to its middle.
 cv::Mat put_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame);
+
+/// The same, across the optical axis, as who knows nothing of rays takes a taught view to stand everywhere.
+cv::Mat put_upright_tile(int kind, double u_px, double v_px, double distance, RgbdFrame& frame);
 
 /// A few views of both kinds (classes 1 "stripes" and 2 "rings") and background frames.
 std::vector<TrainingView> training_views();

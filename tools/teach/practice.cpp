@@ -67,14 +67,38 @@ training::ValidationSource validation_source(const std::vector<world::SceneFrame
           kStiffness};
 }
 
-quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, const Forest& forest,
-                               const quality::PosedModels& models, int threads) {
-  std::map<int, std::string> names;
-  for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
+/// A half of the rooms: those of even, or of odd numbers.
+constexpr int kHalves = 2;
+
+int half_of(std::size_t frame) {
+  return static_cast<int>(frame) / world::PracticeScenes::kFramesPerRoom % kHalves;
+}
+
+/// Detectors whose scores were fitted without the rooms of one half each: what a score is worth to a pose is learnt
+/// where the score is as uncertain as it will be.
+std::vector<Detector> unseeing_detectors(const std::vector<training::ScoreExamples>& by_frame,
+                                         const std::set<int>& new_ids, double stiffness, const Forest& forest) {
   DetectionSettings detection = detection_settings(forest);
   detection.threads = 1;
   detection.evidence.threshold = PoseSettings{}.min_score;
-  const Detector detector(forest, detection);
+  std::vector<Detector> detectors;
+  for (int half = 0; half < kHalves; ++half) {
+    std::vector<training::ScoreExamples> others;
+    for (std::size_t f = 0; f < by_frame.size(); ++f) {
+      if (half_of(f) != half) others.push_back(by_frame[f]);
+    }
+    Forest fitted = forest;
+    training::fit_scores(others, new_ids, stiffness, fitted);
+    detectors.emplace_back(std::move(fitted), detection);
+  }
+  return detectors;
+}
+
+/// Each half of the frames is searched by its detector.
+quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, const std::vector<Detector>& detectors,
+                               const quality::PosedModels& models, int threads) {
+  std::map<int, std::string> names;
+  for (const ObjectClass& known : detectors.front().forest().classes) names[known.class_id] = known.name;
   const quality::PoseFinder finder(models, 1);
   quality::FoundPoses found;
   found.frames.resize(frames.size());
@@ -86,6 +110,7 @@ quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, con
     EvaluatedFrame& frame = found.frames[index];
     for (const TrueObject& object : frames[index].objects)
       frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
+    const Detector& detector = detectors[static_cast<std::size_t>(half_of(index))];
     frame.detections = detector.detect(frames[index].frame, workspaces[worker]);
     found.terms[index] = finder.find_in(frames[index].frame, frame);
   });
@@ -117,7 +142,9 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   warn_of(never_seen(frames, objects, new_ids), settings.rooms);
   Profile profile = training::profile_of(forest);
   profile.training.threads = settings.threads;
-  training::train_score_model(validation_source(frames), new_ids, 0, profile, forest);
+  const training::ValidationSource source = validation_source(frames);
+  const std::vector<training::ScoreExamples> examples = training::find_score_examples(source, 0, profile, forest);
+  training::fit_scores(examples, new_ids, source.stiffness, forest);
 
   quality::PosedModels models;
   models.tone = forest.features.tone;
@@ -127,7 +154,8 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
     models.vote_centres[object.name] = object.vote_centre;
     judged_by[object.name] = make_pose_model(object.mesh, false);
   }
-  const quality::FoundPoses found = find_poses(frames, forest, models, settings.threads);
+  const quality::FoundPoses found =
+      find_poses(frames, unseeing_detectors(examples, new_ids, source.stiffness, forest), models, settings.threads);
   std::map<std::string, std::vector<QualityExample>> by_class;
   std::vector<QualityExample> all;
   for (const auto& [name, model] : judged_by) {
@@ -136,10 +164,11 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
     all.insert(all.end(), by_class[name].begin(), by_class[name].end());
   }
   const QualitySettings common = fit_quality_settings(all, QualitySettings{}, 1.0);
+  constexpr double kStiffness = 10.0;  // as of scores: few poses of one object do not tell its weights
   std::map<std::string, QualitySettings> learnt;
   for (const PractisedObject& object : objects) {
     if (new_ids.count(object.in_room.id) > 0)
-      learnt[object.name] = fit_quality_settings(by_class[object.name], common, 1.0);
+      learnt[object.name] = fit_quality_settings(by_class[object.name], common, kStiffness);
   }
   return learnt;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/evidence/relief_tilt.hpp"
 #include "detector/training/pictures/clearing.hpp"
 #include "detector/training/pictures/occluders.hpp"
 
@@ -34,20 +35,31 @@ Patchwork resized_object(const TrainingView& view, double scale, double sharpnes
   return part;
 }
 
-/// What a surface's depth becomes at another distance.
-struct DepthChange {
-  float shift;         // metres
-  double extra_sigma;  // of the noise that the other distance adds, metres
-};
+/// Of the object that is to be pasted into `out`, whose place is known.
+DepthChange depth_change(const TrainingView& view, double distance, const Composite& out) {
+  const Eigen::Vector3d centre = view.T_camera_object.translation();
+  const Eigen::Vector2d view_px = view.frame.camera.project(centre);
+  DepthChange change;
+  change.shift = static_cast<float>(distance - centre.z());
+  change.centre_px = out.origin_px + out.scale * cv::Point2d(view_px.x(), view_px.y());
+  const cv::Point2d& px = change.centre_px;
+  const ReliefTilt there = relief_tilt(out.frame.camera.backproject(px.x, px.y, distance).cast<float>());
+  const ReliefTilt own = relief_tilt(centre.cast<float>());
+  change.tilt = out.frame.camera.metres_per_px(distance) * cv::Point2d(there.right - own.right, there.down - own.down);
+  const double extra_sq = std::pow(axial_noise(distance), 2) - std::pow(axial_noise(centre.z()), 2);
+  change.extra_sigma = std::sqrt(std::max(0.0, extra_sq));
+  return change;
+}
 
-void paste(const Patchwork& part, cv::Point at, const DepthChange& change, Composite& out, Random& random) {
+void paste(const Patchwork& part, cv::Point at, Composite& out, Random& random) {
+  const DepthChange& change = out.depth_change;
   for (int y = 0; y < part.mask.rows; ++y) {
     for (int x = 0; x < part.mask.cols; ++x) {
       if (part.mask.at<std::uint8_t>(y, x) == 0) continue;
       const cv::Point to(at.x + x, at.y + y);
       out.frame.colour.at<cv::Vec3b>(to) = part.colour.at<cv::Vec3b>(y, x);
       const auto noise = static_cast<float>(change.extra_sigma > 0 ? change.extra_sigma * random.normal() : 0.0);
-      out.frame.depth.at<float>(to) = part.depth.at<float>(y, x) + change.shift + noise;
+      out.frame.depth.at<float>(to) = part.depth.at<float>(y, x) + change.at(to) + noise;
       out.mask.at<std::uint8_t>(to) = 255;
     }
   }
@@ -117,7 +129,6 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   const double view_distance = view.T_camera_object.translation().z();
   Composite out;
   out.scale = view_distance / distance * background.camera.fx / view.frame.camera.fx;
-  out.depth_shift = static_cast<float>(distance - view_distance);
   const bool sharpen = settings.sharpened_share > 0.0 && random.uniform() < settings.sharpened_share;
   const Patchwork part = resized_object(view, out.scale, sharpen ? kMostSharpness * random.uniform() : 0.0);
   const cv::Size window(part.mask.cols + 2 * kMargin, part.mask.rows + 2 * kMargin);
@@ -135,10 +146,8 @@ std::optional<Composite> make_composite(const TrainingView& view, const RgbdFram
   Patchwork lit = part;
   if (random.uniform() < settings.cleared_share) clear_haze(lit.mask, lit.colour, random);
   vary_light(lit.colour, settings.light_variation, -0.4, 0.4, random);
-  const double sigma_sq =
-      axial_noise(distance) * axial_noise(distance) - axial_noise(view_distance) * axial_noise(view_distance);
-  const DepthChange change{out.depth_shift, sigma_sq > 0 ? std::sqrt(sigma_sq) : 0.0};
-  paste(lit, cv::Point(kMargin, kMargin), change, out, random);
+  out.depth_change = depth_change(view, distance, out);
+  paste(lit, cv::Point(kMargin, kMargin), out, random);
   out.whole_px = cv::countNonZero(out.mask);
   if (random.uniform() < settings.occluded_share) add_occluder(background, distance, out, random);
   vary_exposure(out.frame.colour, settings.light_variation, random);

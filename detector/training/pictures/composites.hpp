@@ -8,6 +8,17 @@
 
 namespace houghstream::training {
 
+/// What a view's depth becomes at another place: at another distance, and beside the axis (ReliefTilt).
+struct DepthChange {
+  float shift = 0.0F;      ///< metres, at the object's centre
+  cv::Point2d tilt;        ///< metres per pixel of the composite right and down from there
+  cv::Point2d centre_px;   ///< there, in the composite
+  double extra_sigma = 0;  ///< of the noise that the other distance adds, metres
+
+  /// Metres added to the view's depth at a pixel of the composite, but for noise.
+  float at(const cv::Point2d& px) const { return shift + static_cast<float>(tilt.dot(px - centre_px)); }
+};
+
 /// A training view put into a room at another distance, in another light: what the camera could have seen there.
 /// Made from training data only.
 struct Composite {
@@ -17,7 +28,7 @@ struct Composite {
   int whole_px = 0;          ///< pixels of the object, hidden ones included
   double scale = 1.0;        ///< size in the composite over size in the view
   cv::Point2d origin_px;     ///< pixel p of the composite shows pixel (p - origin_px) / scale of the view
-  float depth_shift = 0.0F;  ///< metres added to the view's depth
+  DepthChange depth_change;  ///< of the view's depth
 };
 
 /// Nothing where the object would not fit the frame. `background` is a whole frame, of any camera: the composite is as

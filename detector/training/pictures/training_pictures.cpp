@@ -84,7 +84,7 @@ Eigen::Vector3f centre_offset(const TrainingView& view, const Composite& composi
     const Eigen::Vector2d offset = (centre_px - Eigen::Vector2d(view_px.x, view_px.y)) * composite.scale;
     return {static_cast<float>(offset.x() / camera.fx), static_cast<float>(offset.y() / camera.fy), 0.0F};
   }
-  const Eigen::Vector3d point = camera.backproject(view_px.x, view_px.y, depth - composite.depth_shift);
+  const Eigen::Vector3d point = camera.backproject(view_px.x, view_px.y, depth - composite.depth_change.at(frame_px));
   const Eigen::Vector3d offset = view.T_camera_object.translation() - point;
   return ray_rotation(point.cast<float>()).transpose() * offset.cast<float>();
 }

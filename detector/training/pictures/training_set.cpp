@@ -26,7 +26,7 @@ TrainedView trained_view(const TrainingView& view, std::uint32_t class_index, Sc
   const auto side = [&](int px, double origin_px) { return static_cast<float>(px - 0.5 - origin_px) * metres; };
   out.box = {side(box.x, centre_px.x()), side(box.y, centre_px.y()), side(box.br().x, centre_px.x()),
              side(box.br().y, centre_px.y())};
-  out.appearance = remember_appearance(view.frame, view.mask, box, centre.z());
+  out.appearance = remember_appearance(view.frame, view.mask, box, centre.cast<float>());
   return out;
 }
 

@@ -14,9 +14,12 @@ std::size_t cell(int column, int row) {
   return static_cast<std::size_t>(row * kSide + column);
 }
 
+const Camera kCamera{80, 80, 100, 100, 39.5, 39.5};
+
 /// A 40 pixel wide square, its left half 10 mm nearer and red, its right half 10 mm farther and without depth below.
 Appearance square() {
   RgbdFrame view;
+  view.camera = kCamera;
   view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
   view.depth = cv::Mat(80, 80, CV_32FC1, cv::Scalar(2.0));
   view.colour(cv::Rect(20, 20, 20, 40)).setTo(cv::Scalar(0, 0, 200));
@@ -26,7 +29,7 @@ Appearance square() {
   cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
   const cv::Rect box(20, 20, 40, 40);
   mask(box).setTo(255);
-  return remember_appearance(view, mask, box, 1.0);
+  return remember_appearance(view, mask, box, {0.0F, 0.0F, 1.0F});
 }
 
 TEST(Appearance, DepthIsRelativeToTheCentreInMillimetres) {
@@ -43,6 +46,27 @@ TEST(Appearance, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
   EXPECT_EQ(seen.beside[cell(kSide - 1, 6)], 10);
   EXPECT_EQ(seen.beside[cell(kRim, kRim)], Appearance::kBeside);  // on the object
   EXPECT_EQ(seen.beside[cell(6, kSide - 1)], Appearance::kBeside);
+}
+
+TEST(Appearance, OffTheAxisReliefIsAsItLiesAcrossTheRay) {
+  const Eigen::Vector3f centre(0.3F, 0.0F, 1.0F);
+  RgbdFrame view;
+  view.camera = {80, 80, 100, 100, 9.5, 39.5};  // the centre at pixel (39.5, 39.5)
+  view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
+  view.depth = cv::Mat(80, 80, CV_32FC1);
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 80; ++x) {  // a plane across the ray to the centre: (P - C) . C = 0
+      const Eigen::Vector3f ray = view.camera.backproject(x, y, 1.0).cast<float>();
+      view.depth.at<float>(y, x) = centre.squaredNorm() / ray.dot(centre);
+    }
+  }
+  cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
+  const cv::Rect box(30, 30, 20, 20);
+  mask(box).setTo(255);
+  const Appearance seen = remember_appearance(view, mask, box, centre);
+  for (int row = kRim; row < kSide - kRim; ++row) {
+    for (int column = kRim; column < kSide - kRim; ++column) EXPECT_NEAR(seen.mm[cell(column, row)], 0, 2);
+  }
 }
 
 TEST(Appearance, ColoursAreLab) {

@@ -19,7 +19,7 @@ inline TrainedView remembered_view() {
   const auto side = [&](int px, double centre) { return static_cast<float>((px - 0.5 - centre) * metres); };
   TrainedView out;
   out.box = {side(box.x, 159.5), side(box.y, 119.5), side(box.br().x, 159.5), side(box.br().y, 119.5)};
-  out.appearance = remember_appearance(view.frame, view.mask, box, kDistance);
+  out.appearance = remember_appearance(view.frame, view.mask, box, {0.0F, 0.0F, kDistance});
   return out;
 }
 

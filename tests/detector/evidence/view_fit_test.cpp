@@ -33,6 +33,16 @@ TEST(ViewFit, TheViewItselfFitsWholly) {
   EXPECT_GT(box_iou(result.visible_box_px, cv::Rect2f(cv::boundingRect(view.mask))), 0.9F);
 }
 
+TEST(ViewFit, FitsWhereverInThePictureTheObjectFacesTheCamera) {
+  for (const cv::Point2d at : {cv::Point2d(30, 119.5), cv::Point2d(290, 119.5), cv::Point2d(280, 200)}) {
+    RgbdFrame frame = toy::room(5);
+    toy::put_tile(0, at.x, at.y, kDistance, frame);
+    const ViewFit result = fit(frame, frame.camera.backproject(at.x, at.y, kDistance).cast<float>());
+    EXPECT_GT(result.visible, 0.97F) << at;
+    EXPECT_LT(result.unevenness, 0.2F) << at;
+  }
+}
+
 TEST(ViewFit, ADepthErrorOfAVoteIsForgivenAndLargerOnesAreNot) {
   EXPECT_GT(fit(tile_frame(), {0, 0, kDistance + 0.02F}).visible, 0.9F);
   EXPECT_LT(fit(tile_frame(), {0, 0, kDistance - 0.2F}).visible, 0.1F);

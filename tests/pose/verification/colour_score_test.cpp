@@ -51,6 +51,18 @@ TEST(ColourScore, ADimmerAndYellowerLightDecidesNothing) {
   EXPECT_GT(agreement(frame, box, kPose), before - 0.12F);
 }
 
+TEST(ColourScore, WhereTheCameraWasAtItsLimitNothingIsCompared) {
+  const Mesh box = printed_box();
+  RgbdFrame frame = coloured_frame(box, kPose, 1);
+  const ColourComparison before = compare(frame, box, kPose).value();
+  frame.colour.rowRange(200, 250).setTo(cv::Scalar::all(255));  // a highlight across the box
+  const ColourComparison after = compare(frame, box, kPose).value();
+  EXPECT_LT(after.points, before.points - 50);
+  EXPECT_GT(after.agreement, before.agreement - 0.1F);
+  frame.colour.setTo(cv::Scalar(60, 120, 255));
+  EXPECT_FALSE(compare(frame, box, kPose)) << "one channel is enough";
+}
+
 /// The picture with its colours' distance from grey times `strength`.
 RgbdFrame with_saturation(RgbdFrame frame, double strength) {
   cv::Mat grey;

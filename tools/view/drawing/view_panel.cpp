@@ -114,7 +114,7 @@ std::string camera_heading(const FrameId& frame, const std::vector<std::string>&
 
 std::string objects_heading(const ViewedFrame& viewed, float min_score) {
   const std::size_t shown = viewed.detections.detections.size();
-  if (min_score <= 0.0F) return fmt::format("{} objects, all that were sent", shown);
+  if (min_score <= 0.0F) return fmt::format("{} objects, all that are reported", shown);
   return fmt::format("{} of {} objects, from score {:.2f}", shown, shown + viewed.weak, min_score);
 }
 

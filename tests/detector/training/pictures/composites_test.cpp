@@ -41,12 +41,12 @@ TEST(Composites, SizeAndDepthChangeButReliefStaysInMetres) {
     const auto composite = compose(view, distance, 3, plain());
     ASSERT_TRUE(composite);
     EXPECT_DOUBLE_EQ(composite->scale, 0.7 / distance);
-    EXPECT_NEAR(composite->depth_shift, distance - 0.7, 1e-6);
+    EXPECT_NEAR(composite->depth_change.shift, distance - 0.7, 1e-6);
     const cv::Rect box = cv::boundingRect(composite->mask);
     EXPECT_NEAR(box.width, cv::boundingRect(view.mask).width * 0.7 / distance, 1.0) << distance;
     const cv::Mat tile = composite->frame.depth(box);
     const double middle = cv::mean(tile.col(box.width / 2))[0];
-    const double side = cv::mean(tile.col(0))[0];
+    const double side = 0.5 * (cv::mean(tile.col(0))[0] + cv::mean(tile.col(tile.cols - 1))[0]);  // it faces the camera
     EXPECT_NEAR(middle, distance + 0.015, 0.002) << distance;
     EXPECT_NEAR(middle - side, 0.0145, 0.002) << distance;
   }
@@ -81,6 +81,24 @@ TEST(Composites, AtTheViewsDistanceTheObjectIsPastedAsItIs) {
   const cv::Rect to = cv::boundingRect(composite->mask);
   EXPECT_TRUE(same_values(view.frame.colour(from), composite->frame.colour(to)));
   EXPECT_TRUE(std::isnan(composite->frame.depth(to).at<float>(120 - from.y, 160 - from.x)));
+}
+
+TEST(Composites, TheObjectFacesTheRoomsCameraWhereItIsPut) {
+  TrainingView view = tile_view();
+  view.frame.depth.setTo(0.7F, view.mask);
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const auto composite = compose(view, 0.7, seed, plain());
+    ASSERT_TRUE(composite);
+    const cv::Rect box = cv::boundingRect(composite->mask);
+    const Camera& camera = composite->frame.camera;
+    const auto at = [&](int x, int y) { return static_cast<double>(composite->frame.depth.at<float>(y, x)); };
+    const Eigen::Vector3d left = camera.backproject(box.x, box.y, at(box.x, box.y));
+    const Eigen::Vector3d right = camera.backproject(box.br().x - 1, box.y, at(box.br().x - 1, box.y));
+    const Eigen::Vector3d low = camera.backproject(box.x, box.br().y - 1, at(box.x, box.br().y - 1));
+    const Eigen::Vector3d middle = 0.5 * (right + low);
+    EXPECT_NEAR((right - left).normalized().dot(middle.normalized()), 0.0, 0.03) << seed;
+    EXPECT_NEAR((low - left).normalized().dot(middle.normalized()), 0.0, 0.03) << seed;
+  }
 }
 
 TEST(Composites, AroundTheObjectTheRoomIsUntouched) {

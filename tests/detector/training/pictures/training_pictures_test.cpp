@@ -95,17 +95,19 @@ TEST(TrainingPictures, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
   }
 }
 
-/// How steep the middle of the object seems, 0 to 127; the derivatives are the first planes.
-double slope(const TrainingPicture& picture) {
+/// How unevenly steep the middle of the object seems, 0 to 127; the derivatives are the first planes.
+double unevenness(const TrainingPicture& picture) {
   constexpr int kReach = 8;  // pixels
-  double sum = 0.0;
+  std::vector<double> slopes;
   for (int y = -kReach; y <= kReach; ++y) {
     for (int x = -kReach; x <= kReach; ++x) {
-      sum +=
-          std::abs(picture.features.at(picture.features.width() / 2 + x, picture.features.height() / 2 + y)[0] - 128);
+      slopes.push_back(picture.features.at(picture.features.width() / 2 + x, picture.features.height() / 2 + y)[0]);
     }
   }
-  return sum / ((2 * kReach + 1) * (2 * kReach + 1));
+  cv::Scalar mean;
+  cv::Scalar deviation;
+  cv::meanStdDev(slopes, mean, deviation);
+  return deviation[0];
 }
 
 TEST(TrainingPictures, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
@@ -116,8 +118,8 @@ TEST(TrainingPictures, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
   double smooth = 0.0;
   double rough = 0.0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    smooth += slope(picture_of(round_view(), single, seed));
-    rough += slope(picture_of(round_view(), five, seed));
+    smooth += unevenness(picture_of(round_view(), single, seed));
+    rough += unevenness(picture_of(round_view(), five, seed));
   }
   EXPECT_GT(rough, 2.0 * smooth);
 }
@@ -182,7 +184,7 @@ TEST(TrainingPictures, WithDepthTheAreaIsThatOfTheSurfaceAtAnyDistance) {
     EXPECT_NEAR(picture.whole_area, area, 0.08 * area) << distance;
     for (const TrainingSample& sample : picture.samples) {
       if (sample.label == 0) continue;
-      ASSERT_NEAR(sample.scale, patch_scale(profile.patch, working, distance), 3) << distance;
+      ASSERT_NEAR(sample.scale, patch_scale(profile.patch, working, distance), 6) << distance;  // it faces the camera
     }
   }
 }

@@ -41,7 +41,7 @@ const LinemodDetector& toy_detector() {
 Detections find_tile(int kind, double distance, cv::Point2d centre, cv::Rect& box_px) {
   RgbdFrame frame = toy::room(9);
   frame.id.utime = 17;
-  box_px = cv::boundingRect(toy::put_tile(kind, centre.x, centre.y, distance, frame));
+  box_px = cv::boundingRect(toy::put_upright_tile(kind, centre.x, centre.y, distance, frame));
   return toy_detector().detect(frame);
 }
 
@@ -97,7 +97,7 @@ TEST(LinemodDetector, TheSameWhateverTheNumberOfThreads) {
   LinemodTemplateSettings one = quick_templates();
   one.threads = 1;
   RgbdFrame frame = toy::room(9);
-  toy::put_tile(0, 110, 130, 0.8, frame);
+  toy::put_upright_tile(0, 110, 130, 0.8, frame);
   const Detections a = LinemodDetector(toy_views(), one, {}).detect(frame);
   const Detections b = toy_detector().detect(frame);
   ASSERT_EQ(a.detections.size(), b.detections.size());
