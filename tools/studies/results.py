@@ -61,7 +61,7 @@ def section(title, source, command, *content):
 def demo_table(summary):
     names = list(summary["auc"])
     recall, processed = "pose_recall_add_s_10", summary["processed"]
-    listed = [("AUC", summary["auc"]), ("recall from the default score on", summary["recall"])]
+    listed = [("AUC", summary["auc"]), ("recall at the defaults", summary["recall"])]
     if summary["bop19_ar"]:
         listed += [
             ("ADD-S recall", summary[recall]),
@@ -85,8 +85,8 @@ def demo_frames(summary):
         f"{stage} {ms(found['p50'])}, {ms(found['p99'])}" for stage, found in summary["latency_ms"].items()
     )
     text = ("{frames_sent} frames sent, {frames_detected} detected, {frames_skipped} passed over for newer ones, {frames_lost} "
-            "lost; {frames_with_poses} with poses; {rate_hz:.1f} results a second; false detections from the default score "
-            "on: {false_detections}; training {train_seconds:.0f} s. ").format(**summary)  # fmt: skip
+            "lost; {frames_with_poses} with poses; {rate_hz:.1f} results a second; false detections at the "
+            "defaults: {false_detections}; training {train_seconds:.0f} s. ").format(**summary)  # fmt: skip
     clutter = summary.get("clutter")
     if clutter:
         text += "Clutter: {false_detections} detections, all false, in {frames_processed} frames. ".format(**clutter)

@@ -149,7 +149,7 @@ def settings(options, datasets):
     told["ranked"] = " ".join(RANKED)
     told["measured"] = (
         "ar, ar_nothing_withheld, auc and ece: every detection, ranked; precision, recall, published_good_fraction, "
-        "ar_at_default and ms: as the programs run, from the default score on; rivals: the same boxes, score from 0.1"
+        "ar_at_default and ms: as the programs run; rivals: the same boxes, score from 0.1"
     )
     return told
 
