@@ -32,4 +32,11 @@ struct PoseSettings {
   int threads = 1;                                       ///< any number gives the same poses
 };
 
+/// Publishes poses from this quality on, whatever their detections and their classes are.
+inline void publish_from(float quality, PoseSettings& settings) {
+  const auto publish = [&](QualitySettings& judged_by) { judged_by.least = judged_by.least_of_candidates = quality; };
+  publish(settings.quality);
+  for (auto& [name, learnt] : settings.class_quality) publish(learnt);
+}
+
 }  // namespace houghstream

@@ -22,10 +22,6 @@ PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_
           compare_colours(seen.colours, look, tolerance)};
 }
 
-void publish_from(float quality, QualitySettings& settings) {
-  settings.least = settings.least_of_candidates = quality;
-}
-
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
   // Added to shares and counts, so that none weighs too much where there is little of it.
   constexpr double kShare = 0.01;

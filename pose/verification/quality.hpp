@@ -54,9 +54,6 @@ struct QualitySettings {
   float least_of_candidates = 0.8F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
 };
 
-/// Publishes poses from this quality on, whatever their detections are.
-void publish_from(float quality, QualitySettings& settings);
-
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);
 
 /// Probability in [0, 1] that the pose is right: the object is the one that was detected, and its ADD-S error is below

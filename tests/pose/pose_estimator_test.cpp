@@ -143,7 +143,7 @@ TEST(PoseEstimator, WhatIsHardlyAnObjectIsNotLookedAt) {
   weak.score = 0.99F * settings.min_score;
   EXPECT_EQ(estimator_for("mug", mug()).estimate(scene.frame, only(weak)).poses.at(0).status, PoseStatus::kLowScore);
   settings.min_score = 0.0F;
-  publish_from(0.0F, settings.quality);
+  publish_from(0.0F, settings);
   const ObjectPose found = estimator_for("mug", mug(), settings).estimate(scene.frame, only(weak)).poses.at(0);
   EXPECT_EQ(found.status, PoseStatus::kValid);
 }
@@ -170,6 +170,17 @@ TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   doubtful.least = 0.0F;
   EXPECT_EQ(found("mug", doubtful).status, PoseStatus::kValid) << "by its own least quality";
   EXPECT_EQ(found("box", doubtful).quality, by_default.quality) << "another class's";
+}
+
+TEST(PublishFrom, IsTheLimitOfEachClassAndOfCandidates) {
+  PoseSettings settings;
+  settings.class_quality["mug"].bias = -1.0;
+  publish_from(0.3F, settings);
+  for (const QualitySettings& judged_by : {settings.quality, settings.class_quality["mug"]}) {
+    EXPECT_EQ(judged_by.least, 0.3F);
+    EXPECT_EQ(judged_by.least_of_candidates, 0.3F);
+  }
+  EXPECT_EQ(settings.class_quality["mug"].bias, -1.0);
 }
 
 TEST(PoseEstimator, ACandidateHasALimitOfItsOwn) {

@@ -281,7 +281,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 static EvaluateOptions with_store(EvaluateOptions options) {
   const float published = options.objects.empty() ? EvidenceSettings{}.threshold : kStoreThreshold;
   options.rules.operating_score = options.operating_score.value_or(published);
-  if (options.min_quality) publish_from(*options.min_quality, options.pose.quality);
+  if (options.min_quality) publish_from(*options.min_quality, options.pose);
   if (options.objects.empty()) return options;
   if (!options.search.threshold) options.search.threshold = kStoreThreshold;
   require(options.forest.empty() && options.models.empty(),

@@ -17,8 +17,7 @@ PoseEstimator make_estimator(const std::map<std::string, Mesh>& models, PoseSett
 }
 
 PoseSettings withholding_none(PoseSettings settings) {
-  publish_from(0.0F, settings.quality);
-  for (auto& [name, learnt] : settings.class_quality) publish_from(0.0F, learnt);
+  publish_from(0.0F, settings);
   return settings;
 }
 

@@ -84,7 +84,7 @@ void run_with_models(PoseOptions options) {
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   const int threads = threads_to_start(options.settings.threads);
   std::map<std::string, Mesh> meshes = load_models(options, threads);
-  if (options.min_quality) publish_from(*options.min_quality, options.settings.quality);
+  if (options.min_quality) publish_from(*options.min_quality, options.settings);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
   const auto estimator = warmed_up(std::move(meshes), options.settings, {threads, made_up.get()});
   LcmBus bus(options.url, options.output_log);

@@ -13,7 +13,7 @@ PoseSettings withholding_none(const PosedModels& models, int threads) {
   settings.threads = threads;
   settings.model.vote_centres = models.vote_centres;
   settings.region.tone = models.tone;
-  publish_from(0.0F, settings.quality);
+  publish_from(0.0F, settings);
   return settings;
 }
 

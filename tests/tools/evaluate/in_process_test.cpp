@@ -61,7 +61,7 @@ TEST(InProcess, PosesOfWeakDetectionsAreKnownButNotPublished) {
   const BopScene scene = two_tiles("in_process_weak");
   PublishingRules rules;
   rules.score = 0.5F;
-  publish_from(0.0F, rules.pose.quality);
+  publish_from(0.0F, rules.pose);
   rules.pose.min_score = 0.0F;
   const std::vector<EvaluatedFrame> ranked = run(scene, 0.0F, rules);
   const std::vector<EvaluatedFrame> usual = run(scene, 0.5F, rules);
@@ -97,9 +97,9 @@ TEST(InProcess, PosesOfLowQualityAreKnownButNotPublished) {
   const BopScene scene = two_tiles("in_process_quality");
   PublishingRules rules;
   rules.score = 0.5F;
-  publish_from(0.0F, rules.pose.quality);
+  publish_from(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
-  publish_from(2.0F, rules.pose.quality);
+  publish_from(2.0F, rules.pose);
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(count_poses(none[i].poses), 0);
@@ -113,7 +113,7 @@ TEST(InProcess, CandidatesHavePosesThatArePublishedByALimitOfTheirOwn) {
   const BopScene scene = two_tiles("in_process_candidates");
   PublishingRules rules{0.5F, 0.0F, {}};
   rules.pose.min_score = 0.0F;
-  publish_from(0.0F, rules.pose.quality);
+  publish_from(0.0F, rules.pose);
   const std::vector<EvaluatedFrame> all = run(scene, 0.5F, rules);
   rules.pose.quality.least_of_candidates = 2.0F;
   const std::vector<EvaluatedFrame> none = run(scene, 0.5F, rules);

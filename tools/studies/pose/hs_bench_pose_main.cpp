@@ -40,8 +40,7 @@ BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, const Bench
   settings.registration.engine = register_pcl;
   makers.each_frame[kPcl] = estimator_maker(meshes, settings);
   settings = options.pose;
-  publish_from(0.0F, settings.quality);
-  for (auto& [name, learnt] : settings.class_quality) publish_from(0.0F, learnt);
+  publish_from(0.0F, settings);
   makers.each_frame[kUnchecked] = estimator_maker(meshes, settings);
   if (options.no_rivals) return makers;
   makers.rivals[kPrerejective] = rival_maker(make_prerejective_rival(meshes, options.pose, PrerejectiveSettings{}));

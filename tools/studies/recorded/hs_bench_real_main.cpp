@@ -50,7 +50,7 @@ void run(const BenchOptions& options) {
   pose_settings.threads = settings.threads;
   const PoseEstimator estimator(models, pose_settings);
   pose_settings.min_score = 0.0F;
-  publish_from(0.0F, pose_settings.quality);
+  publish_from(0.0F, pose_settings);
   const PoseEstimator unchecked(models, pose_settings);
   const DrawnBoxes drawn = read_drawn_boxes(std::filesystem::path(options.scenes) / "boxes.json");
   const RealBench bench = run_real_bench(options.scenes, drawn, {detector, estimator, unchecked, models}, object);
