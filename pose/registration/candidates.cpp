@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/types/frame_id.hpp"
 #include "pose/model/angles.hpp"
 #include "pose/verification/depth_score.hpp"
 
@@ -136,7 +137,7 @@ std::vector<PoseCandidate> place_candidates(const SeenObject& seen, const std::v
 std::vector<PoseCandidate> earlier_candidates(const SeenObject& seen, const std::string& class_name,
                                               const ObjectPoses& earlier, const WarmStartSettings& settings) {
   std::vector<PoseCandidate> candidates;
-  const double age_s = 1e-6 * static_cast<double>(seen.frame.id.utime - earlier.frame.utime);
+  const double age_s = seconds_between(earlier.frame.utime, seen.frame.id.utime);
   if (!(age_s > 0.0 && age_s <= settings.max_age_s)) return candidates;
   for (const ObjectPose& pose : earlier.poses) {
     if (!pose.T_camera_object || pose.class_name != class_name) continue;

@@ -123,7 +123,7 @@ void CameraPlaces::add(const std::string& camera, std::int64_t utime, const Eige
 }
 
 CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) const {
-  const auto seconds = [&](std::int64_t other) { return static_cast<double>(other - utime) * 1e-6; };
+  const auto seconds = [&](std::int64_t other) { return seconds_between(utime, other); };
   if (const auto fixed = fixed_.find(camera); fixed != fixed_.end()) return {fixed->second, false, ""};
   const auto moving = moving_.find(camera);
   if (moving == moving_.end()) return {std::nullopt, true, fmt::format("no transform of {} has come", camera)};
@@ -143,7 +143,7 @@ CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) cons
             fmt::format("the first transform of {} is {:.3f} s later: do the clocks agree?", camera,
                         seconds(after->utime))};
   const Sample& before = *(after - 1);
-  const double gap = static_cast<double>(after->utime - before.utime) * 1e-6;
+  const double gap = seconds_between(before.utime, after->utime);
   if (gap > kMostGapS && !equal_places(before.T_world_camera, after->T_world_camera))
     return {
         std::nullopt, false,

@@ -1,7 +1,8 @@
 #include "pose/tracks/extrinsic_check.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+
+#include "pipeline/types/frame_id.hpp"
 
 namespace houghstream::tracks {
 namespace {
@@ -33,7 +34,8 @@ void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_wo
           {pose.class_name, T_world_camera * *pose.T_camera_object * centre_of(models, pose.class_name)});
   }
   for (const auto& [channel, other] : last_) {
-    if (channel == poses.frame.channel || std::abs(other.utime - view.utime) > kTogetherUs) continue;
+    const std::int64_t apart_us = microseconds_between(view.utime, other.utime);
+    if (channel == poses.frame.channel || apart_us > kTogetherUs || apart_us < -kTogetherUs) continue;
     const bool first = poses.frame.channel < channel;
     std::deque<Eigen::Vector3d>& offsets = offsets_[std::minmax(poses.frame.channel, channel)];
     for (const Seen& here : view.objects) {

@@ -7,6 +7,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/types/frame_id.hpp"
 
 namespace houghstream::track {
 namespace {
@@ -71,7 +72,7 @@ DrakeScene::Messages DrakeScene::messages(const WorldObjects& world) {
   constexpr std::int64_t kAgainUs = 10000000;
   Messages out;
   std::vector<std::string> links = shown_links(world);
-  const std::int64_t age = world.frame.utime - load_utime_;
+  const std::int64_t age = microseconds_between(load_utime_, world.frame.utime);
   if (changed_ || !loaded_ || links != *loaded_ || age >= kAgainUs || age <= -kAgainUs) {
     out.load = load_message(world);
     loaded_ = std::move(links);

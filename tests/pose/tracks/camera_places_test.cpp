@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <limits>
 
 #include "tests/drivers/test_files.hpp"
 
@@ -54,6 +55,22 @@ TEST(CameraPlaces, ACameraThatStandsNeedsFewTransformsAFixedOneNone) {
   EXPECT_TRUE(places.at("LEFT", 9900000).T_world_camera.has_value());
   places.fix("RIGHT", at(0.7));
   EXPECT_TRUE(places.at("RIGHT", 1).T_world_camera->isApprox(at(0.7)));
+}
+
+TEST(CameraPlaces, TimesMayBeAny) {
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  CameraPlaces places;
+  places.add("MOVING", kFirst, at(0.0));
+  places.add("MOVING", kLast, at(0.1));
+  EXPECT_NE(places.at("MOVING", 0).reason.find("s apart, expected at most 0.5 s"), std::string::npos);
+  places.add("STANDING", kFirst, at(0.2));
+  places.add("STANDING", kLast, at(0.2));
+  EXPECT_TRUE(places.at("STANDING", 0).T_world_camera->isApprox(at(0.2)));
+  places.add("LATER", kLast, at(0.0));
+  EXPECT_NE(places.at("LATER", kFirst).reason.find("is 9223372036854.775 s later"), std::string::npos);
+  places.add("EARLIER", kFirst, at(0.0));
+  EXPECT_NE(places.at("EARLIER", kLast).reason.find("is 9223372036854.775 s older"), std::string::npos);
 }
 
 TEST(CameraPlaces, OursAreReadWithTheirParents) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/pose/tracks/tracked_scene.hpp"
 
 namespace houghstream::tracks {
@@ -60,6 +62,21 @@ TEST(ExtrinsicCheck, CamerasThatSeeAnObjectInTwoPosesThatLookTheSameAgree) {
   }
   ASSERT_EQ(check.pairs().size(), 1U);
   EXPECT_LT(check.pairs()[0].offset_m.norm(), 1e-6);
+}
+
+TEST(ExtrinsicCheck, FramesThatAreAsFarApartAsTimesCanBeAreNotCompared) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  ExtrinsicCheck check;
+  for (int i = 0; i < 30; ++i) {
+    scene.channel = "LEFT";
+    scene.utime = std::numeric_limits<std::int64_t>::min();
+    check.add(scene.poses(), scene.T_world_camera, {});
+    scene.channel = "RIGHT";
+    scene.utime = std::numeric_limits<std::int64_t>::max();
+    check.add(scene.poses(), scene.T_world_camera, {});
+  }
+  EXPECT_TRUE(check.pairs().empty());
 }
 
 }  // namespace

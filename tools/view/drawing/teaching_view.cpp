@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/types/frame_id.hpp"
 #include "tools/view/drawing/overlay.hpp"
 
 namespace houghstream::view {
@@ -26,7 +26,8 @@ cv::Scalar colour_of(TeachingState state) {
 bool is_of(const Teaching& teaching, const FrameId& frame) {
   constexpr std::int64_t kNearlyUs = 250'000;  // an object that is shown slowly is about there still
   const bool same_camera = teaching.frame.channel.empty() || teaching.frame.channel == frame.channel;
-  return same_camera && std::abs(teaching.frame.utime - frame.utime) <= kNearlyUs;
+  const std::int64_t apart_us = microseconds_between(frame.utime, teaching.frame.utime);
+  return same_camera && apart_us <= kNearlyUs && apart_us >= -kNearlyUs;
 }
 
 /// A part of the picture, made darker for what is written on it.
