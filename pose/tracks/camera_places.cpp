@@ -110,6 +110,8 @@ void CameraPlaces::fix(const std::string& camera, const Eigen::Isometry3d& T_wor
 }
 
 void CameraPlaces::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
+  require(moving_.size() < kMostMoving || moving_.count(camera) > 0,
+          "transforms of more than {} cameras, expected at most that many", kMostMoving);
   std::deque<Sample>& samples = moving_[camera];
   if (!samples.empty() && seconds_between(utime, samples.back().utime) > 1.0) samples.clear();
   auto place = samples.end();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -24,10 +25,13 @@ class CameraPlaces {
  public:
   /// Transforms farther apart say nothing of the time between them, unless they are equal.
   static constexpr double kMostGapS = 0.5;
+  /// Cameras that move; further ones are refused: a sender of rubbish may make up channels without end.
+  static constexpr std::size_t kMostMoving = 256;
 
   void fix(const std::string& camera, const Eigen::Isometry3d& T_world_camera);
 
-  /// A transform of a camera that moves. One that is older than the last one by more than a second begins anew.
+  /// A transform of a camera that moves. One that is older than the last one by more than a second begins anew. Throws
+  /// InputError for one camera too many.
   void add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera);
 
   /// Whether anything is known of any camera.

@@ -73,6 +73,16 @@ TEST(CameraPlaces, TimesMayBeAny) {
   EXPECT_NE(places.at("EARLIER", kLast).reason.find("is 9223372036854.775 s older"), std::string::npos);
 }
 
+TEST(CameraPlaces, ACameraTooManyIsRefusedAndTheOthersGoOn) {
+  CameraPlaces places;
+  for (std::size_t i = 0; i < CameraPlaces::kMostMoving; ++i) places.add("CAMERA_" + std::to_string(i), 1000000, at(0));
+  EXPECT_EQ(error_of([&] { places.add("FORGED", 1000000, at(0)); }),
+            "transforms of more than 256 cameras, expected at most that many");
+  places.add("CAMERA_0", 1100000, at(1.0));
+  EXPECT_TRUE(places.at("CAMERA_0", 1050000).T_world_camera->isApprox(at(0.5), 1e-9));
+  EXPECT_EQ(places.at("FORGED", 1000000).reason, "no transform of FORGED has come");
+}
+
 TEST(CameraPlaces, OursAreReadWithTheirParents) {
   const auto places = read_camera_places(written("ours.yaml",
                                                  "cameras:\n"
