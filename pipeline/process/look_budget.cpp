@@ -6,6 +6,7 @@ bool LookBudget::is_due(const FrameId& frame) {
   constexpr double kHurry = 0.25;
   constexpr double kSlack = 0.002;  // seconds, for times that tremble
   if (!(looks_per_second_ > 0.0)) return true;
+  if (cameras_.size() >= kCameras && cameras_.count(frame.channel) == 0) return true;
   Camera& camera = cameras_[frame.channel];
   const double passed_s = seconds_between(camera.last_utime, frame.utime);
   const double wait_s = (camera.hurried ? kHurry : 1.0) / looks_per_second_;

@@ -13,6 +13,10 @@ namespace houghstream {
 /// times. Not thread-safe.
 class LookBudget {
  public:
+  /// Cameras whose looks are remembered; every frame of a further one is looked at. A sender of rubbish may make up
+  /// channels without end.
+  static constexpr std::size_t kCameras = 64;
+
   /// 0: at every frame.
   explicit LookBudget(double looks_per_second) : looks_per_second_(looks_per_second) {}
 
@@ -23,9 +27,6 @@ class LookBudget {
   /// The camera's next look comes after a quarter of the time, once. One that has had no look is left alone: results
   /// may name any camera.
   void hurry(const std::string& channel);
-
-  /// Cameras that have had a look.
-  std::size_t cameras() const { return cameras_.size(); }
 
  private:
   struct Camera {

@@ -41,11 +41,20 @@ TEST(LookBudget, ALossBringsTheNextLookForwardOnce) {
   EXPECT_TRUE(budget.is_due({"LEFT", 250000}));
 }
 
-TEST(LookBudget, ALossOfACameraThatIsNotKnownIsForgotten) {
+TEST(LookBudget, ALossOfACameraThatIsNotKnownTakesNoCamerasPlace) {
+  LookBudget budget(5.0);
+  for (std::size_t i = 0; i < LookBudget::kCameras; ++i) budget.hurry("FORGED_" + std::to_string(i));
+  EXPECT_TRUE(budget.is_due({"LEFT", 0}));
+  EXPECT_FALSE(budget.is_due({"LEFT", 40000}));
+}
+
+TEST(LookBudget, EveryFrameOfACameraTooManyIsLookedAt) {
   LookBudget budget(5.0);
   EXPECT_TRUE(budget.is_due({"LEFT", 0}));
-  for (int i = 0; i < 100; ++i) budget.hurry("FORGED_" + std::to_string(i));
-  EXPECT_EQ(budget.cameras(), 1U);
+  for (std::size_t i = 1; i < LookBudget::kCameras; ++i) EXPECT_TRUE(budget.is_due({"FORGED_" + std::to_string(i), 0}));
+  EXPECT_EQ(looks(budget, 3, "LATE"), (std::vector<int>{0, 1, 2}));
+  EXPECT_FALSE(budget.is_due({"LEFT", 40000})) << "the others have theirs";
+  EXPECT_FALSE(budget.is_due({"FORGED_1", 40000}));
 }
 
 TEST(LookBudget, TimesMayBeAny) {
