@@ -32,6 +32,7 @@ struct Track {
 /// When a camera looked last.
 struct CameraClock {
   std::int64_t utime = 0;
+  std::int64_t results = 0;       ///< of the frame of this time; none before the first frame
   double seconds = 0.0;           ///< from the frame before to the one of this time, as far as they count
   std::set<std::string> classes;  ///< that the frame of this time was told of
 };
@@ -64,7 +65,7 @@ struct Tracker::State {
   }
 
   void begin_world();
-  bool begin_frame(const FrameId& frame, double& seconds);
+  const CameraClock* begin_frame(const FrameId& frame);
   std::vector<SeenPose> new_poses(const FrameSeen& seen);
   std::vector<SeenPose> associate(const std::vector<SeenPose>& poses, const std::string& class_name, double seconds);
   void take(Track& track, const SeenPose& pose, double seconds);
@@ -94,8 +95,8 @@ void Tracker::begin_world() {
 std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   State& state = *state_;
   const FrameId& frame = seen.poses.frame;
-  double seconds = 0.0;  // since the camera's last result
-  if (!state.begin_frame(frame, seconds)) return std::nullopt;
+  const CameraClock* clock = state.begin_frame(frame);
+  if (clock == nullptr) return std::nullopt;
   const std::vector<SeenPose> poses = state.new_poses(seen);
   for (Track& track : state.tracks) {
     track.pose.predict(frame.utime);
@@ -105,11 +106,13 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   for (const SeenPose& pose : poses) classes.insert(pose.class_name);
   std::vector<SeenPose> unknown;
   for (const std::string& class_name : classes) {
-    const std::vector<SeenPose> left = state.associate(poses, class_name, state.cameras[frame.channel].seconds);
+    const std::vector<SeenPose> left = state.associate(poses, class_name, clock->seconds);
     unknown.insert(unknown.end(), left.begin(), left.end());
   }
+  // What is not seen is missed once a frame, however many results that has.
+  const double missed_s = clock->results == 1 ? clock->seconds : 0.0;
   for (Track& track : state.tracks) {
-    if (track.there() && !track.seen_now) state.judge_unseen(track, seen, poses, seconds);
+    if (track.there() && !track.seen_now) state.judge_unseen(track, seen, poses, missed_s);
   }
   for (const SeenPose& pose : unknown) state.begin(pose);
   state.confirm(frame.utime);
@@ -126,9 +129,8 @@ void Tracker::State::begin_world() {
   ++world_number;
 }
 
-/// Whether the frame is worked on; `seconds` since the camera's last result, as far as they count: none between two of
-/// one frame.
-bool Tracker::State::begin_frame(const FrameId& frame, double& seconds) {
+/// The camera's clock, which the frame has set; null where the frame is passed over.
+const CameraClock* Tracker::State::begin_frame(const FrameId& frame) {
   constexpr double kUsualS = 1.0 / 30.0;
   constexpr double kMostS = 0.1;
   if (newest_utime != 0 && seconds_between(frame.utime, newest_utime) > 1.0) {
@@ -138,10 +140,11 @@ bool Tracker::State::begin_frame(const FrameId& frame, double& seconds) {
   }
   newest_utime = std::max(newest_utime, frame.utime);
   CameraClock& clock = cameras[frame.channel];
-  if (frame.utime < clock.utime) return false;
-  seconds = clock.utime == 0 ? kUsualS : std::min(kMostS, seconds_between(clock.utime, frame.utime));
-  if (frame.utime != clock.utime) clock = {frame.utime, seconds, {}};
-  return true;
+  if (frame.utime < clock.utime) return nullptr;
+  const double seconds = clock.results == 0 ? kUsualS : std::min(kMostS, seconds_between(clock.utime, frame.utime));
+  if (clock.results == 0 || frame.utime != clock.utime) clock = {frame.utime, 0, seconds, {}};
+  ++clock.results;
+  return &clock;
 }
 
 /// The poses of classes that this frame was not told of yet: another detector's, or all.

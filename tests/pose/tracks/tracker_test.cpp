@@ -265,6 +265,18 @@ TEST(Tracker, ATimeThatGoesBackBeginsANewWorldALateFrameIsPassedOver) {
   EXPECT_TRUE(world.objects.empty());
 }
 
+TEST(Tracker, AWorldMayBeginAtTimeZero) {
+  std::vector<WorldObjects> worlds;
+  for (const std::int64_t begin : {std::int64_t{1000000000}, std::int64_t{0}}) {
+    TrackedScene scene;
+    scene.utime = begin - test::kFrameUs;
+    scene.show({{"can", on_table(0, 0)}});
+    worlds.push_back(scene.frames(4));
+    ASSERT_EQ(worlds.back().objects.size(), 1U) << begin;
+  }
+  EXPECT_EQ(worlds[0].objects[0].probability, worlds[1].objects[0].probability);
+}
+
 TEST(Tracker, AClassThatAFrameWasToldOfIsNotToldAgain) {
   TrackedScene scene;
   scene.show({{"can", on_table(0, 0)}});
