@@ -71,8 +71,7 @@ TEST(ObjectTracker, SaysWhereItWasLostAndGoesOn) {
 TEST(ObjectTracker, FollowsAnObjectThatTurnsBeforeAStillCamera) {
   const Mesh table = table_with({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, ShownScene().camera});
   const Eigen::Isometry3d T_camera_table = test_scene::camera_at(0.3, 0.6, 0.65);
-  Mesh box;
-  test_scene::add_box(ShownScene().box, 0.0, box);
+  const Mesh box = test_scene::box_of({});
   ObjectTracker tracker{TrackerSettings()};
   for (int i = 0; i < 40; ++i) {
     Mesh both = table;

@@ -56,6 +56,13 @@ inline Mesh table_with(const ShownScene& scene) {
   return mesh;
 }
 
+/// The scene's box by itself, where it stands.
+inline Mesh box_of(const ShownScene& scene) {
+  Mesh mesh;
+  add_box(scene.box, scene.disc.z(), mesh);
+  return mesh;
+}
+
 /// The camera at an azimuth and elevation, radians, looking at a point above the origin.
 inline Eigen::Isometry3d camera_at(double azimuth, double elevation, double distance) {
   const Eigen::Vector3d eye(distance * std::cos(elevation) * std::cos(azimuth),

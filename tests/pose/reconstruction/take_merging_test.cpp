@@ -10,8 +10,7 @@ namespace {
 TEST(FuseMaskedViews, PicturesThatCutTheObjectOffDoNotCutTheModelOff) {
   const test_scene::ShownScene scene;
   const Mesh table = test_scene::table_with(scene);
-  Mesh box;
-  test_scene::add_box(scene.box, 0.0, box);
+  const Mesh box = test_scene::box_of(scene);
   MaskedViews views;
   views.whole_pictures = true;
   const cv::Rect lower_half(0, scene.camera.height / 2, scene.camera.width, scene.camera.height / 2);
@@ -51,7 +50,7 @@ Take take_about_box(double azimuth) {
 /// The true box as the model of a take, which says of itself that it agrees badly.
 ShownModel true_model(const Take& take) {
   ShownModel model;
-  test_scene::add_box(test_scene::ShownScene().box, 0.0, model.mesh);
+  model.mesh = test_scene::box_of({});
   compute_normals(model.mesh);
   model.seen.assign(model.mesh.vertices.size(), true);
   for (std::size_t i = 0; i < take.keyframes.size(); ++i) {

@@ -19,8 +19,7 @@ TEST(SeenThrough, WhatIsNoPartOfTheObjectIsSeenThrough) {
     views.push_back({i, keyframe.T_camera_world, {}});
     take.keyframes.push_back(std::move(keyframe));
   }
-  Mesh box;
-  test_scene::add_box(scene.box, 0.0, box);
+  const Mesh box = test_scene::box_of(scene);
   EXPECT_LT(seen_through_share(box, take, views, 1), 0.002);
   Mesh with_finger = box;
   test_scene::add_side({0.5 * scene.box.x(), 0.0, 0.1}, {0.06, 0.0, 0.0}, {0.0, 0.02, 0.04}, with_finger);
@@ -32,8 +31,7 @@ TEST(SeenThrough, WhatIsNoPartOfTheObjectIsSeenThrough) {
 
 TEST(SeenThrough, NothingIsSeenThroughBesideAPixelWithoutDepth) {
   const test_scene::ShownScene scene;
-  Mesh box;
-  test_scene::add_box(scene.box, 0.0, box);
+  const Mesh box = test_scene::box_of(scene);
   Take take;
   take.keyframes.resize(1);
   RgbdFrame& frame = take.keyframes[0].frame;
@@ -48,8 +46,7 @@ TEST(SeenThrough, NothingIsSeenThroughBesideAPixelWithoutDepth) {
 TEST(Disagreement, IsTheMedianDistanceOverTheViewsOfAllTakes) {
   const test_scene::ShownScene scene;
   const Mesh table = test_scene::table_with(scene);
-  Mesh box;
-  test_scene::add_box(scene.box, 0.0, box);
+  const Mesh box = test_scene::box_of(scene);
   Mesh larger;
   test_scene::add_box(scene.box + Eigen::Vector3d(0.01, 0.01, 0.005), 0.0, larger);  // 5 mm on every side
   std::vector<Take> takes(2);
