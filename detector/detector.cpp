@@ -45,6 +45,10 @@ const Forest& Detector::forest() const {
   return state_->forest;
 }
 
+Forest Detector::take_forest() && {
+  return std::move(state_->forest);
+}
+
 const DetectionSettings& Detector::settings() const {
   return state_->settings;
 }

@@ -31,6 +31,8 @@ class Detector {
   Detections detect(const RgbdFrame& frame) const;
 
   const Forest& forest() const;
+  /// The forest, for another detector; this one is not to be used any more.
+  Forest take_forest() &&;
   const DetectionSettings& settings() const;
 
  private:

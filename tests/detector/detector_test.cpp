@@ -73,6 +73,18 @@ TEST(Detector, FindsNearObjectsOfWhichLittleDepthIsMeasured) {
   }
 }
 
+TEST(Detector, AnotherOneFindsTheSameWithTheForestThatItTakes) {
+  RgbdFrame frame = toy::room(77);
+  toy::put_tile(0, 159.5, 119.5, 0.7, frame);
+  DetectionSettings settings;
+  settings.evidence.threshold = 0.5F;
+  Detector one(toy::forest(), settings);
+  const Detections found = one.detect(frame);
+  ASSERT_FALSE(found.detections.empty());
+  const Detector another(std::move(one).take_forest(), settings);
+  expect_same(another.detect(frame), found);
+}
+
 TEST(Detector, FindsNothingInAnEmptyRoom) {
   EXPECT_TRUE(detect(toy::room(78), 1).detections.empty());
 }

@@ -18,6 +18,7 @@ namespace houghstream::teach {
 namespace {
 
 constexpr std::uint64_t kCameras = 0x63616D657261ULL;
+constexpr double kScoreStiffness = 5.0;  // a hundred examples of an object do not tell its weights
 
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
 std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>& objects,
@@ -54,7 +55,6 @@ void warn_of(const std::vector<std::string>& names, int rooms) {
 }
 
 training::ValidationSource validation_source(const std::vector<world::SceneFrame>& frames) {
-  constexpr double kStiffness = 5.0;  // a hundred examples of an object do not tell its weights
   return {static_cast<int>(frames.size()),
           [&frames](int index) {
             const world::SceneFrame& from = frames[static_cast<std::size_t>(index)];
@@ -64,7 +64,7 @@ training::ValidationSource validation_source(const std::vector<world::SceneFrame
               frame.objects.push_back({object.object_id, {}, object.box_visible_px, object.visible_fraction});
             return frame;
           },
-          kStiffness};
+          kScoreStiffness};
 }
 
 /// A half of the rooms: those of even, or of odd numbers.
@@ -74,46 +74,60 @@ int half_of(std::size_t frame) {
   return static_cast<int>(frame) / world::PracticeScenes::kFramesPerRoom % kHalves;
 }
 
-/// Detectors whose scores were fitted without the rooms of one half each: what a score is worth to a pose is learnt
-/// where the score is as uncertain as it will be.
-std::vector<Detector> unseeing_detectors(const std::vector<training::ScoreExamples>& by_frame,
-                                         const std::set<int>& new_ids, double stiffness, const Forest& forest) {
+/// What practice has seen, and of which classes it is to learn.
+struct Practised {
+  const std::vector<world::SceneFrame>& frames;
+  const std::vector<training::ScoreExamples>& examples;  ///< of each frame
+  const std::set<int>& new_ids;
+  int threads;
+};
+
+std::vector<std::size_t> frames_of(int half, const Practised& practised) {
+  std::vector<std::size_t> of_half;
+  for (std::size_t f = 0; f < practised.frames.size(); ++f) {
+    if (half_of(f) == half) of_half.push_back(f);
+  }
+  return of_half;
+}
+
+void fit_scores_without(int half, const Practised& practised, Forest& forest) {
+  std::vector<training::ScoreExamples> others;
+  for (std::size_t f = 0; f < practised.examples.size(); ++f) {
+    if (half_of(f) != half) others.push_back(practised.examples[f]);
+  }
+  training::fit_scores(others, practised.new_ids, kScoreStiffness, forest);
+}
+
+/// Each half of the rooms is searched with scores that were fitted without it: what a score is worth to a pose is
+/// learnt where the score is as uncertain as it will be. The forest, which may be too large to be in memory twice,
+/// takes the scores of one half after the other, and is left with those of the last.
+quality::FoundPoses find_poses(const Practised& practised, const quality::PosedModels& models, Forest& forest) {
   DetectionSettings detection = detection_settings(forest);
   detection.threads = 1;
   detection.evidence.threshold = PoseSettings{}.min_score;
-  std::vector<Detector> detectors;
-  for (int half = 0; half < kHalves; ++half) {
-    std::vector<training::ScoreExamples> others;
-    for (std::size_t f = 0; f < by_frame.size(); ++f) {
-      if (half_of(f) != half) others.push_back(by_frame[f]);
-    }
-    Forest fitted = forest;
-    training::fit_scores(others, new_ids, stiffness, fitted);
-    detectors.emplace_back(std::move(fitted), detection);
-  }
-  return detectors;
-}
-
-/// Each half of the frames is searched by its detector.
-quality::FoundPoses find_poses(const std::vector<world::SceneFrame>& frames, const std::vector<Detector>& detectors,
-                               const quality::PosedModels& models, int threads) {
   std::map<int, std::string> names;
-  for (const ObjectClass& known : detectors.front().forest().classes) names[known.class_id] = known.name;
+  for (const ObjectClass& known : forest.classes) names[known.class_id] = known.name;
   const quality::PoseFinder finder(models, 1);
   quality::FoundPoses found;
-  found.frames.resize(frames.size());
-  found.terms.resize(frames.size());
+  found.frames.resize(practised.frames.size());
+  found.terms.resize(practised.frames.size());
   PerWorker<DetectorWorkspace> workspaces;
-  workspaces.make_room(threads);
-  parallel_for_workers(threads, static_cast<int>(frames.size()), [&](int worker, int f) {
-    const auto index = static_cast<std::size_t>(f);
-    EvaluatedFrame& frame = found.frames[index];
-    for (const TrueObject& object : frames[index].objects)
-      frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
-    const Detector& detector = detectors[static_cast<std::size_t>(half_of(index))];
-    frame.detections = detector.detect(frames[index].frame, workspaces[worker]);
-    found.terms[index] = finder.find_in(frames[index].frame, frame);
-  });
+  workspaces.make_room(practised.threads);
+  for (int half = 0; half < kHalves; ++half) {
+    fit_scores_without(half, practised, forest);
+    Detector detector(std::move(forest), detection);
+    const std::vector<std::size_t> searched = frames_of(half, practised);
+    parallel_for_workers(practised.threads, static_cast<int>(searched.size()), [&](int worker, int i) {
+      const std::size_t index = searched[static_cast<std::size_t>(i)];
+      const world::SceneFrame& seen = practised.frames[index];
+      EvaluatedFrame& frame = found.frames[index];
+      for (const TrueObject& object : seen.objects)
+        frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
+      frame.detections = detector.detect(seen.frame, workspaces[worker]);
+      found.terms[index] = finder.find_in(seen.frame, frame);
+    });
+    forest = std::move(detector).take_forest();
+  }
   return found;
 }
 
@@ -142,9 +156,8 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   warn_of(never_seen(frames, objects, new_ids), settings.rooms);
   Profile profile = training::profile_of(forest);
   profile.training.threads = settings.threads;
-  const training::ValidationSource source = validation_source(frames);
-  const std::vector<training::ScoreExamples> examples = training::find_score_examples(source, 0, profile, forest);
-  training::fit_scores(examples, new_ids, source.stiffness, forest);
+  const std::vector<training::ScoreExamples> examples =
+      training::find_score_examples(validation_source(frames), 0, profile, forest);
 
   quality::PosedModels models;
   models.tone = forest.features.tone;
@@ -154,8 +167,8 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
     models.vote_centres[object.name] = object.vote_centre;
     judged_by[object.name] = make_pose_model(object.mesh, false);
   }
-  const quality::FoundPoses found =
-      find_poses(frames, unseeing_detectors(examples, new_ids, source.stiffness, forest), models, settings.threads);
+  const quality::FoundPoses found = find_poses({frames, examples, new_ids, settings.threads}, models, forest);
+  training::fit_scores(examples, new_ids, kScoreStiffness, forest);
   std::map<std::string, std::vector<QualityExample>> by_class;
   std::vector<QualityExample> all;
   for (const auto& [name, model] : judged_by) {
