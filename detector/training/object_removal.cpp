@@ -14,7 +14,7 @@ std::size_t class_index_of(const Forest& forest, const std::string& name) {
   std::vector<std::string> names;
   for (const ObjectClass& object : forest.classes) names.push_back(object.name);
   const auto found = std::find(names.begin(), names.end(), name);
-  require(found != names.end(), "the forest knows no '{}', but {}", name, fmt::join(names, ", "));
+  require(found != names.end(), "the forest: no '{}', expected one of {}", name, fmt::join(names, ", "));
   require(names.size() > 1, "'{}' is the forest's only object, expected another one to remain", name);
   return static_cast<std::size_t>(found - names.begin());
 }

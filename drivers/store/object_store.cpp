@@ -175,6 +175,15 @@ ObjectStore read_store(const fs::path& folder) {
   return store;
 }
 
+const StoredObject& object_called(const ObjectStore& store, const std::string& name) {
+  std::vector<std::string> names;
+  for (const StoredObject& object : store.objects) names.push_back(object.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  require(found != names.end(), "{}: no '{}', expected one of {}", store.json_file().string(), name,
+          fmt::join(names, ", "));
+  return store.objects[static_cast<std::size_t>(found - names.begin())];
+}
+
 void check_bounds(const Mesh& mesh, const Eigen::AlignedBox3d& stated, const std::string& file) {
   constexpr double kTolerance = 0.02;  // of the largest side
   const Eigen::AlignedBox3d box = mesh_bounds(mesh).cast<double>();

@@ -20,15 +20,6 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
-StoredObject& object_called(const std::string& name, ObjectStore& store) {
-  std::vector<std::string> names;
-  for (const StoredObject& object : store.objects) names.push_back(object.name);
-  const auto found = std::find(names.begin(), names.end(), name);
-  require(found != names.end(), "{}: no '{}', expected one of {}", store.json_file().string(), name,
-          fmt::join(names, ", "));
-  return store.objects[static_cast<std::size_t>(found - names.begin())];
-}
-
 /// All but the list, which comes last: what has none is no store.
 void copy_files(const ObjectStore& from, const fs::path& to) {
   for (const fs::directory_entry& entry : fs::directory_iterator(from.folder)) {
@@ -61,7 +52,7 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   ObjectStore store = store::read_store(folder);  // nothing is made beside what is no store
   store::StoreBuild build(folder);
   store = store::read_store(folder);  // nobody else changes it from here on
-  StoredObject& object = object_called(old_name, store);
+  const int id = store::object_called(store, old_name).id;
   require(!new_name.empty(), "{}: a new name of '{}' without a letter, expected one", store.json_file().string(),
           old_name);
   store::require_utf8_name(new_name, store.json_file().string());
@@ -72,13 +63,15 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   Forest forest = load_forest(store.forest_file());
   copy_files(store, build.folder());
   store.folder = build.folder();
-  object.name = new_name;
+  for (StoredObject& object : store.objects) {
+    if (object.id == id) object.name = new_name;
+  }
   for (ObjectClass& known : forest.classes) {
     if (known.name == old_name) known.name = new_name;
   }
   save_forest(forest, store.forest_file());
   write_names(store);
-  write_pictures(store, object);
+  write_pictures(store, store::object_called(store, new_name));
   store::write_store_json(store);
   load_store_forest(store::read_store(build.folder()));  // what nothing can read takes no store's place
   build.publish();

@@ -274,17 +274,11 @@ void keep(const Contents& old, const std::string& except, ObjectStore& made, std
 }
 
 /// Of all where no names are given.
-std::set<int> ids_of(const std::vector<NamedModel>& models, const std::vector<std::string>& names,
-                     const fs::path& folder) {
+std::set<int> ids_of(const ObjectStore& list, const std::vector<std::string>& names) {
   std::set<int> ids;
-  for (const std::string& name : names) {
-    const bool is_known =
-        std::any_of(models.begin(), models.end(), [&](const NamedModel& model) { return model.name == name; });
-    require(is_known, "{}: no object '{}', expected one that it knows", folder.string(), name);
-  }
-  for (const NamedModel& model : models) {
-    if (names.empty() || std::find(names.begin(), names.end(), model.name) != names.end()) ids.insert(model.object_id);
-  }
+  for (const std::string& name : names) ids.insert(store::object_called(list, name).id);
+  if (!names.empty()) return ids;
+  for (const StoredObject& object : list.objects) ids.insert(object.id);
   return ids;
 }
 
@@ -362,7 +356,7 @@ void remove_from_store(const fs::path& folder, const std::string& name) {
   require_store(folder);
   store::StoreBuild build(folder);
   const Contents old = read_contents(folder);
-  const Forest forest = training::remove_object(*old.forest, name);
+  const Forest forest = training::remove_object(*old.forest, store::object_called(old.list, name).name);
   ObjectStore made = start_store(build.folder());
   made.settings = old.list.settings;
   std::vector<NamedModel> models;
@@ -376,11 +370,11 @@ void practise_store(const fs::path& folder, const PracticeSettings& settings, co
   require_store(folder);
   store::StoreBuild build(folder);
   const Contents old = read_contents(folder);
+  const std::set<int> ids = ids_of(old.list, names);
   ObjectStore made = start_store(build.folder());
   made.settings = old.list.settings;
   std::vector<NamedModel> models;
   keep(old, "", made, models);
-  const std::set<int> ids = ids_of(models, names, folder);
   Forest forest = *old.forest;
   practise_all(models, ids, settings, forest, made);
   write_store(made, models, forest);

@@ -48,6 +48,14 @@ TEST(ObjectStore, WhatIsWrittenIsReadBack) {
   EXPECT_NEAR(mesh_bounds(meshes.at("brick")).sizes().x(), 0.2F, 1e-6F);
 }
 
+TEST(ObjectStore, AnObjectThatIsNotThereIsNamedBesideThoseThatAre) {
+  const fs::path folder = whole_store("store_called");
+  const ObjectStore store = read_store(folder);
+  EXPECT_EQ(object_called(store, "brick").id, 5);
+  EXPECT_EQ(error_of([&] { object_called(store, "drill"); }),
+            (folder / "store.json").string() + ": no 'drill', expected one of mug, brick");
+}
+
 TEST(ObjectStore, AHalfWrittenOneIsRefused) {
   expect_says(error_of_reading("/no/such/store"), {"/no/such/store", "expected an object store"});
   for (const std::string file :
