@@ -2,6 +2,7 @@
 
 #include "drivers/datasets/dataset_sources.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream {
 namespace {
@@ -26,6 +27,15 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& specification)
   if (kind == "uw" && !value.empty()) return open_with_camera(value, open_uw_source);
   if (kind == "tum" && !value.empty()) return open_with_camera(value, open_tum_source);
   fail("source '{}', expected bop:DIR, uw:DIR or tum:DIR", specification);
+}
+
+void require_outside_source(const std::filesystem::path& output, const std::string& specification) {
+  require_other_file(output, specification);
+  const std::size_t colon = specification.find(':');
+  if (colon == std::string::npos) return;
+  const std::string place = specification.substr(colon + 1);
+  require_other_file(output, place);
+  require_other_file(output, place.substr(0, place.find(',')));  // DIR,CAMERA
 }
 
 }  // namespace houghstream

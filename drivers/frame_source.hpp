@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,5 +30,9 @@ class FrameSource {
 /// "uw:DIR,WIDTHxHEIGHT,fx,fy,cx,cy") or "tum:DIR" (a sequence of the TUM RGB-D benchmark, with the same nominal camera
 /// or its own). Throws InputError naming what is known.
 std::unique_ptr<FrameSource> open_frame_source(const std::string& specification);
+
+/// Throws InputError where an output is what "KIND:WHERE", or a plain name, stands for, or lies in it
+/// (require_other_file()).
+void require_outside_source(const std::filesystem::path& output, const std::string& specification);
 
 }  // namespace houghstream

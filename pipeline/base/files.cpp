@@ -38,6 +38,18 @@ bool is_same(int open_file, const fs::path& file) {
   return fstat(open_file, &a) == 0 && stat(file.c_str(), &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
+/// Whether the place is the folder or lies in it, at any depth and by whatever name; it need not be there.
+bool lies_in(const fs::path& place, const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return false;
+  fs::path above = fs::weakly_canonical(fs::absolute(place, error), error);
+  while (!fs::equivalent(above, folder, error)) {
+    if (!above.has_relative_path()) return false;
+    above = above.parent_path();
+  }
+  return true;
+}
+
 /// The file, open, empty and locked.
 int open_locked(const fs::path& partial, const fs::path& file) {
   for (;;) {
@@ -77,6 +89,7 @@ std::string read_file(const fs::path& file, const char* expected) {
 }
 
 void require_other_file(const fs::path& output, const fs::path& input) {
+  if (output.empty()) return;
   std::error_code missing;
   require(!fs::equivalent(output, input, missing), "{}: is the source itself, expected another place to write",
           output.string());
@@ -84,6 +97,8 @@ void require_other_file(const fs::path& output, const fs::path& input) {
   partial += kPartialEnding;
   require(!fs::equivalent(partial, input, missing), "{}: is first written to {}, the source, expected another place",
           output.string(), partial.string());
+  require(!lies_in(output, input), "{}: lies in {}, the source, expected another place to write", output.string(),
+          input.string());
 }
 
 WholeFile::WholeFile(const fs::path& file, const std::string& ending) : file_(followed(file)), partial_(file_) {

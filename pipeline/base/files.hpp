@@ -19,7 +19,7 @@ std::string read_file(const std::filesystem::path& file, const char* expected);
 inline constexpr const char* kPartialEnding = ".partial";
 
 /// Throws InputError where the output, or the FILE.partial that it is first written to, is the input itself, by
-/// whatever name.
+/// whatever name, or lies in it where the input is a folder. An empty output is none.
 void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input);
 
 /// An output that is there as a whole or not at all: it is written as FILE.partial beside FILE and takes FILE's place

@@ -61,6 +61,21 @@ TEST(FrameSource, BadSpecificationsAreRefused) {
   EXPECT_THROW(open_frame_source("uw:" + folder + ",64x48"), InputError);
 }
 
+TEST(FrameSource, NothingIsWrittenIntoASource) {
+  const fs::path folder = write_uw_folder("source_written", ".png");
+  const fs::path file = folder / "desk_1_9.png";
+  for (const std::string& source : {"uw:" + folder.string(), "uw:" + folder.string() + kCameraText}) {
+    EXPECT_THROW(require_outside_source(folder, source), InputError) << source;
+    EXPECT_THROW(require_outside_source(file, source), InputError) << source;
+    EXPECT_THROW(require_outside_source(folder / "new.log", source), InputError) << source;
+    EXPECT_NO_THROW(require_outside_source(folder.string() + ".log", source)) << source;
+  }
+  EXPECT_THROW(require_outside_source(file, "oni:" + file.string()), InputError);
+  EXPECT_THROW(require_outside_source(file, file.string()), InputError);
+  EXPECT_NO_THROW(require_outside_source(folder / "new.log", file.string()));
+  EXPECT_NO_THROW(require_outside_source(folder / "new.log", "openni2"));
+}
+
 TEST(FrameSource, BadUwFoldersAreRefused) {
   EXPECT_THROW(open_frame_source("uw:" + fresh_folder("source_empty").string()), InputError);
   const fs::path no_depth = write_uw_folder("source_no_depth", "_color.png");

@@ -211,6 +211,26 @@ def check_strange_names(tools, folder):
         assert all(part in result.stderr for part in ("no name in common: ", a, b)), result
 
 
+def state_of(folder):
+    """Changes with every file that is written, made or removed."""
+    return {file: (file.stat().st_size, file.stat().st_mtime_ns) for file in folder.rglob("*") if file.is_file()}
+
+
+def check_refusals(tools, folder):
+    """What would cost what is there is refused at the start, in one line that says why; nothing has changed."""
+    scene, log = folder / "scene", folder / "scene.log"
+    before = state_of(folder)
+    for words, part in (
+        (("hs-capture", "--source", f"oni:{log}", "--log", log), f"{log}: is the source itself"),
+        (("hs-capture", "--source", f"bop:{scene}", "--log", scene / "scene_gt.json"), f"lies in {scene}"),
+        (("hs-log", "import", f"bop:{scene}", scene / "scene_camera.json"), f"lies in {scene}"),
+    ):
+        command = [str(word) for word in (tools / words[0], *words[1:])]
+        result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        assert result.returncode == 1 and result.stderr and part in result.stderr.splitlines()[-1], result
+        assert state_of(folder) == before, result
+
+
 def main():
     enter_private_network()
     arguments = read_arguments(__doc__)
@@ -227,6 +247,7 @@ def main():
     check_min_quality(tools, folder)
     check_bad_input(tools, folder)
     check_strange_names(tools, folder)
+    check_refusals(tools, folder)
     print("end to end: everything accounted for")
 
 

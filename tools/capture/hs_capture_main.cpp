@@ -1,3 +1,4 @@
+#include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
       return;
     }
     require(!source.source.empty(), "--source is missing: for instance openni2, oni:FILE or bop:DIR");
+    require_outside_source(log, source.source);
     settings.format.jpeg = !raw_colour;
     settings.format.zip_depth = !raw_depth;
     require(log.empty() || !settings.loop || settings.frames, "--loop into a log never ends; give --frames");

@@ -2,6 +2,7 @@
 
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
+#include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/messages/messages.hpp"
@@ -26,7 +27,7 @@ std::int64_t for_each_frame(const RecordingSettings& settings, LossAccount& loss
 }  // namespace
 
 std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
-  require_other_place(settings, folder);
+  require_outside_source(folder, settings.source);
   BopWriter writer(folder);
   const auto write = [&](const RecordedFrame& recorded) {
     RgbdFrame frame;
@@ -45,7 +46,7 @@ std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folde
 }
 
 std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
-  require_other_place(settings, folder);
+  require_outside_source(folder, settings.source);
   std::error_code error;
   fs::create_directories(folder, error);
   require(!error, "{}: cannot be written: {}", folder.string(), error.message());

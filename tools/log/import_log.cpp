@@ -1,5 +1,6 @@
 #include "tools/log/import_log.hpp"
 
+#include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
@@ -7,7 +8,7 @@ namespace houghstream::log_tools {
 
 std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
                         const std::filesystem::path& log_file, LossAccount& losses) {
-  require_other_place(settings, log_file);
+  require_outside_source(log_file, settings.source);
   const NextFrame next = open_recording(settings, losses);
   std::optional<LogWriter> log;  // not before there is something to write
   std::int64_t frames = 0;

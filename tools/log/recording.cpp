@@ -2,6 +2,7 @@
 
 #include <fmt/ranges.h>
 
+#include <filesystem>
 #include <houghstream/drake_image_array_t.hpp>
 #include <houghstream/kinect_frame_msg_t.hpp>
 #include <memory>
@@ -10,7 +11,6 @@
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
@@ -161,15 +161,6 @@ NextFrame reading(std::shared_ptr<Recording> recording) {
 }
 
 }  // namespace
-
-void require_other_place(const RecordingSettings& settings, const std::filesystem::path& output) {
-  require_other_file(output, settings.source);
-  const std::size_t colon = settings.source.find(':');
-  if (colon == std::string::npos) return;
-  const std::string place = settings.source.substr(colon + 1);
-  require_other_file(output, place);
-  require_other_file(output, place.substr(0, place.find(',')));  // DIR,CAMERA
-}
 
 NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses) {
   if (settings.camera) check_camera(*settings.camera, "--camera");

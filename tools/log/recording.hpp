@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <houghstream/images_t.hpp>
 #include <optional>
@@ -27,9 +26,6 @@ struct RecordingSettings {
   std::string channel;           ///< of the frames in a log; "" = the first channel that holds frames
   std::optional<Camera> camera;  ///< given to frames that come without
 };
-
-/// Throws InputError where the output, a file or a folder, is the recording itself.
-void require_other_place(const RecordingSettings& settings, const std::filesystem::path& output);
 
 /// Opens a recording of RGB-D frames of any kind. Its frames are images_t whose images can be decoded, with raw colour
 /// where they come from files; other people's messages become images_t without touching what is compressed. A frame

@@ -122,6 +122,22 @@ TEST_F(Files, AreNotTheirOwnSource) {
   EXPECT_THROW(require_other_file(folder / "linked", folder / "target.partial"), InputError);
 }
 
+TEST_F(Files, DoNotLieInTheirSource) {
+  put("old");
+  fs::create_directories(folder / "scene" / "rgb");
+  fs::create_directory_symlink(folder / "scene", folder / "link");
+  for (const char* name : {"scene", "scene/", "scene/new", "scene/rgb/new", "scene/no/such", "link/new"}) {
+    EXPECT_THROW(require_other_file(folder / name, folder / "scene"), InputError) << name;
+    EXPECT_THROW(require_other_file(folder / name, folder / "link"), InputError) << name;
+  }
+  for (const char* name : {"", "out.txt", "scene_2", "scene.lcmlog", "no/such"})
+    EXPECT_NO_THROW(require_other_file(name[0] == 0 ? fs::path() : folder / name, folder / "scene")) << name;
+  EXPECT_NO_THROW(require_other_file(folder / "new", folder / "no such folder"));
+  fs::create_symlink(folder / "elsewhere", folder / "scene" / "out");
+  std::ofstream(folder / "elsewhere") << "old";
+  EXPECT_NO_THROW(require_other_file(folder / "scene" / "out", folder / "scene")) << "it is written elsewhere";
+}
+
 TEST_F(Files, AreNoPipes) {
   const fs::path pipe = folder / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

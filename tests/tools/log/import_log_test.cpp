@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
@@ -59,6 +60,14 @@ TEST(ImportLog, RefusesWhatMakesNoSense) {
   RecordingSettings settings;
   settings.source = log_of(folder, kFrames, "OPENNI_FRAME", foreign_images);
   EXPECT_THROW(import_log(settings, "FRAMES", settings.source, losses), InputError) << "the log itself";
+  BopWriter writer(folder / "scene");
+  writer.add(numbered_frame(0), {}, {});
+  writer.finish();
+  RecordingSettings scene;
+  scene.source = "bop:" + (folder / "scene").string();
+  const std::string camera = read_text(folder / "scene/scene_camera.json");
+  EXPECT_THROW(import_log(scene, "FRAMES", folder / "scene/scene_camera.json", losses), InputError);
+  EXPECT_EQ(read_text(folder / "scene/scene_camera.json"), camera) << "a file of the scene";
   settings.channel = "NOTHING";
   EXPECT_THROW(import_log(settings, "FRAMES", folder / "out", losses), InputError);
   EXPECT_FALSE(fs::exists(folder / "out")) << "nothing is written where there are no frames";
