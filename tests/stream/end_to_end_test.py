@@ -218,12 +218,18 @@ def state_of(folder):
 
 def check_refusals(tools, folder):
     """What would cost what is there is refused at the start, in one line that says why; nothing has changed."""
-    scene, log = folder / "scene", folder / "scene.log"
+    scene, log, forest, models = (folder / name for name in ("scene", "scene.log", "small.forest", "views/models"))
+    of_scene, played = ("--scene", scene), ("-l", f"file://{folder / 'recorded.log'}")
     before = state_of(folder)
     for words, part in (
         (("hs-capture", "--source", f"oni:{log}", "--log", log), f"{log}: is the source itself"),
         (("hs-capture", "--source", f"bop:{scene}", "--log", scene / "scene_gt.json"), f"lies in {scene}"),
         (("hs-log", "import", f"bop:{scene}", scene / "scene_camera.json"), f"lies in {scene}"),
+        (("hs-detect", "--forest", forest, *played, "--output-log", forest), f"{forest}: is the source itself"),
+        (("hs-pose", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
+        (("hs-track", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
+        (("hs-hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
+        (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", scene), f"{scene}: is the source itself"),
     ):
         command = [str(word) for word in (tools / words[0], *words[1:])]
         result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)

@@ -5,6 +5,7 @@
 #include "detector/stages.hpp"
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/process/detect_process.hpp"
 #include "pipeline/process/warm_up.hpp"
@@ -112,6 +113,8 @@ int main(int argc, char** argv) {
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     if (options.process.looks_per_second > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
+    for (const std::string& input : {options.forest_file, options.objects})
+      require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_forest(options) : run_with_store(options);
   });
 }

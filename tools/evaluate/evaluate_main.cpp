@@ -9,6 +9,7 @@
 #include "detector/forest/forest_file.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
@@ -213,7 +214,14 @@ void write_files(const EvaluateOptions& options, const Figures& figures, const s
   write_bop_results(estimates, std::filesystem::path(options.out) / kBopResultsFile);
 }
 
+/// The report does not go among what it is made of.
+void check_place(const EvaluateOptions& options) {
+  for (const std::string& scene : options.scenes) require_other_file(options.out, scene);
+  for (const std::string& input : {options.models, options.objects}) require_other_file(options.out, input);
+}
+
 void run(EvaluateOptions options) {
+  check_place(options);
   require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
   require(options.log.empty() || options.scenes.size() == 1, "--log with {} scenes, expected the one that it is of",
           options.scenes.size());

@@ -1,6 +1,7 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/process/follow_process.hpp"
 #include "pipeline/process/pose_process.hpp"
@@ -140,6 +141,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    for (const std::string& input : {options.models, options.objects}) require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);
   });
 }

@@ -1,6 +1,7 @@
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pose/tracks/camera_places.hpp"
@@ -107,6 +108,8 @@ int main(int argc, char** argv) {
     catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    for (const std::string& input : {options.models, options.objects, options.cameras_file})
+      require_other_file(options.output_log, input);
     if (options.drake_viewer)
       options.process.output.drake_meshes = cache_folder("one of them for the meshes of --drake-viewer") / "meshes";
     if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_places(options.cameras_file);

@@ -6,6 +6,7 @@
 #include "detector/forest/forest_file.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
@@ -61,6 +62,7 @@ std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, con
 }
 
 void run(const HoughOptions& options) {
+  for (const std::string& input : {options.scene, options.forest}) require_other_file(options.out, input);
   const BopScene scene(options.scene);
   const int last = static_cast<int>(scene.images().size()) - 1;
   require(options.frame >= 0 && options.frame <= last, "{}: --frame {}, expected 0 to {}", options.scene, options.frame,
