@@ -1,6 +1,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "drivers/datasets/bop_symmetries.hpp"
 #include "drivers/files/image_file.hpp"
@@ -11,6 +12,8 @@ namespace houghstream {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> kPictureFolders = {"rgb", "depth", "mask_visib"};
 
 OrderedJson camera_entry(const BopImage& image) {
   const Camera& c = image.camera;
@@ -109,6 +112,21 @@ void BopWriter::finish() {
   write_json(info, folder_ / "scene_gt_info.json");
 }
 
+bool holds_pictures(const fs::path& scene_folder) {
+  return std::any_of(kPictureFolders.begin(), kPictureFolders.end(), [&](const char* part) {
+    std::error_code error;
+    return fs::is_directory(scene_folder / part, error) && !fs::is_empty(scene_folder / part, error);
+  });
+}
+
+void remove_pictures(const fs::path& scene_folder) {
+  for (const char* part : kPictureFolders) {
+    std::error_code error;
+    fs::remove_all(scene_folder / part, error);
+    require(!error, "{}: cannot be emptied: {}", (scene_folder / part).string(), error.message());
+  }
+}
+
 void write_bop_names(const std::map<int, std::string>& names, const fs::path& names_file) {
   OrderedJson json = OrderedJson::object();
   for (const auto& [object_id, name] : names) json[std::to_string(object_id)] = name;
@@ -128,6 +146,16 @@ void write_bop_models(const std::vector<NamedModel>& models, const fs::path& mod
   }
   write_json(info, models_folder / "models_info.json");
   write_bop_names(names, models_folder / "names.json");
+}
+
+bool holds_models(const fs::path& models_folder) {
+  const auto is_of_models = [](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    const std::string extension = entry.path().extension().string();
+    return extension == ".ply" || extension == ".obj" || name == "models_info.json" || name == "names.json";
+  };
+  std::error_code error;  // a folder that is not there has no entries
+  return std::any_of(fs::directory_iterator(models_folder, error), fs::directory_iterator(), is_of_models);
 }
 
 }  // namespace houghstream

@@ -29,6 +29,12 @@ class BopWriter {
   std::vector<BopImage> images_;
 };
 
+/// Whether a scene folder holds pictures, among which a BopWriter's would come to lie.
+bool holds_pictures(const std::filesystem::path& scene_folder);
+
+/// Removes them. Throws InputError where it cannot.
+void remove_pictures(const std::filesystem::path& scene_folder);
+
 /// Writes models/obj_NNNNNN.ply, models/models_info.json (diameter, min, size and symmetries) and models/names.json.
 struct NamedModel {
   int object_id = 0;
@@ -37,6 +43,9 @@ struct NamedModel {
   Symmetries symmetries;
 };
 void write_bop_models(const std::vector<NamedModel>& models, const std::filesystem::path& models_folder);
+
+/// Whether a folder holds models, in BOP's format or as NAME.ply or NAME.obj.
+bool holds_models(const std::filesystem::path& models_folder);
 
 /// Writes {"1": "bowl", ...}, for models/names.json or SCENE/names.json.
 void write_bop_names(const std::map<int, std::string>& names, const std::filesystem::path& names_file);

@@ -29,6 +29,8 @@ struct Arguments {
 void add_common(CommandLine& command, Arguments& arguments) {
   command.add_option("--out", arguments.common.out, "folder to write to").required();
   command.add_option("--threads", arguments.common.threads, "threads to render on").capture_default_str().range(1, 256);
+  command.add_flag("--replace", arguments.common.replace,
+                   "pictures and models that are there give way to those rendered");
 }
 
 CommandLine add_training(CommandLine& app, Arguments& arguments) {

@@ -50,7 +50,10 @@ Symmetries symmetries_of(const TaughtObject& object) {
 
 }  // namespace
 
-void write_models(const std::vector<TaughtObject>& objects, const std::filesystem::path& folder) {
+void write_models(const RenderOptions& options, const std::vector<TaughtObject>& objects) {
+  const std::filesystem::path folder = options.out / "models";
+  require(options.replace || !holds_models(folder), "{}: holds models already; --replace puts others in their place",
+          folder.string());
   std::vector<NamedModel> models;
   models.reserve(objects.size());
   for (const TaughtObject& object : objects)
@@ -58,12 +61,10 @@ void write_models(const std::vector<TaughtObject>& objects, const std::filesyste
   write_bop_models(models, folder);
 }
 
-std::filesystem::path fresh_scene(const std::filesystem::path& folder) {
-  for (const char* part : {"rgb", "depth", "mask_visib"}) {
-    std::error_code error;
-    std::filesystem::remove_all(folder / part, error);
-    require(!error, "{}: cannot be emptied: {}", (folder / part).string(), error.message());
-  }
+std::filesystem::path fresh_scene(const RenderOptions& options, const std::filesystem::path& folder) {
+  require(options.replace || !holds_pictures(folder),
+          "{}: holds pictures already; --replace puts others in their place", folder.string());
+  remove_pictures(folder);
   return folder;
 }
 
@@ -72,11 +73,13 @@ void render_training(const RenderOptions& options, const std::vector<std::string
   const std::vector<TaughtObject> taught = taught_objects(object_ids(objects));
   const Turntable table(turntable, options.seed);
   const bool all_upright = turntable.attitudes == std::vector<Attitude>{Attitude::kUpright};
-  write_models(taught, options.out / "models");
+  const auto folder_of = [&](const TaughtObject& object) { return options.out / fmt::format("{:06d}", object.id); };
+  for (const TaughtObject& object : taught) fresh_scene(options, folder_of(object));
+  write_models(options, taught);
   for (const TaughtObject& object : taught) {
     std::optional<AttitudeChoice> choice;
     if (!all_upright) choice.emplace(object.thing->mesh);
-    BopWriter writer(fresh_scene(options.out / fmt::format("{:06d}", object.id)));
+    BopWriter writer(folder_of(object));
     const AttitudeChoice* attitudes = choice ? &*choice : nullptr;
     render_in_order(
         object.name, options.threads, table.view_count(attitudes),
@@ -88,7 +91,7 @@ void render_training(const RenderOptions& options, const std::vector<std::string
 
 void render_background(const RenderOptions& options, int count) {
   require(count >= 1 && count <= kMostFrames, "background: {} frames, expected 1 to {}", count, kMostFrames);
-  BopWriter writer(fresh_scene(options.out));
+  BopWriter writer(fresh_scene(options, options.out));
   const int rooms = (count + kFramesPerRoom - 1) / kFramesPerRoom;
   for (int room = 0; room < rooms; ++room) {
     const int here = std::min(kFramesPerRoom, count - room * kFramesPerRoom);
@@ -106,9 +109,10 @@ void render_scene(const RenderOptions& options, const SceneJob& job) {
   require(job.frames >= 1 && job.frames <= kMostFrames, "scene: {} frames, expected 1 to {}", job.frames, kMostFrames);
   require(job.every >= 1, "scene: every {}th frame, expected at least 1", job.every);
   const Scene scene = make_named_scene(job.name);
+  fresh_scene(options, options.out);
+  write_models(options, taught_objects(classes_of(scene)));
   const LitWorld lit_world = light_world(scene.world);
-  write_models(taught_objects(classes_of(scene)), options.out / "models");
-  BopWriter writer(fresh_scene(options.out));
+  BopWriter writer(options.out);
   render_in_order(
       job.name, options.threads, (job.frames + job.every - 1) / job.every,
       [&](int index) { return render_scene_frame(scene, lit_world, index * job.every, job.frames, job.sensor); },

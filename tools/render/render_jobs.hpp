@@ -14,13 +14,15 @@ struct RenderOptions {
   std::filesystem::path out;  ///< folder to write to
   std::uint64_t seed = 1;     ///< of training rooms; test scenes have seeds of their own
   int threads = 2;
+  bool replace = false;  ///< pictures and models that are there give way; else they are a reason to refuse
 };
 
-/// The objects as a BOP models folder.
-void write_models(const std::vector<world::TaughtObject>& objects, const std::filesystem::path& folder);
+/// The objects as a BOP models folder, OUT/models. Throws InputError where models are there that may not be replaced.
+void write_models(const RenderOptions& options, const std::vector<world::TaughtObject>& objects);
 
-/// A scene's folder without pictures: frames of an earlier, longer run must not stay behind. Returns it.
-std::filesystem::path fresh_scene(const std::filesystem::path& folder);
+/// A scene's folder without pictures: frames of an earlier, longer run must not stay behind. Returns it. Throws
+/// InputError where pictures are there that may not be replaced: nobody says whose they are.
+std::filesystem::path fresh_scene(const RenderOptions& options, const std::filesystem::path& folder);
 
 /// OUT/00000I/ for each object id I, and OUT/models/. `objects` holds names, or only "all" (the demo's four classes) or
 /// only "all_20" (twenty_class_ids()) or "all_40" (forty_object_ids()).

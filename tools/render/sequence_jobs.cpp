@@ -79,7 +79,7 @@ void render_sequence(const RenderOptions& options, const SequencesJob& job, cons
   for (int camera = 0; camera < sequence.cameras(); ++camera) {
     const std::string scene = fmt::format("{:06d}", camera + 1);
     out["cameras"].push_back({{"scene", scene}, {"channel", fmt::format("CAMERA_{}", camera + 1)}});
-    BopWriter writer(fresh_scene(options.out / plan.name / scene));
+    BopWriter writer(fresh_scene(options, options.out / plan.name / scene));
     int index = 0;
     render_in_order(
         plan.name, options.threads, frames, [&](int i) { return sequence.render(camera, i / job.fps, i); },
@@ -108,7 +108,8 @@ void render_sequences(const RenderOptions& options, const SequencesJob& job) {
   }
   std::vector<TaughtObject> objects;
   for (const int id : ids) objects.push_back(make_taught_object(id));
-  write_models(objects, options.out / "models");
+  for (const SequencePlan& plan : plans) fresh_scene(options, options.out / plan.name / "000001");  // each has this one
+  write_models(options, objects);
   for (const SequencePlan& plan : plans) render_sequence(options, job, plan);
 }
 

@@ -48,9 +48,13 @@ OrderedJson take_entry(const NumberedTake& take, const TakesJob& job) {
   return entry;
 }
 
+std::filesystem::path folder_of(const RenderOptions& options, const NumberedTake& take) {
+  return options.out / "test" / fmt::format("{:06d}", take.scene);
+}
+
 void render_take(const RenderOptions& options, const NumberedTake& numbered, int frames) {
   const Take take(numbered.plan, frames, options.threads);
-  BopWriter writer(fresh_scene(options.out / "test" / fmt::format("{:06d}", numbered.scene)));
+  BopWriter writer(folder_of(options, numbered));
   render_in_order(
       fmt::format("{} {}", numbered.object, numbered.take), options.threads, frames,
       [&](int index) { return take.render(index); },
@@ -71,7 +75,8 @@ void render_takes(const RenderOptions& options, const TakesJob& job) {
     if (objects.empty() || objects.back().id != take.plan.object_id)
       objects.push_back(make_taught_object(take.plan.object_id));
   }
-  write_models(objects, options.out / "models");
+  for (const NumberedTake& take : takes) fresh_scene(options, folder_of(options, take));
+  write_models(options, objects);
   for (const NumberedTake& take : takes) render_take(options, take, job.frames);
   write_json(index, options.out / "takes.json");
 }

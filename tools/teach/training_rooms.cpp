@@ -48,6 +48,7 @@ fs::path rendered_rooms(const RoomSettings& settings) {
   options.out = partial;
   options.seed = kRoomsSeed;
   options.threads = settings.threads;
+  options.replace = true;  // what an interrupted process of this number has left
   render::render_background(options, settings.count);
   fs::rename(partial, rooms, error);
   if (error) {  // another teaching was faster

@@ -77,5 +77,27 @@ TEST(RenderJobs, ASceneMayBeSeenByAnotherSensor) {
   EXPECT_NE(read_text(usual / "rgb/000000.png"), read_text(other / "rgb/000000.png"));
 }
 
+TEST(RenderJobs, WhatIsThereGivesWayOnlyWhereThatIsAskedFor) {
+  const fs::path folder = fresh_folder("render_jobs_there");
+  fs::create_directories(folder / "rgb");
+  write_text(folder / "rgb/000007.png", "recorded");
+  RenderOptions options = into(folder);
+  EXPECT_NE(error_of([&] { render_background(options, 1); }).find(folder.string() + ": holds pictures"),
+            std::string::npos);
+  EXPECT_THROW(render_scene(options, {"table_small_1", 1, 1}), InputError);
+  EXPECT_FALSE(fs::exists(folder / "models"));
+  EXPECT_EQ(read_text(folder / "rgb/000007.png"), "recorded");
+  options.replace = true;
+  render_background(options, 1);
+  EXPECT_FALSE(fs::exists(folder / "rgb/000007.png"));
+  EXPECT_EQ(BopScene(folder).images().size(), 1U);
+
+  const fs::path scanned = fresh_folder("render_jobs_scanned");
+  fs::create_directories(scanned / "models");
+  write_text(scanned / "models/obj_000001.ply", "scanned");
+  EXPECT_THROW(render_training(into(scanned), {"bowl"}, one_view()), InputError);
+  EXPECT_EQ(read_text(scanned / "models/obj_000001.ply"), "scanned");
+}
+
 }  // namespace
 }  // namespace houghstream::render
