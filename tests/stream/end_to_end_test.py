@@ -226,6 +226,7 @@ def check_refusals(tools, folder):
         (("hs-capture", "--source", f"bop:{scene}", "--log", scene / "scene_gt.json"), f"lies in {scene}"),
         (("hs-log", "import", f"bop:{scene}", scene / "scene_camera.json"), f"lies in {scene}"),
         (("hs-render", "background", "--count", 1, "--out", folder / "background"), "holds pictures already"),
+        (("hs-fuse", "--views", f"bop:{folder / 'views'}", "--out", models), f"lies in {folder / 'views'}"),
         (("hs-detect", "--forest", forest, *played, "--output-log", forest), f"{forest}: is the source itself"),
         (("hs-pose", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
         (("hs-track", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),

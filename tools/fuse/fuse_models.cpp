@@ -6,6 +6,7 @@
 
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
+#include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/fuse/model_picture.hpp"
@@ -47,6 +48,15 @@ std::vector<ObjectViews> group_views(std::vector<TrainingView> views) {
     objects.push_back(std::move(*most));
   }
   return objects;
+}
+
+void check_outputs(const FuseOutputs& outputs, const std::vector<std::string>& views) {
+  for (const std::string& view : views) {
+    require_outside_source(outputs.models, view);
+    require_outside_source(outputs.pictures, view);
+  }
+  require(outputs.replace || !holds_models(outputs.models),
+          "{}: holds models already; --replace puts others in their place", outputs.models.string());
 }
 
 void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings settings, const FuseOutputs& outputs) {

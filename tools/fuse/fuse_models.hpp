@@ -26,7 +26,12 @@ std::vector<ObjectViews> group_views(std::vector<TrainingView> views);
 struct FuseOutputs {
   std::filesystem::path models;    ///< BOP models folder: obj_NNNNNN.ply, models_info.json, names.json
   std::filesystem::path pictures;  ///< folder for CLASS.png of each model from several sides; empty = none
+  bool replace = false;            ///< models that are there may be replaced
 };
+
+/// Asked before the views are read. Throws InputError where the outputs would lie in a folder of the views (each
+/// "bop:DIR" or "uw:DIR"), as the true models of a dataset may, or would replace models that they may not.
+void check_outputs(const FuseOutputs& outputs, const std::vector<std::string>& views);
 
 /// Fuses each object's views and writes the models, under the classes' ids and names; one line of stdout for each.
 /// Views with exact poses are not aligned. Throws InputError.

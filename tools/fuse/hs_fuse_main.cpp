@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   app.add_option("--rename", sources.renames, "can_1=can: what an instance is called").delimiter(',');
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
   app.add_option("--out", outputs.models, "models/ folder to write, for --models of the other tools").required();
+  app.add_flag("--replace", outputs.replace, "models that are there already give way");
   app.add_option("--pictures", outputs.pictures, "folder for a picture of each model from several sides");
   app.add_option("--voxel", voxel_mm, "edge of a voxel, millimetres; triangles are about as large")
       .range(0.2, 20.0)
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
       .capture_default_str();
   app.add_option("--threads", settings.threads, "any number gives the same models").range(1, 64).capture_default_str();
   return run_tool(app, argc, argv, [&] {
+    check_outputs(outputs, sources.views);
     settings.grid.voxel = 1e-3 * voxel_mm;
     fuse_models(group_views(read_training_sources(sources, settings.threads)), settings, outputs);
   });

@@ -60,6 +60,21 @@ TEST(FuseModels, WritesWhatTheOtherToolsRead) {
   EXPECT_FALSE(read_colour_image(folder / "pictures" / "toy.png").empty());
 }
 
+TEST(FuseModels, TheViewsFolderAndOtherModelsStayAsTheyAre) {
+  const fs::path folder = fresh_folder("fuse_models_there");
+  fs::create_directories(folder / "views" / "models");
+  fs::create_directories(folder / "scanned");
+  write_text(folder / "scanned" / "mug.ply", "scanned");
+  const std::vector<std::string> views = {"bop:" + (folder / "views").string()};
+  EXPECT_NO_THROW(check_outputs({folder / "models", {}}, views));
+  EXPECT_NO_THROW(check_outputs({folder / "models", folder / "pictures"}, views));
+  EXPECT_THROW(check_outputs({folder / "views" / "models", {}}, views), InputError);
+  EXPECT_THROW(check_outputs({folder / "views" / "models", {}, true}, views), InputError) << "never";
+  EXPECT_THROW(check_outputs({folder / "models", folder / "views"}, views), InputError);
+  EXPECT_THROW(check_outputs({folder / "scanned", {}}, views), InputError);
+  EXPECT_NO_THROW(check_outputs({folder / "scanned", {}, true}, views));
+}
+
 TEST(ModelPicture, ShowsTheModelFromAllSides) {
   Mesh mesh = test_scene::cereal_box();
   mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(10, 20, 200));
