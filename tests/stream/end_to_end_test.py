@@ -230,6 +230,7 @@ def check_refusals(tools, folder):
         (("hs-detect", "--forest", forest, *played, "--output-log", forest), f"{forest}: is the source itself"),
         (("hs-pose", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
         (("hs-track", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
+        (("hs-track", "--check", *played, "--output-log", folder / "results.log"), "--check publishes nothing"),
         (("hs-hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", scene), f"{scene}: is the source itself"),
     ):
