@@ -36,6 +36,10 @@ std::string complete_url(const std::string& url) {
   return with_receive_buffer(chosen, std::max(granted_receive_buffer(kAskedReceiveBuffer), std::int64_t{1}));
 }
 
+bool is_log_url(const std::string& url) {
+  return url.rfind(kFileScheme, 0) == 0;
+}
+
 struct Subscription {
   ChannelPattern channels;
   LcmBus::Handler handler;
@@ -78,7 +82,7 @@ struct LcmBus::State {
 
 LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(std::make_unique<State>()) {
   state_->url = complete_url(url);
-  if (state_->url.rfind(kFileScheme, 0) == 0) {
+  if (is_log_url(state_->url)) {
     const std::string path = state_->url.substr(kFileScheme.size());
     const std::string input = path.substr(0, path.find('?'));
     state_->input_log.emplace(input);
@@ -166,6 +170,11 @@ bool LcmBus::is_log() const {
 
 const std::string& LcmBus::url() const {
   return state_->url;
+}
+
+void require_output_log(const std::string& url, const std::string& output_log) {
+  const std::string whole = complete_url(url);
+  require(!is_log_url(whole) || !output_log.empty(), "{} is a log and cannot take results; give --output-log", whole);
 }
 
 }  // namespace houghstream

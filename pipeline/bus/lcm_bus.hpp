@@ -64,4 +64,8 @@ class LcmBus {
   std::unique_ptr<State> state_;
 };
 
+/// Throws InputError where the URL, as LcmBus takes it, is that of a log, and results would go nowhere: there is no
+/// output log. For who publishes; asked before a bus is opened.
+void require_output_log(const std::string& url, const std::string& output_log);
+
 }  // namespace houghstream

@@ -113,6 +113,7 @@ int main(int argc, char** argv) {
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     if (options.process.looks_per_second > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
+    require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.forest_file, options.objects})
       require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_forest(options) : run_with_store(options);

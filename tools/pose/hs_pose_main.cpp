@@ -141,6 +141,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.models, options.objects}) require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);
   });

@@ -110,6 +110,7 @@ int main(int argc, char** argv) {
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
     require(!options.process.check || options.output_log.empty(),
             "--output-log {}: --check publishes nothing, expected one of the two", options.output_log);
+    if (!options.process.check) require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.models, options.objects, options.cameras_file})
       require_other_file(options.output_log, input);
     if (options.drake_viewer)

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -200,6 +201,15 @@ TEST(LcmBus, RefusesWhatItCannotOpen) {
   EXPECT_THROW(LcmBus("nosuch://"), InputError);
   EXPECT_THROW(LcmBus("file:///no/such/log"), InputError);
   EXPECT_THROW(LcmBus("memq://", "results.log"), InputError);
+}
+
+TEST(LcmBus, ResultsOfALogNeedAPlaceToGo) {
+  EXPECT_THROW(require_output_log("file:///some.lcmlog", ""), InputError);
+  EXPECT_NO_THROW(require_output_log("file:///some.lcmlog", "results.lcmlog"));
+  EXPECT_NO_THROW(require_output_log("memq://", ""));
+  setenv("LCM_DEFAULT_URL", "file:///some.lcmlog", 1);
+  EXPECT_THROW(require_output_log("", ""), InputError);
+  unsetenv("LCM_DEFAULT_URL");
 }
 
 TEST(LcmBus, ReadsALogWithoutSkippingAndWritesAnother) {
