@@ -7,12 +7,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <list>
+#include <map>
 #include <mutex>
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/limited_lines.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/event_log.hpp"
@@ -63,6 +65,30 @@ void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* subscri
                {channel, bytes, std::chrono::steady_clock::now(), buffer->recv_utime});
 }
 
+/// How many messages each channel of a log holds, for people.
+class ChannelCounts {
+ public:
+  void note(const std::string& channel) {
+    constexpr std::size_t kMostTold = 20;
+    if (counts_.size() == kMostTold && counts_.count(channel) == 0) {
+      has_more_ = true;
+    } else {
+      ++counts_[channel];
+    }
+  }
+
+  std::string text() const {
+    std::string out;
+    for (const auto& [channel, count] : counts_)
+      out += fmt::format("{}{} ({})", out.empty() ? "" : ", ", printable(channel), count);
+    return out.empty() ? "no channel" : out + (has_more_ ? ", ..." : "");
+  }
+
+ private:
+  std::map<std::string, std::int64_t> counts_;
+  bool has_more_ = false;
+};
+
 struct LcmCloser {
   void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
 };
@@ -74,9 +100,12 @@ struct LcmBus::State {
   LimitedLines complaints;                // of handlers
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
   std::optional<LogReader> input_log;
+  ChannelCounts heard;  // of it
   std::mutex output_mutex;
   std::mutex publish_mutex;  // over tcpq LCM sends a message in several parts
   std::optional<LogWriter> output_log;
+  std::string output_file;
+  std::int64_t written = 0;  // events of the output log
   std::unique_ptr<lcm_t, LcmCloser> lcm;
 };
 
@@ -89,6 +118,7 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(s
     if (!output_log.empty()) {
       require_other_file(output_log, input);
       state_->output_log.emplace(output_log);
+      state_->output_file = output_log;
     }
     return;
   }
@@ -132,6 +162,7 @@ bool LcmBus::handle(std::chrono::milliseconds timeout) {
   if (is_log()) {
     const std::optional<LogEvent> event = state_->input_log->next();
     if (!event) return false;
+    state_->heard.note(event->channel);
     const ByteView bytes{event->data.data(), event->data.size()};
     for (const Subscription& subscription : state_->subscriptions) {
       call_handler(subscription, {event->channel, bytes, std::chrono::steady_clock::now(), event->timestamp});
@@ -153,6 +184,7 @@ void LcmBus::publish(const std::string& channel, ByteView bytes, std::int64_t ut
     const std::lock_guard<std::mutex> lock(state_->output_mutex);
     require(state_->output_log.has_value(), "{} is a log and cannot take results; give --output-log", state_->url);
     state_->output_log->write(utime, channel, bytes);
+    ++state_->written;
     return;
   }
   const std::lock_guard<std::mutex> lock(state_->publish_mutex);
@@ -161,7 +193,10 @@ void LcmBus::publish(const std::string& channel, ByteView bytes, std::int64_t ut
 }
 
 void LcmBus::close() {
-  if (state_->output_log) state_->output_log->close();
+  if (!state_->output_log) return;
+  require(state_->written > 0, "{}: nothing came of it to be written to {}; its messages are on {}", state_->url,
+          state_->output_file, state_->heard.text());
+  state_->output_log->close();
 }
 
 bool LcmBus::is_log() const {

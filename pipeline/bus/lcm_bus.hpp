@@ -51,7 +51,8 @@ class LcmBus {
     publish(channel, {bytes.data(), bytes.size()}, message.utime);
   }
 
-  /// Ends the output log, if there is one. Throws InputError where it could not be written to the end.
+  /// Ends the output log, if there is one. Throws InputError where it could not be written to the end, or where nothing
+  /// was published, naming the channels of the input log: what was in the output's place then stays.
   void close();
 
   bool is_log() const;

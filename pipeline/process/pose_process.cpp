@@ -59,8 +59,8 @@ class PoseProcess {
     inbox_.give_up_waiting();
     count_dropped();
     warn(models_.at_end());
-    end_process(bus_, status_);
     tell_missing_frames();
+    end_process(bus_, status_);
   }
 
  private:

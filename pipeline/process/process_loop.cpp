@@ -90,12 +90,9 @@ void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work)
 }
 
 void end_process(LcmBus& bus, StatusReporter& status) {
-  if (bus.is_log()) {
-    bus.close();
-  } else {
-    status.publish(bus);
-  }
+  if (!bus.is_log()) status.publish(bus);
   log_info("ends: {}", status.summary());
+  bus.close();
 }
 
 }  // namespace houghstream

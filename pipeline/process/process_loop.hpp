@@ -18,7 +18,8 @@ using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 /// fails.
 void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work);
 
-/// Says the last word: publishes the final status for whoever adds up, or ends the output log, and logs the account.
+/// Says the last word: publishes the final status for whoever adds up, logs the account, and ends the output log.
+/// Throws InputError where that cannot be ended, or has nothing in it (LcmBus::close()).
 void end_process(LcmBus& bus, StatusReporter& status);
 
 }  // namespace houghstream

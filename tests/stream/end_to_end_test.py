@@ -217,9 +217,10 @@ def state_of(folder):
 
 
 def check_refusals(tools, folder):
-    """What would cost what is there is refused at the start, in one line that says why; nothing has changed."""
+    """What would cost what is there is refused, in one line that says why; nothing has changed."""
     scene, log, forest, models = (folder / name for name in ("scene", "scene.log", "small.forest", "views/models"))
     of_scene, played = ("--scene", scene), ("-l", f"file://{folder / 'recorded.log'}")
+    no_results = ("-l", f"file://{log}", "--output-log", folder / "results.log")
     before = state_of(folder)
     for words, part in (
         (("hs-capture", "--source", f"oni:{log}", "--log", log), f"{log}: is the source itself"),
@@ -233,6 +234,9 @@ def check_refusals(tools, folder):
         (("hs-detect", "--forest", forest, *played), "give --output-log"),
         (("hs-pose", "--models", models, *played), "give --output-log"),
         (("hs-track", "--models", models, *played), "give --output-log"),
+        (("hs-detect", "--forest", forest, *no_results, "-c", "NOPE"), f"its messages are on OPENNI_FRAME ({FRAMES})"),
+        (("hs-pose", "--models", models, *no_results), f"its messages are on OPENNI_FRAME ({FRAMES})"),
+        (("hs-track", "--models", models, *no_results), "no poses of frames on OPENNI_FRAME"),
         (("hs-track", "--check", *played, "--output-log", folder / "results.log"), "--check publishes nothing"),
         (("hs-hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", scene), f"{scene}: is the source itself"),

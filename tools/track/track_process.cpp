@@ -99,10 +99,10 @@ class TrackProcess {
     inbox_.give_up_waiting();
     count_dropped();
     for (const Waiting& waiting : waiting_) refuse(waiting.messages.id, "the stream has ended");
-    end_process(bus_, status_);
     require(!bus_.is_log() || poses_ > 0,
             "{}: no poses of frames on {}, expected a log with frames, detections and poses", bus_.url(),
             options_.frame_channels);
+    end_process(bus_, status_);
     return check_;
   }
 

@@ -243,6 +243,21 @@ TEST(LcmBus, ReadsALogWithoutSkippingAndWritesAnother) {
   EXPECT_THROW(LcmBus("file://" + input.string(), input.string()), InputError) << "its own source";
   EXPECT_GT(std::filesystem::file_size(input), 200U * 28);
 
+  const auto size = std::filesystem::file_size(output);
+  {
+    LcmBus fruitless("file://" + input.string(), output.string());
+    fruitless.subscribe("NOTHING", [](const Arrival&) {});
+    while (fruitless.handle(milliseconds(0))) {
+    }
+    try {
+      fruitless.close();
+      ADD_FAILURE() << "a log of nothing was written";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("on X (100), Y (100)"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(std::filesystem::file_size(output), size) << "what was there stays";
+
   LcmBus read_only("file://" + input.string());
   EXPECT_THROW(read_only.publish("Z", numbered(1)), InputError);
   std::filesystem::remove(input);
