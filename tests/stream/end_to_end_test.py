@@ -238,6 +238,7 @@ def check_refusals(tools, folder):
         (("hs-pose", "--models", models, *no_results), f"its messages are on OPENNI_FRAME ({FRAMES})"),
         (("hs-track", "--models", models, *no_results), "no poses of frames on OPENNI_FRAME"),
         (("hs-track", "--check", *played, "--output-log", folder / "results.log"), "--check publishes nothing"),
+        (("hs-observe", *played), "lcm-logplayer, expected a network URL"),
         (("hs-hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", scene), f"{scene}: is the source itself"),
     ):

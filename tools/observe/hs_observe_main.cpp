@@ -43,6 +43,7 @@ std::string receive(LcmBus& bus, const std::function<bool()>& done) {
 void observe(const ObserveOptions& options) {
   catch_stop_signals();
   LcmBus bus(options.url);
+  require(!bus.is_log(), "{}: a log is observed by replaying it with lcm-logplayer, expected a network URL", bus.url());
   FrameTimes times;
   Clock::time_point last = Clock::now();
   // Only the frame's name is read: the observer must cost the observed next to nothing.
