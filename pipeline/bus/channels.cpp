@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream::channel {
 namespace {
 
@@ -46,6 +48,11 @@ std::string to_camera(const std::string& class_name, const std::string& camera_c
 std::string object_pose(const std::string& class_name, std::int64_t track_id) {
   const std::string suffix = fmt::format("_{}_POSE", track_id);
   return upper_case(class_name.substr(0, kMaxChannelLength - suffix.size())) + suffix;
+}
+
+void require_name(const std::string& name) {
+  require(!name.empty() && name.size() <= kMaxChannelLength, "channel '{}': {} bytes, expected 1 to {}", name,
+          name.size(), kMaxChannelLength);
 }
 
 }  // namespace houghstream::channel

@@ -36,6 +36,9 @@ std::string object_pose(const std::string& class_name, std::int64_t track_id);
 /// The camera's part of these.
 std::string camera_name(const std::string& camera_channel);
 
+/// Throws InputError unless LCM sends on a channel of this name, which has 1 to 63 bytes.
+void require_name(const std::string& name);
+
 }  // namespace houghstream::channel
 
 namespace houghstream::metadata {

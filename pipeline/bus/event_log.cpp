@@ -29,6 +29,8 @@ LogWriter::LogWriter(const std::filesystem::path& file)
 }
 
 void LogWriter::write(std::int64_t timestamp, const std::string& channel, ByteView data) {
+  require(!channel.empty() && channel.size() <= channel::kMostBytes, "{}: a channel of {} bytes, expected 1 to {}",
+          file_, channel.size(), channel::kMostBytes);
   std::string name = channel;
   lcm_eventlog_event_t event{};
   event.timestamp = timestamp;

@@ -30,7 +30,7 @@ class LogWriter {
  public:
   /// Throws InputError when the file cannot be made.
   explicit LogWriter(const std::filesystem::path& file);
-  /// Throws InputError when the disk refuses.
+  /// Throws InputError when the disk refuses, or no reader would take a channel of this name.
   void write(std::int64_t timestamp, const std::string& channel, ByteView data);
   /// Pushes everything to the file, checks that it arrived there, and ends the log. Throws InputError.
   void close();

@@ -159,6 +159,7 @@ CaptureResult write_frames(FrameFeed& feed, const CaptureSettings& settings, Log
 }  // namespace
 
 CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& settings, const std::string& url) {
+  channel::require_name(settings.channel);
   LcmBus bus(url);
   require(!bus.is_log(), "{}: frames go to a network; to write a log give --log", url);
   StatusReporter status("hs-capture");
@@ -189,6 +190,7 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
 }
 
 CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file) {
+  channel::require_name(settings.channel);
   FrameFeed feed(open, settings, {stop_requested, {}, {}});
   LogWriter log(file);
   try {

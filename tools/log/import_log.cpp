@@ -2,12 +2,14 @@
 
 #include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/bus/channels.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream::log_tools {
 
 std::int64_t import_log(const RecordingSettings& settings, const std::string& channel,
                         const std::filesystem::path& log_file, LossAccount& losses) {
+  channel::require_name(channel);
   require_outside_source(log_file, settings.source);
   const NextFrame next = open_recording(settings, losses);
   std::optional<LogWriter> log;  // not before there is something to write

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -14,6 +16,13 @@ TEST(Channels, ObjectsHaveTransformChannels) {
 TEST(Channels, ObjectsOfTheWorldHavePoseChannels) {
   EXPECT_EQ(channel::object_pose("cereal_box", 3), "CEREAL_BOX_3_POSE");
   EXPECT_EQ(channel::object_pose(std::string(100, 'x'), 12).size(), 63U);
+}
+
+TEST(Channels, NamesThatLcmDoesNotSendAreRefused) {
+  EXPECT_NO_THROW(channel::require_name("X"));
+  EXPECT_NO_THROW(channel::require_name(std::string(63, 'x')));
+  EXPECT_THROW(channel::require_name(""), InputError);
+  EXPECT_THROW(channel::require_name(std::string(64, 'x')), InputError);
 }
 
 TEST(Channels, ATransformSaysWhichCameraWhereThereAreSeveral) {

@@ -58,6 +58,18 @@ TEST_F(EventLogFile, IsReadByLcm) {
   EXPECT_EQ(log.readNextEvent(), nullptr);
 }
 
+TEST_F(EventLogFile, HasNoChannelThatItsReaderRefuses) {
+  LogWriter writer(file);
+  const std::uint8_t byte = 0;
+  EXPECT_THROW(writer.write(1000, "", {&byte, 1}), InputError);
+  EXPECT_THROW(writer.write(1000, std::string(1000, 'x'), {&byte, 1}), InputError);
+  writer.write(1000, std::string(999, 'x'), {&byte, 1});
+  writer.close();
+  LogReader reader(file);
+  EXPECT_TRUE(reader.next().has_value());
+  EXPECT_FALSE(reader.next().has_value());
+}
+
 TEST_F(EventLogFile, IsReadBack) {
   write_three();
   LogReader reader(file);

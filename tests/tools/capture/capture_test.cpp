@@ -131,6 +131,12 @@ TEST_F(CaptureLog, RefusesWhatMakesNoSense) {
   settings = CaptureSettings{};
   settings.format.jpeg_quality = 1000;
   EXPECT_THROW(capture(3, settings), InputError);
+  settings = CaptureSettings{};
+  for (const std::string& channel : {std::string(), std::string(64, 'x')}) {
+    settings.channel = channel;
+    EXPECT_THROW(capture(3, settings), InputError);
+    EXPECT_FALSE(std::filesystem::exists(file)) << "LCM cannot send on it";
+  }
 }
 
 /// Asks this process to end, a moment after it was made.

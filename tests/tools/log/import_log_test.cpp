@@ -60,6 +60,8 @@ TEST(ImportLog, RefusesWhatMakesNoSense) {
   RecordingSettings settings;
   settings.source = log_of(folder, kFrames, "OPENNI_FRAME", foreign_images);
   EXPECT_THROW(import_log(settings, "FRAMES", settings.source, losses), InputError) << "the log itself";
+  for (const std::string& channel : {std::string(), std::string(64, 'x')})
+    EXPECT_THROW(import_log(settings, channel, folder / "out", losses), InputError) << "LCM cannot send on it";
   BopWriter writer(folder / "scene");
   writer.add(numbered_frame(0), {}, {});
   writer.finish();
