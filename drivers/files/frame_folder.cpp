@@ -23,15 +23,6 @@ bool is_picture(const std::string& file) {
   return ends_with(file, "_color.png") || ends_with(file, "-color.png");
 }
 
-/// A picture without depth counts too: its folder is then refused, not passed over.
-bool holds_frames(const fs::path& folder) {
-  const auto is_frame = [](const fs::directory_entry& entry) {
-    const std::string file = entry.path().filename().string();
-    return is_depth(file) || is_picture(file);
-  };
-  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), is_frame);
-}
-
 fs::path colour_partner(const fs::path& folder, const std::string& name) {
   for (const char* end : {"_color.png", "-color.png", ".png"}) {
     if (fs::exists(folder / (name + end))) return folder / (name + end);
@@ -40,6 +31,14 @@ fs::path colour_partner(const fs::path& folder, const std::string& name) {
 }
 
 }  // namespace
+
+bool holds_frames(const fs::path& folder) {
+  const auto is_frame = [](const fs::directory_entry& entry) {
+    const std::string file = entry.path().filename().string();
+    return is_depth(file) || is_picture(file);
+  };
+  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), is_frame);
+}
 
 std::vector<FrameFiles> list_frame_pairs(const fs::path& folder) {
   require(fs::is_directory(folder), "{}: no such folder, expected images", folder.string());

@@ -1,6 +1,7 @@
 #include "tools/log/export_frames.hpp"
 
 #include "drivers/datasets/bop_writer.hpp"
+#include "drivers/files/frame_folder.hpp"
 #include "drivers/files/image_file.hpp"
 #include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
@@ -24,10 +25,16 @@ std::int64_t for_each_frame(const RecordingSettings& settings, LossAccount& loss
   return frames;
 }
 
+/// Frames of another export would be taken for this one's.
+void refuse_mixture(bool holds_others, const fs::path& folder) {
+  require(!holds_others, "{}: holds pictures already, expected a new folder or one without", folder.string());
+}
+
 }  // namespace
 
 std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
   require_outside_source(folder, settings.source);
+  refuse_mixture(holds_pictures(folder), folder);
   BopWriter writer(folder);
   const auto write = [&](const RecordedFrame& recorded) {
     RgbdFrame frame;
@@ -48,6 +55,7 @@ std::int64_t export_bop(const RecordingSettings& settings, const fs::path& folde
 std::int64_t export_pngs(const RecordingSettings& settings, const fs::path& folder, LossAccount& losses) {
   require_outside_source(folder, settings.source);
   std::error_code error;
+  refuse_mixture(fs::is_directory(folder, error) && holds_frames(folder), folder);
   fs::create_directories(folder, error);
   require(!error, "{}: cannot be written: {}", folder.string(), error.message());
   std::string list = "frame,utime,timestamp\n";

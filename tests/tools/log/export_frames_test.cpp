@@ -52,5 +52,20 @@ TEST(ExportFrames, AFolderThatCannotBeWrittenIsAnError) {
   EXPECT_THROW(export_bop(two_frames(folder), folder / "file/bop", losses), InputError);
 }
 
+TEST(ExportFrames, NothingIsMixedWithAnotherExport) {
+  const fs::path folder = fresh_folder("export_twice");
+  RecordingSettings settings = two_frames(folder);
+  settings.camera = make_test_frame(0).camera;
+  fs::create_directories(folder / "png");
+  write_text(folder / "png/notes.txt", "mine");
+  LossAccount losses;
+  EXPECT_EQ(export_pngs(settings, folder / "png", losses), 2) << "what is no picture may be there";
+  EXPECT_EQ(export_bop(settings, folder / "bop", losses), 2);
+  fs::rename(folder / "png/000001_color.png", folder / "png/000007_color.png");
+  EXPECT_THROW(export_pngs(settings, folder / "png", losses), InputError);
+  EXPECT_THROW(export_bop(settings, folder / "bop", losses), InputError);
+  EXPECT_FALSE(fs::exists(folder / "png/000001_color.png")) << "nothing has changed";
+}
+
 }  // namespace
 }  // namespace houghstream::log_tools
