@@ -101,6 +101,27 @@ void require_other_file(const fs::path& output, const fs::path& input) {
           input.string());
 }
 
+void require_writable(const fs::path& file) {
+  std::error_code error;
+  require(!fs::is_directory(file, error), "{}: is a folder, expected a file to write", file.string());
+  if (is_device(file)) return;
+  const fs::path folder = fs::absolute(followed(file), error).parent_path();
+  require(fs::is_directory(folder, error), "{}: cannot be written: there is no folder {}", file.string(),
+          folder.string());
+  const bool takes_files = access(folder.c_str(), W_OK | X_OK) == 0;
+  require(takes_files, "{}: cannot be written: {}", file.string(), std::strerror(errno));
+}
+
+void require_writable_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::path there = fs::absolute(folder, error);
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  require(fs::is_directory(there, error), "{}: cannot be a folder to write to: {} is none", folder.string(),
+          there.string());
+  const bool takes_files = access(there.c_str(), W_OK | X_OK) == 0;
+  require(takes_files, "{}: cannot be written: {}", folder.string(), std::strerror(errno));
+}
+
 WholeFile::WholeFile(const fs::path& file, const std::string& ending) : file_(followed(file)), partial_(file_) {
   std::error_code error;
   require(!fs::is_directory(file_, error), "{}: is a folder, expected a file to write", file_.string());

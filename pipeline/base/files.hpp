@@ -22,6 +22,13 @@ inline constexpr const char* kPartialEnding = ".partial";
 /// whatever name, or lies in it where the input is a folder. An empty output is none.
 void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input);
 
+/// Throws InputError where the file could not be written: it is a folder, or its own folder is missing or takes no
+/// files. Asked before the work whose result is to go there.
+void require_writable(const std::filesystem::path& file);
+
+/// The same for a folder, which may be missing with those above it. Makes none.
+void require_writable_folder(const std::filesystem::path& folder);
+
 /// An output that is there as a whole or not at all: it is written as FILE.partial beside FILE and takes FILE's place
 /// in one step. Until then, and for good where it fails, FILE is what it was. A FILE.partial that a killed program left
 /// is removed by the next one that writes FILE. Where FILE is a device or a pipe, it is written as it is. Not

@@ -221,6 +221,7 @@ def check_refusals(tools, folder):
     scene, log, forest, models = (folder / name for name in ("scene", "scene.log", "small.forest", "views/models"))
     of_scene, played = ("--scene", scene), ("-l", f"file://{folder / 'recorded.log'}")
     no_results = ("-l", f"file://{log}", "--output-log", folder / "results.log")
+    taught = ("--views", f"bop:{folder / 'views'}", "--background", f"bop:{folder / 'background'}", "--trees", 1)
     before = state_of(folder)
     for words, part in (
         (("hs-capture", "--source", f"oni:{log}", "--log", log), f"{log}: is the source itself"),
@@ -228,6 +229,8 @@ def check_refusals(tools, folder):
         (("hs-log", "import", f"bop:{scene}", scene / "scene_camera.json"), f"lies in {scene}"),
         (("hs-render", "background", "--count", 1, "--out", folder / "background"), "holds pictures already"),
         (("hs-fuse", "--views", f"bop:{folder / 'views'}", "--out", models), f"lies in {folder / 'views'}"),
+        (("hs-train", *taught, "--out", folder / "none" / "forest"), "there is no folder"),
+        (("hs-train", *taught, "--out", scene), f"{scene}: is a folder"),
         (("hs-detect", "--forest", forest, *played, "--output-log", forest), f"{forest}: is the source itself"),
         (("hs-pose", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
         (("hs-track", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),

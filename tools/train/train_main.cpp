@@ -10,6 +10,7 @@
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/training/forest_trainer.hpp"
+#include "pipeline/base/files.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/train/training_sources.hpp"
 
@@ -137,6 +138,7 @@ int train_main(int argc, char** argv, const std::string& name) {
   app.add_option("--add-to", add_to, "forest that learns the objects beside those it knows; it decides the profile");
   add_overrides(app, overrides);
   return run_tool(app, argc, argv, [&] {
+    require_writable(out);
     std::optional<Forest> old;
     if (!add_to.empty()) old = load_forest(add_to);
     train(sources, old ? profile_for(*old, overrides) : overridden(overrides), old, out, name);

@@ -138,6 +138,20 @@ TEST_F(Files, DoNotLieInTheirSource) {
   EXPECT_NO_THROW(require_other_file(folder / "scene" / "out", folder / "scene")) << "it is written elsewhere";
 }
 
+TEST_F(Files, AreKnownToBeWritableBeforeTheyAreWritten) {
+  put("old");
+  for (const fs::path& good : {file, folder / "new", fs::path("new"), fs::path("/dev/null")})
+    EXPECT_NO_THROW(require_writable(good)) << good;
+  for (const fs::path& bad : {folder, folder / "no" / "new", file / "new", fs::path()})
+    EXPECT_THROW(require_writable(bad), InputError) << bad;
+  for (const fs::path& good : {folder, folder / "new", folder / "new" / "deep" / "", fs::path("new")})
+    EXPECT_NO_THROW(require_writable_folder(good)) << good;
+  for (const fs::path& bad : {file, file / "new", file / "", fs::path("/dev/null/new"), fs::path()})
+    EXPECT_THROW(require_writable_folder(bad), InputError) << bad;
+  EXPECT_EQ(entries(), 1U) << "nothing is made";
+  EXPECT_EQ(read_file(file, "text"), "old");
+}
+
 TEST_F(Files, AreNoPipes) {
   const fs::path pipe = folder / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
