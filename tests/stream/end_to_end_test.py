@@ -231,6 +231,7 @@ def check_refusals(tools, folder):
         (("hs-fuse", "--views", f"bop:{folder / 'views'}", "--out", models), f"lies in {folder / 'views'}"),
         (("hs-train", *taught, "--out", folder / "none" / "forest"), "there is no folder"),
         (("hs-train", *taught, "--out", scene), f"{scene}: is a folder"),
+        (("hs-fuse", "--views", f"bop:{folder / 'views'}", "--out", log), f"{log}: cannot be a folder"),
         (("hs-detect", "--forest", forest, *played, "--output-log", forest), f"{forest}: is the source itself"),
         (("hs-pose", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
         (("hs-track", "--models", models, *played, "--output-log", models / "names.json"), f"lies in {models}"),
@@ -242,8 +243,13 @@ def check_refusals(tools, folder):
         (("hs-track", "--models", models, *no_results), "no poses of frames on OPENNI_FRAME"),
         (("hs-track", "--check", *played, "--output-log", folder / "results.log"), "--check publishes nothing"),
         (("hs-observe", *played), "lcm-logplayer, expected a network URL"),
+        (("hs-observe", "--out", folder / "none" / "summary.json"), "there is no folder"),
+        (("hs-observe", "--csv", scene), f"{scene}: is a folder"),
         (("hs-hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", scene), f"{scene}: is the source itself"),
+        (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", log), f"{log}: cannot be a folder"),
+        (("hs-evaluate", "--forest", forest, *of_scene, "--latency", folder / "none.csv"), f"{folder / 'none.csv'}: missing"),
+        (("hs-learn-quality", "--forest", forest, "--models", models, *of_scene), "1 scene, expected at least 4"),
     ):
         command = [str(word) for word in (tools / words[0], *words[1:])]
         result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)

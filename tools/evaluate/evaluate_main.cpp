@@ -195,9 +195,8 @@ void add_log(const EvaluateOptions& options, bool check_names, const NamedSide& 
   add_results(it.frames, results, options.log);
 }
 
-void write_files(const EvaluateOptions& options, const Figures& figures, const std::vector<OpenScene>& scenes) {
-  std::optional<Latencies> latencies;
-  if (!options.latency.empty()) latencies = read_latencies(options.latency);
+void write_files(const EvaluateOptions& options, const Figures& figures, const std::vector<OpenScene>& scenes,
+                 const std::optional<Latencies>& latencies) {
   write_report(figures.all,
                scenes.size() > 1 ? summary_json(figures.all, figures.scenes, options.rules, latencies)
                                  : summary_json(figures.all, options.rules, latencies),
@@ -214,8 +213,10 @@ void write_files(const EvaluateOptions& options, const Figures& figures, const s
   write_bop_results(estimates, std::filesystem::path(options.out) / kBopResultsFile);
 }
 
-/// The report does not go among what it is made of.
+/// The report does not go among what it is made of, and has a place: known before anything is searched.
 void check_place(const EvaluateOptions& options) {
+  if (options.out.empty()) return;
+  require_writable_folder(options.out);
   for (const std::string& scene : options.scenes) require_other_file(options.out, scene);
   for (const std::string& input : {options.models, options.objects}) require_other_file(options.out, input);
 }
@@ -225,6 +226,8 @@ void run(EvaluateOptions options) {
   require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
   require(options.log.empty() || options.scenes.size() == 1, "--log with {} scenes, expected the one that it is of",
           options.scenes.size());
+  std::optional<Latencies> latencies;
+  if (!options.latency.empty()) latencies = read_latencies(options.latency);
   std::vector<OpenScene> scenes = open_scenes(options);
   std::optional<Forest> forest;
   if (!options.forest.empty()) forest = load_forest(options.forest);
@@ -240,7 +243,7 @@ void run(EvaluateOptions options) {
   }
   const Figures figures = measure(options, scenes, classes, make_models(options, classes, meshes));
   fmt::print("{}", summary_table(figures.all, options.rules));
-  if (!options.out.empty()) write_files(options, figures, scenes);
+  if (!options.out.empty()) write_files(options, figures, scenes, latencies);
 }
 
 void add_options(CommandLine& app, EvaluateOptions& options) {

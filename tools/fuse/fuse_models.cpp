@@ -8,6 +8,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/fuse/model_picture.hpp"
 
@@ -57,6 +58,8 @@ void check_outputs(const FuseOutputs& outputs, const std::vector<std::string>& v
   }
   require(outputs.replace || !holds_models(outputs.models),
           "{}: holds models already; --replace puts others in their place", outputs.models.string());
+  require_writable_folder(outputs.models);
+  if (!outputs.pictures.empty()) require_writable_folder(outputs.pictures);
 }
 
 void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings settings, const FuseOutputs& outputs) {
@@ -70,7 +73,9 @@ void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings
     fusion::FusedModel model = fusion::fuse_views(object.class_name, object.views, settings);
     report(object.class_name, model, object.views.size());
     if (!outputs.pictures.empty()) {
-      std::filesystem::create_directories(outputs.pictures);
+      std::error_code error;
+      std::filesystem::create_directories(outputs.pictures, error);
+      require(!error, "{}: cannot make this folder: {}", outputs.pictures.string(), error.message());
       write_png(draw_model(model.mesh), outputs.pictures / (object.class_name + ".png"));
     }
     models.push_back({object.class_id, object.class_name, std::move(model.mesh), {}});

@@ -30,7 +30,8 @@ struct FuseOutputs {
 };
 
 /// Asked before the views are read. Throws InputError where the outputs would lie in a folder of the views (each
-/// "bop:DIR" or "uw:DIR"), as the true models of a dataset may, or would replace models that they may not.
+/// "bop:DIR" or "uw:DIR"), as the true models of a dataset may, would replace models that they may not, or cannot be
+/// written.
 void check_outputs(const FuseOutputs& outputs, const std::vector<std::string>& views);
 
 /// Fuses each object's views and writes the models, under the classes' ids and names; one line of stdout for each.

@@ -41,6 +41,9 @@ std::string receive(LcmBus& bus, const std::function<bool()>& done) {
 }
 
 void observe(const ObserveOptions& options) {
+  for (const std::string& file : {options.out, options.csv}) {
+    if (!file.empty()) require_writable(file);
+  }
   catch_stop_signals();
   LcmBus bus(options.url);
   require(!bus.is_log(), "{}: a log is observed by replaying it with lcm-logplayer, expected a network URL", bus.url());

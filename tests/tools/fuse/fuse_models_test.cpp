@@ -73,6 +73,9 @@ TEST(FuseModels, TheViewsFolderAndOtherModelsStayAsTheyAre) {
   EXPECT_THROW(check_outputs({folder / "models", folder / "views"}, views), InputError);
   EXPECT_THROW(check_outputs({folder / "scanned", {}}, views), InputError);
   EXPECT_NO_THROW(check_outputs({folder / "scanned", {}, true}, views));
+  write_text(folder / "file", "");
+  EXPECT_THROW(check_outputs({folder / "file", {}}, views), InputError);
+  EXPECT_THROW(check_outputs({folder / "models", folder / "file" / "pictures"}, views), InputError);
 }
 
 TEST(ModelPicture, ShowsTheModelFromAllSides) {

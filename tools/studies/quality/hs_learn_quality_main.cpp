@@ -5,6 +5,7 @@
 
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
@@ -61,6 +62,10 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
 }
 
 void run(const LearnOptions& options) {
+  const int scenes = static_cast<int>(options.scenes.size());
+  require(scenes >= quality::kLeastScenes, "--scene: {} scene{}, expected at least {} to judge each part by the others",
+          scenes, scenes == 1 ? "" : "s", quality::kLeastScenes);
+  if (!options.out.empty()) require_writable(options.out);
   const quality::Learnt learnt = quality::learn_quality(gather(options));
   const quality::Published published = quality::published_from(learnt.checked, learnt.settings.least);
   fmt::print(

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kStiffness = 1e-3;  // of the prior: decides nothing but keeps the weights finite
 constexpr double kRightShare = 0.98;
-constexpr int kParts = 4;
 constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
 
 std::vector<std::string> scenes_of(const std::vector<Example>& examples) {
@@ -122,7 +121,7 @@ Learnt learn_quality(const std::vector<Example>& examples) {
   learnt.examples = static_cast<int>(examples.size());
   learnt.right = count_right(examples);
   learnt.settings = fit_quality(examples);
-  learnt.checked = check_by_scene(examples, kParts);
+  learnt.checked = check_by_scene(examples, kLeastScenes);
   const std::optional<float> least = least_quality(learnt.checked, kRightShare);
   require(least.has_value(), "{} poses: from no quality are {:.0f} % of those in unseen scenes right", examples.size(),
           100.0 * kRightShare);

@@ -48,6 +48,9 @@ struct Learnt {
   Published in_use;                  ///< by the numbers that hs-pose uses today, from their `least` on
 };
 
+/// Of so many at least learn_quality() needs poses.
+inline constexpr int kLeastScenes = 4;
+
 /// fit_quality(), and its `least` by four parts of the scenes. Throws InputError as those, and where no quality is
 /// enough for 98 %.
 Learnt learn_quality(const std::vector<Example>& examples);
