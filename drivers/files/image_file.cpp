@@ -39,15 +39,21 @@ void write_png(const cv::Mat& image, const std::filesystem::path& file) {
   write_image(image, file, {cv::IMWRITE_PNG_COMPRESSION, kCompression});
 }
 
+void require_image_format(const std::filesystem::path& file) {
+  require(cv::haveImageWriter(file.extension().string()),
+          "{}: not a picture format that can be written, expected .png or .jpg", file.string());
+}
+
 void write_image(const cv::Mat& image, const std::filesystem::path& file, const std::vector<int>& settings) {
+  require_image_format(file);
   std::vector<unsigned char> bytes;
   bool encoded = false;
   try {
     encoded = cv::imencode(file.extension().string(), image, bytes, settings);
   } catch (const cv::Exception&) {
-    encoded = false;  // no such format, or a type of image that it does not know
+    encoded = false;  // a type of image that the format does not know
   }
-  require(encoded, "{}: not a picture format that can be written, expected .png or .jpg", file.string());
+  require(encoded, "{}: cannot be written in this format, expected .png or .jpg", file.string());
   write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -18,6 +18,9 @@ cv::Mat read_mask_image(const std::filesystem::path& file);
 /// PNG, compressed for speed. Throws InputError when the file cannot be written.
 void write_png(const cv::Mat& image, const std::filesystem::path& file);
 
+/// Throws InputError unless write_image() knows a format that the file's name ends with.
+void require_image_format(const std::filesystem::path& file);
+
 /// Writes an image in the format that its name ends with, with OpenCV's `settings` of that format. Throws InputError.
 void write_image(const cv::Mat& image, const std::filesystem::path& file, const std::vector<int>& settings = {});
 

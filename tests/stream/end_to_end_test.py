@@ -245,6 +245,8 @@ def check_refusals(tools, folder):
         (("hs-observe", *played), "lcm-logplayer, expected a network URL"),
         (("hs-observe", "--out", folder / "none" / "summary.json"), "there is no folder"),
         (("hs-observe", "--csv", scene), f"{scene}: is a folder"),
+        (("hs-view", "--snapshot", folder / "none.nosuch"), f"{folder / 'none.nosuch'}: not a picture format"),
+        (("hs-view", "--video", folder / "none"), f"{folder / 'none'}: no name of a video"),
         (("hs-hough", "--forest", forest, *of_scene, "--frame", 0, "--out", scene / "rgb/000000.png"), f"lies in {scene}"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", scene), f"{scene}: is the source itself"),
         (("hs-evaluate", "--log", folder / "results.log", *of_scene, "--out", log), f"{log}: cannot be a folder"),

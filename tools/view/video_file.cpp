@@ -1,6 +1,7 @@
 #include "tools/view/video_file.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -17,16 +18,28 @@ std::int64_t frames_in(const std::filesystem::path& video) {
   return written.isOpened() ? std::llround(written.get(cv::CAP_PROP_FRAME_COUNT)) : 0;
 }
 
+/// FFmpeg chooses the format by it; these may hold H.264.
+bool is_video_name(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".mp4" || ending == ".m4v" || ending == ".mov" || ending == ".mkv" || ending == ".avi";
+}
+
 }  // namespace
 
-VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::move(file)), rate_hz_(rate_hz) {}
+VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::move(file)), rate_hz_(rate_hz) {
+  require(is_video_name(file_), "{}: no name of a video, expected one that ends with .mp4", file_.string());
+  require_writable(file_);
+}
 
 void VideoFile::open(const cv::Mat& picture) {
   whole_.emplace(file_, ".partial" + file_.extension().string());
   const int codec = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
   size_ = {std::max(picture.cols / 2 * 2, 2), std::max(picture.rows / 2 * 2, 2)};
   const bool opened = writer_.open(whole_->partial().string(), cv::CAP_FFMPEG, codec, rate_hz_, size_);
-  require(opened, "{}: cannot be written as H.264 video (folder missing, or OpenCV without FFmpeg)", file_.string());
+  require(opened, "{}: cannot be written as H.264 video (OpenCV without FFmpeg, or FFmpeg without H.264)",
+          file_.string());
 }
 
 cv::Mat VideoFile::fitted(const cv::Mat& picture) const {

@@ -15,6 +15,7 @@ namespace houghstream::view {
 /// but once the program is asked to end, a gap of more than ten seconds is left out.
 class VideoFile {
  public:
+  /// Throws InputError where the file's name does not say that it is a video, or it cannot be written.
   VideoFile(std::filesystem::path file, double rate_hz);
 
   /// Slots must grow. The video has the size of the first picture, made even in both directions; one of another size

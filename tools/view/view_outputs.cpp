@@ -7,6 +7,7 @@
 
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -30,6 +31,10 @@ ViewOutputs::ViewOutputs(OutputSettings settings) : settings_(std::move(settings
   make_folder(settings_.snapshot.parent_path());
   make_folder(settings_.video.parent_path());
   make_folder(settings_.pictures);
+  if (!settings_.snapshot.empty()) {
+    require_image_format(settings_.snapshot);
+    require_writable(settings_.snapshot);
+  }
   if (!settings_.video.empty()) video_ = std::make_unique<VideoFile>(settings_.video, settings_.rate_hz);
 }
 

@@ -21,7 +21,7 @@ struct OutputSettings {
 /// Writes pictures to files.
 class ViewOutputs {
  public:
-  /// Makes the folders. Throws InputError where that fails.
+  /// Makes the folders. Throws InputError where that fails, or a file that is wanted cannot be written.
   explicit ViewOutputs(OutputSettings settings);
 
   void add(const cv::Mat& picture, std::int64_t utime, std::int64_t slot);

@@ -51,5 +51,11 @@ TEST(ImageFile, WhatIsMissingNoImageOrCannotBeWrittenIsAnError) {
   EXPECT_THROW(write_png(cv::Mat(4, 6, CV_8UC(7), cv::Scalar(0)), folder / "seven.png"), InputError);
 }
 
+TEST(ImageFile, TheFormatIsKnownByTheEndingBeforeThereIsAnImage) {
+  for (const char* name : {"a.png", "A.JPG", "b.c/d.jpeg"}) EXPECT_NO_THROW(require_image_format(name)) << name;
+  for (const char* name : {"", "a", "a.nosuch", "a.png/b"})
+    EXPECT_THROW(require_image_format(name), InputError) << name;
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -92,9 +92,13 @@ TEST(VideoFile, WhatAFullDiskCutsTakesNobodysPlace) {
   std::filesystem::remove(file);
 }
 
-TEST(VideoFile, AnUnwritableFileIsRefused) {
-  VideoFile nowhere("/nonexistent/folder/video.mp4", 10.0);
-  EXPECT_THROW(nowhere.add(cv::Mat(kSize, CV_8UC3), 0), InputError);
+TEST(VideoFile, WhatCannotBeWrittenIsRefusedBeforeAnythingIsSeen) {
+  const std::filesystem::path folder = testing::TempDir();
+  for (const std::filesystem::path& file :
+       {std::filesystem::path("/nonexistent/folder/video.mp4"), folder, folder / "noext", folder / "video.png"})
+    EXPECT_THROW(VideoFile(file, 10.0), InputError) << file;
+  EXPECT_NO_THROW(VideoFile(folder / "VIDEO.MP4", 10.0));
+  EXPECT_FALSE(std::filesystem::exists(folder / "VIDEO.MP4")) << "there is nothing to see yet";
 }
 
 }  // namespace

@@ -72,9 +72,15 @@ TEST(ViewOutputs, NoFrameAtAllOrABadPathIsAnError) {
   settings.snapshot = fresh_folder("bad") / "shot.png";
   EXPECT_THROW(ViewOutputs(settings).finish(), InputError);
   settings.snapshot = fresh_folder("bad") / "shot.nosuchformat";
-  ViewOutputs outputs(settings);
-  EXPECT_THROW(outputs.add(grey(10), 1, 0), InputError);
+  EXPECT_THROW(ViewOutputs{settings}, InputError);
   settings.snapshot = "/proc/nowhere/shot.png";
+  EXPECT_THROW(ViewOutputs{settings}, InputError);
+  const fs::path folder = fresh_folder("bad");
+  fs::create_directories(folder / "folder.png");
+  settings.snapshot = folder / "folder.png";
+  EXPECT_THROW(ViewOutputs{settings}, InputError);
+  settings.snapshot.clear();
+  settings.video = folder / "noext";
   EXPECT_THROW(ViewOutputs{settings}, InputError);
 }
 
