@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace houghstream::reconstruction {
 namespace {
@@ -144,6 +145,23 @@ void add_plane(const PlaneKnown& plane, const Eigen::Isometry3d& T, Sums& sums) 
   sums.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
 }
 
+/// A corner's bearing hardly depends on its depth, so what is far away says which way the camera looks.
+void add_corner(const SeenCorner& corner, const Eigen::Isometry3d& T, Sums& sums) {
+  constexpr double kSigma = 0.003;  // of a bearing: one to two pixels
+  const Eigen::Vector3d p = T * corner.in_world;
+  if (!(p.z() > 0.1)) return;
+  const double weight = tukey(bearing_error(corner, T) / (2.0 * kSigma)) / (kSigma * kSigma);
+  if (weight <= 0.0) return;
+  for (const int axis : {0, 1}) {
+    Eigen::Vector3d slope = Eigen::Vector3d::Unit(axis) / p.z();
+    slope.z() = -p[axis] / (p.z() * p.z());
+    const Eigen::Vector3d in_world = T.linear().transpose() * slope;
+    Vector6 row;
+    row << in_world, corner.in_world.cross(in_world);
+    sums.add(row, p[axis] / p.z() - corner.in_camera[axis] / corner.in_camera.z(), weight);
+  }
+}
+
 Sums look(const std::vector<SurfacePoint>& points, const FrameLevel& frame, const Eigen::Isometry3d& T, int level,
           const AlignmentLimits& limits) {
   Sums sums;
@@ -171,8 +189,14 @@ Vector6 motion_of(const Eigen::Isometry3d& motion) {
   return xi;
 }
 
+double bearing_error(const SeenCorner& corner, const Eigen::Isometry3d& T_camera_world) {
+  const Eigen::Vector3d p = T_camera_world * corner.in_world;
+  if (!(p.z() > 0.0)) return std::numeric_limits<double>::infinity();
+  return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
+}
+
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
-                      const std::optional<PlaneKnown>& plane, const AlignmentLimits& limits) {
+                      const Holds& holds, const AlignmentLimits& limits) {
   constexpr int kFewest = 40;
   Alignment out;
   out.T_camera_world = T_camera_world;
@@ -182,7 +206,8 @@ Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const
     for (int i = 0; i <= limits.iterations; ++i) {
       sums = look(points[l], frame.levels[l], out.T_camera_world, level, limits);
       if (sums.pairs < kFewest) break;
-      if (plane) add_plane(*plane, out.T_camera_world, sums);
+      if (holds.plane) add_plane(*holds.plane, out.T_camera_world, sums);
+      for (const SeenCorner& corner : holds.corners) add_corner(corner, out.T_camera_world, sums);
       if (i == limits.iterations) break;
       Matrix6 damped = sums.squares;
       damped.diagonal() += Vector6::Constant(1.0) + 1e-6 * sums.squares.diagonal();

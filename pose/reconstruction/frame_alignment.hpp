@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 #include "pose/reconstruction/frame_levels.hpp"
 
@@ -22,6 +23,18 @@ struct PlaneKnown {
   double offset = 0.0;                                ///< normal.X + offset = 0 on the table
   double sigma_m = 0.0005;                            ///< of the height of the world's origin above it
   double sigma_rad = 0.004;                           ///< of the world's z axis
+};
+
+/// A corner that has been recognised.
+struct SeenCorner {
+  Eigen::Vector3d in_world = Eigen::Vector3d::Zero();   ///< metres
+  Eigen::Vector3d in_camera = Eigen::Vector3d::Zero();  ///< where the frame shows it, metres; its bearing counts
+};
+
+/// What holds a frame besides surface and light.
+struct Holds {
+  std::optional<PlaneKnown> plane;
+  std::vector<SeenCorner> corners;
 };
 
 struct AlignmentLimits {
@@ -47,9 +60,13 @@ struct Alignment {
 
 /// Lays a frame on points of surface: distances along the points' normals (Chen & Medioni 1992), partners found by
 /// projection (Blais & Levine 1995), and differences of light (Steinbruecker, Sturm, Cremers, "Real-time visual
-/// odometry from dense RGB-D images", ICCVW 2011) are lowered together by Gauss-Newton under Tukey's weights, from
-/// coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
+/// odometry from dense RGB-D images", ICCVW 2011), and bearings of corners are lowered together by Gauss-Newton under
+/// Tukey's weights, from coarse to fine. `points` lie in the world frame, as many levels as the frame's. Thread-safe.
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
-                      const std::optional<PlaneKnown>& plane, const AlignmentLimits& limits);
+                      const Holds& holds, const AlignmentLimits& limits);
+
+/// Radians by which a frame shows a corner elsewhere than its pose says, in the pinhole's plane (tangents); infinite
+/// where the corner is not before the camera.
+double bearing_error(const SeenCorner& corner, const Eigen::Isometry3d& T_camera_world);
 
 }  // namespace houghstream::reconstruction

@@ -110,6 +110,40 @@ std::optional<LoopGap> KeyframeMap::add(Keyframe keyframe, const Alignment& alig
   return gap;
 }
 
+/// Corners that contradict the likely pose are mistaken, wallpaper for instance, unless it may be far off and many
+/// agree.
+Alignment KeyframeMap::lay_on(const std::vector<int>& references, const FrameLevels& levels, const Landmarks& seen,
+                              const Eigen::Isometry3d& T_likely, const LayLimits& limits) const {
+  constexpr double kContradicts = 0.015;  // radians
+  Holds holds{settings_.plane, {}};
+  std::size_t most = 0;
+  Eigen::Isometry3d T_by_corners = T_likely;
+  for (const int k : references) {
+    const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
+    const std::optional<LandmarkMatch> match = match_landmarks(keyframe.landmarks, seen);
+    if (!match || match->inliers.size() < static_cast<std::size_t>(settings_.fewest_corners)) continue;
+    const Eigen::Isometry3d T_world_camera = keyframe.T_camera_world.inverse();
+    for (const auto& [before, now] : match->inliers) holds.corners.push_back({T_world_camera * before, now});
+    if (match->inliers.size() <= most) continue;
+    most = match->inliers.size();
+    T_by_corners = match->T_b_a * keyframe.T_camera_world;
+  }
+  const auto contradict = std::count_if(holds.corners.begin(), holds.corners.end(), [&](const SeenCorner& corner) {
+    return bearing_error(corner, T_likely) > kContradicts;
+  });
+  const bool contradicted = 2 * static_cast<std::size_t>(contradict) > holds.corners.size();
+  const bool jumps = contradicted && limits.may_be_lost && most >= static_cast<std::size_t>(settings_.sure_corners);
+  if (contradicted && !jumps) holds.corners.clear();
+  AlignmentLimits alignment;
+  alignment.coarsest = limits.coarsest;
+  return align_frame(points_of(references), levels, jumps ? T_by_corners : T_likely, holds, alignment);
+}
+
+Alignment KeyframeMap::held_by_corners(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const {
+  const Alignment held = lay_on(local_references_, levels, seen, laid.T_camera_world, {});
+  return is_good(held) ? held : laid;
+}
+
 std::optional<LoopGap> KeyframeMap::close_loop(int last) {
   constexpr int kMostTries = 2;
   constexpr double kMostShift_m = 0.2;
@@ -124,15 +158,7 @@ std::optional<LoopGap> KeyframeMap::close_loop(int last) {
   if (candidates.size() > kMostTries) candidates.resize(kMostTries);
   for (const auto& [d, k] : candidates) {
     const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
-    const LevelPoints points = points_of({k});
-    AlignmentLimits limits;
-    limits.coarsest = settings_.coarsest;
-    Alignment found = align_frame(points, now.levels, now.T_camera_world, settings_.plane, limits);
-    if (!is_good(found)) {
-      const auto match = match_landmarks(old.landmarks, now.landmarks);
-      if (!match) continue;
-      found = align_frame(points, now.levels, match->T_b_a * old.T_camera_world, settings_.plane, limits);
-    }
+    const Alignment found = lay_on({k}, now.levels, now.landmarks, now.T_camera_world, {settings_.coarsest, true});
     const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
     if (!is_good(found) || gap.shift_m > kMostShift_m) continue;
     edges_.push_back({k, last, found.T_camera_world * old.T_camera_world.inverse(), found.information});
@@ -162,12 +188,9 @@ void KeyframeMap::refine(int rounds) {
       }
       std::sort(near.begin(), near.end());
       if (near.size() > kNeighbours) near.resize(kNeighbours);
-      const LevelPoints points = points_of({i});
-      AlignmentLimits limits;
-      limits.coarsest = round == 0 ? 1 : 0;
       for (const auto& [d, j] : near) {
         const Keyframe& to = keyframes_[static_cast<std::size_t>(j)];
-        const Alignment laid = align_frame(points, to.levels, to.T_camera_world, settings_.plane, limits);
+        const Alignment laid = lay_on({i}, to.levels, to.landmarks, to.T_camera_world, {round == 0 ? 1 : 0, false});
         if (is_good(laid))
           found[static_cast<std::size_t>(i)].push_back(
               {i, j, laid.T_camera_world * from.T_camera_world.inverse(), laid.information});

@@ -33,9 +33,17 @@ struct MapSettings {
   double least_seen_share = 0.25;
   double most_light_rms = 0.62;
   int coarsest = 2;                                  ///< level on which registration begins
+  int fewest_corners = 12;                           ///< in common with another frame, to hold a pose
+  int sure_corners = 30;                             ///< in common with a keyframe, to say a pose of their own
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
   std::optional<PlaneKnown> plane;                   ///< where the camera stands still
   int threads = 1;
+};
+
+/// How a frame is laid on keyframes that it is not tied to yet.
+struct LayLimits {
+  int coarsest = 0;          ///< level to begin on
+  bool may_be_lost = false;  ///< the likely pose may be far off: corners may contradict it
 };
 
 /// All keyframes of a take, what ties them together, and the part of them that the next frame is laid on.
@@ -54,6 +62,10 @@ class KeyframeMap {
   const LevelPoints& local_map(const Eigen::Isometry3d& T_camera_world);
   LevelPoints points_of(const std::vector<int>& keyframes) const;  ///< world frame
 
+  /// How a frame lies on the keyframes of the local map, given how it lies on their surface and light: where these
+  /// leave a turn open or misread it (something plain and round on a plain table), corners of the surroundings say it.
+  Alignment held_by_corners(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const;
+
   /// Whether an alignment is one.
   bool is_good(const Alignment& alignment) const;
   /// Angle between two views of the object, and how far nearer one is, as an angle; radians.
@@ -71,6 +83,8 @@ class KeyframeMap {
 
  private:
   std::vector<int> references_for(const Eigen::Isometry3d& T_camera_world) const;
+  Alignment lay_on(const std::vector<int>& references, const FrameLevels& levels, const Landmarks& seen,
+                   const Eigen::Isometry3d& T_likely, const LayLimits& limits) const;
   std::optional<LoopGap> close_loop(int last);
   void correct_poses();
   PoseEdge edge_between(int from, int to, const Matrix6& information) const;

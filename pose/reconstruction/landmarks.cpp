@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
 
 #include "pipeline/base/random.hpp"
 #include "pose/reconstruction/frame_levels.hpp"
@@ -11,7 +12,7 @@
 namespace houghstream::reconstruction {
 namespace {
 
-using Pairs = std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>;
+using Pairs = decltype(LandmarkMatch::inliers);
 
 double limit_at(double z) {
   return 0.006 + 3.0 * depth_sigma(z);
@@ -52,32 +53,9 @@ Pairs agreeing(const Pairs& pairs, const Eigen::Isometry3d& T) {
   return inliers;
 }
 
-}  // namespace
-
-Landmarks find_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
-  constexpr int kMost = 600;
-  cv::Mat grey;
-  cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
-  std::vector<cv::KeyPoint> corners;
-  Landmarks landmarks;
-  cv::Mat descriptors;
-  cv::ORB::create(kMost, 1.2F, 6, 15, 0, 2, cv::ORB::HARRIS_SCORE, 31, 10)
-      ->detectAndCompute(grey, mask, corners, descriptors);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const cv::Point px(cvRound(corners[i].pt.x), cvRound(corners[i].pt.y));
-    const float z = frame.depth.at<float>(px);
-    if (!(z > 0.1F && z < 4.0F)) continue;
-    landmarks.points.push_back(frame.camera.backproject(corners[i].pt.x, corners[i].pt.y, z));
-    landmarks.descriptors.push_back(descriptors.row(static_cast<int>(i)));
-  }
-  return landmarks;
-}
-
-std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b) {
+std::optional<LandmarkMatch> most_agree_on(const Pairs& pairs) {
   constexpr int kTrials = 300;
   constexpr std::size_t kFewest = 8;
-  if (a.points.size() < kFewest || b.points.size() < kFewest) return std::nullopt;
-  const Pairs pairs = like_pairs(a, b);
   if (pairs.size() < kFewest) return std::nullopt;
   Random random(1);
   Pairs best;
@@ -96,8 +74,76 @@ std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks
     best = agreeing(pairs, match.T_b_a);
     if (best.size() < kFewest) return std::nullopt;
   }
-  match.inliers = static_cast<int>(best.size());
+  match.inliers = std::move(best);
   return match;
+}
+
+cv::Mat grey_of(const RgbdFrame& frame) {
+  cv::Mat grey;
+  cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
+/// Where a picture has depth within reach, camera frame.
+std::optional<Eigen::Vector3d> surface_at(const RgbdFrame& frame, const cv::Point2f& at) {
+  const cv::Point px(cvRound(at.x), cvRound(at.y));
+  if (!cv::Rect({0, 0}, frame.depth.size()).contains(px)) return std::nullopt;
+  const float z = frame.depth.at<float>(px);
+  if (!(z > 0.1F && z < 4.0F)) return std::nullopt;
+  return frame.camera.backproject(at.x, at.y, z);
+}
+
+}  // namespace
+
+Landmarks find_landmarks(const RgbdFrame& frame, const cv::Mat& mask) {
+  constexpr int kMost = 600;
+  std::vector<cv::KeyPoint> corners;
+  Landmarks landmarks;
+  cv::Mat descriptors;
+  cv::ORB::create(kMost, 1.2F, 6, 15, 0, 2, cv::ORB::HARRIS_SCORE, 31, 10)
+      ->detectAndCompute(grey_of(frame), mask, corners, descriptors);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::optional<Eigen::Vector3d> point = surface_at(frame, corners[i].pt);
+    if (!point) continue;
+    landmarks.points.push_back(*point);
+    landmarks.descriptors.push_back(descriptors.row(static_cast<int>(i)));
+  }
+  return landmarks;
+}
+
+std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b) {
+  if (a.points.empty() || b.points.empty()) return std::nullopt;
+  return most_agree_on(like_pairs(a, b));
+}
+
+std::optional<LandmarkMatch> follow_corners(const RgbdFrame& a, const RgbdFrame& b, const cv::Mat& mask) {
+  constexpr int kMost = 300;
+  constexpr double kLeastQuality = 0.01;  // of the best corner's
+  constexpr double kApart_px = 9.0;
+  constexpr float kReturns_px = 0.5F;
+  const cv::Size window(21, 21);
+  constexpr int kLevels = 3;
+  const cv::Mat grey_a = grey_of(a);
+  const cv::Mat grey_b = grey_of(b);
+  std::vector<cv::Point2f> corners;
+  cv::goodFeaturesToTrack(grey_a, corners, kMost, kLeastQuality, kApart_px, mask);
+  if (corners.empty()) return std::nullopt;
+  std::vector<cv::Point2f> there;
+  std::vector<cv::Point2f> back;
+  std::vector<std::uint8_t> went;
+  std::vector<std::uint8_t> came_back;
+  std::vector<float> errors;
+  cv::calcOpticalFlowPyrLK(grey_a, grey_b, corners, there, went, errors, window, kLevels);
+  cv::calcOpticalFlowPyrLK(grey_b, grey_a, there, back, came_back, errors, window, kLevels);
+  Pairs pairs;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const cv::Point2f off = back[i] - corners[i];
+    if (went[i] == 0 || came_back[i] == 0 || std::hypot(off.x, off.y) > kReturns_px) continue;
+    const std::optional<Eigen::Vector3d> from = surface_at(a, corners[i]);
+    const std::optional<Eigen::Vector3d> to = surface_at(b, there[i]);
+    if (from && to) pairs.emplace_back(*from, *to);
+  }
+  return most_agree_on(pairs);
 }
 
 }  // namespace houghstream::reconstruction

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pipeline/types/frame.hpp"
@@ -20,11 +21,16 @@ Landmarks find_landmarks(const RgbdFrame& frame, const cv::Mat& mask);
 
 /// How one picture's landmarks lie on another's.
 struct LandmarkMatch {
-  Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();  ///< from camera a to camera b
-  int inliers = 0;                                          ///< pairs within a few millimetres of it
+  Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();           ///< from camera a to camera b
+  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> inliers;  ///< in a and in b, within a few millimetres of it
 };
 
-/// From pairs of like corners by RANSAC; none where fewer than eight pairs agree. Same input, same result.
+/// From pairs of like corners by RANSAC (Fischler & Bolles 1981); none where fewer than eight pairs agree. Same input,
+/// same result.
 std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b);
+
+/// Corners of one picture followed into the next, in which they are nearly where they were (Lucas & Kanade 1981; Shi &
+/// Tomasi 1994), there and back. `mask`: where in `a`, as for find_landmarks.
+std::optional<LandmarkMatch> follow_corners(const RgbdFrame& a, const RgbdFrame& b, const cv::Mat& mask);
 
 }  // namespace houghstream::reconstruction

@@ -24,7 +24,7 @@ Alignment look_at(const LevelPoints& points, const FrameLevels& frame, const Eig
   limits.iterations = 0;
   limits.coarsest = level;
   limits.finest = level;
-  return align_frame(points, frame, T, std::nullopt, limits);
+  return align_frame(points, frame, T, {}, limits);
 }
 
 /// Of the pixels with a clear edge in the first picture, where `mask` is set: the share that looks the same now.
@@ -82,12 +82,12 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
     if (motion_ == Motion::kObject) mark_what_stays(levels);
-    if (state_.state == TrackState::kTracking) found = follow(levels);
+    if (state_.state == TrackState::kTracking) found = follow(frame, levels);
     if (found && motion_ == Motion::kUnknown) {
-      see_what_moves(levels, found->T_camera_world);
+      see_what_moves(frame, levels, found->T_camera_world);
       if (motion_ == Motion::kObject) {  // of the object only, from here on
         levels = make_levels(frame, levels_);
-        found = follow(levels);
+        found = follow(frame, levels);
       }
     }
     if (!found) found = find_again(frame, levels, false);
@@ -155,19 +155,25 @@ bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
 Alignment ObjectTracker::lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest) {
   AlignmentLimits limits;
   limits.coarsest = coarsest;
-  return align_frame(map_.local_map(T_start), levels, T_start, map_.settings().plane, limits);
+  return align_frame(map_.local_map(T_start), levels, T_start, {map_.settings().plane, corners_}, limits);
 }
 
-std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
+/// From the frame before, whose corners say how the camera moved, or as it went on until then.
+std::optional<Alignment> ObjectTracker::follow(const RgbdFrame& frame, const FrameLevels& levels) {
   constexpr double kMostTurn = 0.15;     // radians a frame, from rest
   constexpr double kMostEver = 0.4;      // radians a frame
   constexpr double kMostShift_m = 0.02;  // a frame, of an object that turns where it stands
   const Eigen::Isometry3d T_goes_on =
       motion_ == Motion::kObject ? T_last_ * (T_before_.inverse() * T_last_) : T_last_ * T_before_.inverse() * T_last_;
   const LevelPoints& points = map_.local_map(T_last_);
+  const std::optional<LandmarkMatch> flow = follow_corners(last_frame_, frame, landmark_mask(last_frame_, T_last_));
+  corners_.clear();
+  if (flow && flow->inliers.size() >= static_cast<std::size_t>(map_.settings().fewest_corners)) {
+    for (const auto& [before, now] : flow->inliers) corners_.push_back({T_last_.inverse() * before, now});
+  }
   const bool goes_on = agreement_of(look_at(points, levels, T_goes_on, map_.settings().coarsest)) >
                        agreement_of(look_at(points, levels, T_last_, map_.settings().coarsest));
-  const Eigen::Isometry3d& T_likely = goes_on ? T_goes_on : T_last_;
+  const Eigen::Isometry3d T_likely = !corners_.empty() ? flow->T_b_a * T_last_ : goes_on ? T_goes_on : T_last_;
   const int coarsest = map_.settings().coarsest;
   Alignment best = lay_on_map(levels, T_likely, coarsest);
   // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
@@ -189,7 +195,6 @@ std::optional<Alignment> ObjectTracker::follow(const FrameLevels& levels) {
 std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere) {
   constexpr std::size_t kTriedByPose = 4;
   constexpr double kSure = 0.85;  // share of inliers: a plane and a pattern on it may agree with a wrong pose by half
-  const int fewest_inliers = motion_ == Motion::kObject ? 12 : 30;
   const std::size_t tried_by_landmarks = everywhere ? map_.keyframes().size() : 12;
   const std::vector<Keyframe>& keyframes = map_.keyframes();
   std::vector<std::pair<double, int>> by_distance;
@@ -205,7 +210,7 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
     if (by_distance[i].first > farthest) break;
     const Alignment found =
         align_frame(map_.points_of({k}), levels, keyframes[static_cast<std::size_t>(k)].T_camera_world,
-                    map_.settings().plane, limits);
+                    {map_.settings().plane, {}}, limits);
     if (map_.is_good(found) && found.inlier_share > kSure) return found;
   }
   const Landmarks seen = find_landmarks(frame, landmark_mask(frame, T_last_));
@@ -216,14 +221,14 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
     const std::size_t at = i < tried_by_landmarks / 2 ? i : next_to_try_++ % by_distance.size();
     const int k = by_distance[at].second;
     const auto match = match_landmarks(keyframes[static_cast<std::size_t>(k)].landmarks, seen);
-    if (!match || (best && best->inliers >= match->inliers)) continue;
+    if (!match || (best && best->inliers.size() >= match->inliers.size())) continue;
     best = match;
     best_keyframe = k;
   }
-  if (!best || best->inliers < fewest_inliers) return std::nullopt;
+  if (!best || best->inliers.size() < static_cast<std::size_t>(map_.settings().sure_corners)) return std::nullopt;
   const Eigen::Isometry3d T = best->T_b_a * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
   if (map_.difference(T, T_last_) > farthest) return std::nullopt;
-  const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, map_.settings().plane, limits);
+  const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, {map_.settings().plane, {}}, limits);
   if (map_.is_good(found) && found.inlier_share > kSure) return found;
   return std::nullopt;
 }
@@ -233,14 +238,22 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   state_.state = TrackState::kTracking;
   T_before_ = was_lost ? alignment.T_camera_world : T_last_;
   T_last_ = alignment.T_camera_world;
+  last_frame_ = frame;
   FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
   const bool fit = !track.left_out;
   const int nearest = map_.nearest(T_last_);
   const double away =
       nearest < 0 ? 1e9 : map_.difference(T_last_, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
   if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
-    if (nearest >= 0) map_.local_map(T_last_);  // the keyframes that the new one is tied to
-    add_keyframe(number, frame, std::move(levels), alignment);
+    Landmarks landmarks = find_landmarks(frame, landmark_mask(frame, T_last_));
+    Alignment held = alignment;
+    if (nearest >= 0) {
+      map_.local_map(T_last_);  // the keyframes that the new one is tied to
+      held = map_.held_by_corners(levels, landmarks, alignment);
+      T_last_ = held.T_camera_world;
+      T_before_ = T_before_ * alignment.T_camera_world.inverse() * T_last_;
+    }
+    add_keyframe({frame, number, std::move(levels), {}, std::move(landmarks), T_last_}, held);
   }
   track.tracked = true;
   track.keyframe = map_.nearest(T_last_);
@@ -252,14 +265,32 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   round_[at] = round_[at] || fit;
 }
 
-/// While nothing is decided: whether the surroundings look as a moved camera would see them, or as they did at first.
-void ObjectTracker::see_what_moves(const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
-  constexpr int kSure = 3;
+/// Whether the corners of the surroundings are where they were at first; where there are few, whether the surroundings
+/// look as they did then rather than as a moved camera would see them.
+bool ObjectTracker::camera_is_still(const RgbdFrame& frame, const FrameLevels& levels,
+                                    const Eigen::Isometry3d& T_moved) const {
+  constexpr double kMoved = 0.003;  // radians, of half of the corners
   constexpr double kBetter = 0.01;  // of light
-  constexpr double kLess = 0.2;     // share of edges
-  const double as_moved = look_at(first_rest_, levels, T_camera_world, 0).light_rms;
+  cv::Mat away;
+  cv::resize(away_from_object_, away, first_frame_.colour.size(), 0.0, 0.0, cv::INTER_NEAREST);
+  const std::optional<LandmarkMatch> flow = follow_corners(first_frame_, frame, away);
+  if (flow && flow->inliers.size() >= static_cast<std::size_t>(settings_.map.fewest_corners)) {
+    const auto moved = std::count_if(flow->inliers.begin(), flow->inliers.end(), [&](const auto& pair) {
+      return bearing_error({pair.first, pair.second}, Eigen::Isometry3d::Identity()) > kMoved;
+    });
+    return 2 * static_cast<std::size_t>(moved) < flow->inliers.size();
+  }
+  const double as_moved = look_at(first_rest_, levels, T_moved, 0).light_rms;
   const double as_still = look_at(first_rest_, levels, chosen_.T_camera_stand, 0).light_rms;
-  const bool is_still = as_still < as_moved + kBetter;
+  return as_still < as_moved + kBetter;
+}
+
+/// While nothing is decided.
+void ObjectTracker::see_what_moves(const RgbdFrame& frame, const FrameLevels& levels,
+                                   Eigen::Isometry3d& T_camera_world) {
+  constexpr int kSure = 3;
+  constexpr double kLess = 0.2;  // share of edges
+  const bool is_still = camera_is_still(frame, levels, T_camera_world);
   const double around = unchanged_share(levels.levels[0].light, first_light_, away_from_object_);
   const double on_it = unchanged_share(levels.levels[0].light, first_light_, about_object_);
   camera_moves_ = is_still ? 0 : camera_moves_ + 1;
@@ -280,6 +311,7 @@ void ObjectTracker::follow_object_only() {
   map.plane->offset = chosen_.plane.offset;
   map.least_inlier_share = 0.6;
   map.coarsest = 1;
+  map.sure_corners = 12;
   const cv::Rect& box = chosen_.box_px;
   const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
   levels_.region_px =
@@ -289,8 +321,9 @@ void ObjectTracker::follow_object_only() {
   tie_to_first_keyframe();
   state_.seen = {};
   T_last_ = T_before_ = chosen_.T_camera_stand;
-  FrameLevels levels = make_levels(first_frame_, levels_);
-  add_keyframe(first_number_, first_frame_, std::move(levels), {});
+  Landmarks landmarks = find_landmarks(first_frame_, landmark_mask(first_frame_, T_last_));
+  add_keyframe({first_frame_, first_number_, make_levels(first_frame_, levels_), {}, std::move(landmarks), T_last_},
+               {});
 }
 
 /// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
@@ -376,29 +409,27 @@ cv::Mat ObjectTracker::landmark_mask(const RgbdFrame& frame, const Eigen::Isomet
   return object_pixels({frame.camera, {}, frame.depth, {}}, T_camera_world);
 }
 
-void ObjectTracker::add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+/// The keyframe of T_last_, which has no points yet.
+void ObjectTracker::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   constexpr double kTableRadius_m = 0.7;
   constexpr float kTableHeight_m = 0.01F;
-  Keyframe keyframe;
-  keyframe.frame = frame;
-  keyframe.number = number;
-  keyframe.T_camera_world = T_last_;
+  const FrameLevel& finest = keyframe.levels.levels[0];
   const bool object_only = motion_ == Motion::kObject;
   PointSettings points;
   points.square_px = object_only ? 4 : 6;
   cv::Mat mask;
   if (object_only) {
-    mask = object_pixels(levels.levels[0], T_last_);
-    remove_seen_through(levels.levels[0], mask);
+    mask = object_pixels(finest, T_last_);
+    remove_seen_through(finest, mask);
     if (!chosen_.like_skin) {
       cv::Mat skin;
-      cv::dilate(skin_pixels(frame.colour(levels_.region_px)), skin,
+      cv::dilate(skin_pixels(keyframe.frame.colour(levels_.region_px)), skin,
                  cv::getStructuringElement(cv::MORPH_ELLIPSE, {7, 7}));
       cv::resize(skin, skin, mask.size(), 0, 0, cv::INTER_NEAREST);
       mask.setTo(0, skin);
     }
   }
-  keyframe.points = choose_points(levels, mask, points);
+  keyframe.points = choose_points(keyframe.levels, mask, points);
   const Eigen::Isometry3f T_world_camera = T_last_.inverse().cast<float>();
   for (std::vector<SurfacePoint>& level : keyframe.points) {
     for (SurfacePoint& point : level) {
@@ -407,8 +438,6 @@ void ObjectTracker::add_keyframe(int number, const RgbdFrame& frame, FrameLevels
                        (T_world_camera.linear() * point.normal).z() > 0.95F;
     }
   }
-  keyframe.landmarks = find_landmarks(frame, landmark_mask(frame, T_last_));
-  keyframe.levels = std::move(levels);
   const std::optional<LoopGap> gap = map_.add(std::move(keyframe), alignment);
   if (!gap) return;
   T_last_ = T_before_ = map_.keyframes().back().T_camera_world;

@@ -90,18 +90,19 @@ class ObjectTracker {
   void require_same_size(const RgbdFrame& frame);
   void choose(const RgbdFrame& frame);
   Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest);
-  std::optional<Alignment> follow(const FrameLevels& levels);
+  std::optional<Alignment> follow(const RgbdFrame& frame, const FrameLevels& levels);
   std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere);
   void place_the_lost();
   void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
   bool is_fit_for_model(const PictureQuality& quality);
-  void see_what_moves(const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
+  bool camera_is_still(const RgbdFrame& frame, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
+  void see_what_moves(const RgbdFrame& frame, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
   void mark_what_stays(FrameLevels& levels);
   void remove_seen_through(const FrameLevel& level, cv::Mat& mask) const;
   void follow_object_only();
   void tie_to_first_keyframe();
-  void add_keyframe(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
+  void add_keyframe(Keyframe keyframe, const Alignment& alignment);
   cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
   cv::Mat object_pixels(const FrameLevel& level, const Eigen::Isometry3d& T_camera_world) const;
   void describe();
@@ -116,6 +117,8 @@ class ObjectTracker {
   LevelPoints first_rest_;                                 ///< points away from the object, world frame
   cv::Size size_;                                          ///< of all frames, pixels
   RgbdFrame first_frame_;
+  RgbdFrame last_frame_;             ///< that T_last_ is of
+  std::vector<SeenCorner> corners_;  ///< of it, as the present frame shows them
   int first_number_ = 0;
   std::deque<std::vector<cv::Mat>> lights_;  ///< of the last frames, by level, while the object turns
   int object_moves_ = 0;                     ///< frames in which it did, one after the other

@@ -102,6 +102,76 @@ TEST(ObjectTracker, FollowsAnObjectThatTurnsBeforeAStillCamera) {
   EXPECT_LT(untracked, 10);
 }
 
+/// A plain round tin on a plain table; boxes painted with spots stand about it, farther away.
+Mesh plain_tin_among_boxes() {
+  constexpr int kSides = 60;
+  constexpr float kRadius_m = 0.06F;
+  Mesh mesh;
+  const auto add_face = [&](const std::vector<Eigen::Vector3f>& corners, std::uint8_t shade) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), corners.begin(), corners.end());
+    mesh.colours.resize(mesh.vertices.size(), cv::Vec3b(shade, shade, shade));
+    for (std::uint32_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({first, first + i - 1, first + i});
+  };
+  add_face({{-0.7F, -0.7F, 0.0F}, {0.7F, -0.7F, 0.0F}, {0.7F, 0.7F, 0.0F}, {-0.7F, 0.7F, 0.0F}}, 120);
+  std::vector<Eigen::Vector3f> lid;
+  for (int i = 0; i < kSides; ++i) {
+    const auto rim = [&](int k, float z) {
+      const auto angle = static_cast<float>(kTurn * k / kSides);
+      return Eigen::Vector3f(kRadius_m * std::cos(angle), kRadius_m * std::sin(angle), z);
+    };
+    add_face({rim(i, 0.0F), rim(i + 1, 0.0F), rim(i + 1, 0.1F), rim(i, 0.1F)}, 180);
+    lid.push_back(rim(i, 0.1F));
+  }
+  add_face(lid, 190);
+  for (int i = 0; i < 6; ++i) {
+    Mesh box;
+    test_scene::add_box({0.1 + 0.01 * i, 0.08, 0.12 + 0.01 * i}, 0.0, box);
+    const Eigen::Matrix3f turned =
+        Eigen::AngleAxisf(1.047F * static_cast<float>(i), Eigen::Vector3f::UnitZ()).toRotationMatrix();
+    const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Eigen::Vector3f& vertex : box.vertices)
+      mesh.vertices.push_back(turned * (vertex + Eigen::Vector3f(0.55F, 0.0F, 0.0F)));
+    mesh.colours.insert(mesh.colours.end(), box.colours.begin(), box.colours.end());
+    for (const auto& t : box.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+  return mesh;
+}
+
+/// Depth in steps, as a structured-light camera has it: its pattern moves with the camera, not with the scene.
+void step_depth(RgbdFrame& frame) {
+  constexpr double kStep = 0.004;  // of 1/z, per metre
+  for (int y = 0; y < frame.depth.rows; ++y) {
+    for (int x = 0; x < frame.depth.cols; ++x) {
+      auto& z = frame.depth.at<float>(y, x);
+      if (std::isfinite(z)) z = static_cast<float>(1.0 / (kStep * std::round(1.0 / (kStep * z))));
+    }
+  }
+}
+
+/// How far the tracker believes to have gone round when it has gone 70 degrees.
+double degrees_gone(int fewest_corners) {
+  const Mesh mesh = plain_tin_among_boxes();
+  TrackerSettings settings;
+  settings.map.fewest_corners = fewest_corners;
+  ObjectTracker tracker(settings);
+  for (int i = 0; i <= 35; ++i) {
+    const Eigen::Isometry3d T = test_scene::camera_at(0.3 + kTurn * i / 180.0, 0.5, 0.7);
+    RgbdFrame frame = photograph(mesh, T, ShownScene().camera, 1 + 33000 * i);
+    step_depth(frame);
+    tracker.process(frame);
+  }
+  const Take take = tracker.finish();
+  if (!take.frames.back().tracked) return 0.0;
+  const Eigen::Isometry3d gone = take.pose_of(take.frames.front()).inverse() * take.pose_of(take.frames.back());
+  return Eigen::AngleAxisd(gone.linear()).angle() * 360.0 / kTurn;
+}
+
+TEST(ObjectTracker, CornersSayHowFarItIsRoundSomethingPlainAndRound) {
+  EXPECT_NEAR(degrees_gone(12), 70.0, 1.0);
+  EXPECT_GT(std::abs(degrees_gone(100000) - 70.0), 3.0) << "the scene holds a camera without corners, too";
+}
+
 TEST(ObjectTracker, RefusesAFrameOfAnotherSize) {
   const Mesh table = table_with({});
   const Camera smaller = {160, 120, 145.0, 145.0, 79.5, 59.5};
