@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numeric>
 #include <unordered_map>
 
@@ -131,6 +132,45 @@ Mesh largest_part(const Mesh& mesh) {
   }
   compute_normals(out);
   return out;
+}
+
+void take_out_unseen(double foot_z_m, Mesh& mesh, std::vector<bool>& seen) {
+  constexpr double kLeast_m2 = 1e-4;
+  Parts parts(mesh.vertices.size());
+  std::vector<double> area(mesh.vertices.size(), 0.0);
+  const auto is_guess = [&](const std::array<std::uint32_t, 3>& t) {
+    const auto is_low = [&](std::uint32_t v) { return mesh.vertices[v].z() <= foot_z_m; };
+    return std::none_of(t.begin(), t.end(), [&](std::uint32_t v) { return seen[v]; }) &&
+           !std::all_of(t.begin(), t.end(), is_low);
+  };
+  for (const auto& t : mesh.triangles) {
+    if (!is_guess(t)) continue;
+    parts.join(t[0], t[1]);
+    parts.join(t[1], t[2]);
+  }
+  for (const auto& t : mesh.triangles) {
+    if (!is_guess(t)) continue;
+    const Eigen::Vector3f& a = mesh.vertices[t[0]];
+    area[parts.find(t[0])] += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+  }
+  Mesh left;
+  std::vector<bool> left_seen;
+  std::vector<std::int64_t> new_index(mesh.vertices.size(), -1);
+  for (const auto& t : mesh.triangles) {
+    if (is_guess(t) && area[parts.find(t[0])] > kLeast_m2) continue;
+    for (const std::uint32_t v : t) {
+      if (new_index[v] >= 0) continue;
+      new_index[v] = static_cast<std::int64_t>(left.vertices.size());
+      left.vertices.push_back(mesh.vertices[v]);
+      left.normals.push_back(mesh.normals[v]);
+      left.colours.push_back(mesh.colours[v]);
+      left_seen.push_back(seen[v]);
+    }
+    left.triangles.push_back({static_cast<std::uint32_t>(new_index[t[0]]), static_cast<std::uint32_t>(new_index[t[1]]),
+                              static_cast<std::uint32_t>(new_index[t[2]])});
+  }
+  mesh = std::move(left);
+  seen = std::move(left_seen);
 }
 
 }  // namespace houghstream::fusion

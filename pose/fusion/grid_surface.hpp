@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "pipeline/geometry/mesh.hpp"
 #include "pose/fusion/distance_grid.hpp"
 
@@ -13,5 +15,10 @@ Mesh extract_surface(const DistanceGrid& grid);
 /// The connected part of a mesh with the most triangles, with the vertices it uses; for meshes with vertices and
 /// triangles only.
 Mesh largest_part(const Mesh& mesh);
+
+/// Takes out of a closed surface the parts of more than a square centimetre that no view has seen, such as the bottom
+/// of a mug: where they lie is a guess. What is nowhere higher than `foot_z_m` stays: on it the object stands. `seen`:
+/// per vertex, of those that are left afterwards.
+void take_out_unseen(double foot_z_m, Mesh& mesh, std::vector<bool>& seen);
 
 }  // namespace houghstream::fusion

@@ -119,6 +119,7 @@ Alignment KeyframeMap::lay_on(const std::vector<int>& references, const FrameLev
   std::size_t most = 0;
   Eigen::Isometry3d T_by_corners = T_likely;
   for (const int k : references) {
+    if (!settings_.corners_hold && !limits.may_be_lost) break;
     const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
     const std::optional<LandmarkMatch> match = match_landmarks(keyframe.landmarks, seen);
     if (!match || match->inliers.size() < static_cast<std::size_t>(settings_.fewest_corners)) continue;
@@ -131,12 +132,19 @@ Alignment KeyframeMap::lay_on(const std::vector<int>& references, const FrameLev
   const auto contradict = std::count_if(holds.corners.begin(), holds.corners.end(), [&](const SeenCorner& corner) {
     return bearing_error(corner, T_likely) > kContradicts;
   });
+  AlignmentLimits alignment;
+  alignment.coarsest = limits.coarsest;
+  const LevelPoints points = points_of(references);
+  if (!settings_.corners_hold) {
+    const Holds plane{settings_.plane, {}};
+    const Alignment found = align_frame(points, levels, T_likely, plane, alignment);
+    if (is_good(found) || !limits.may_be_lost || most == 0) return found;
+    return align_frame(points, levels, T_by_corners, plane, alignment);
+  }
   const bool contradicted = 2 * static_cast<std::size_t>(contradict) > holds.corners.size();
   const bool jumps = contradicted && limits.may_be_lost && most >= static_cast<std::size_t>(settings_.sure_corners);
   if (contradicted && !jumps) holds.corners.clear();
-  AlignmentLimits alignment;
-  alignment.coarsest = limits.coarsest;
-  return align_frame(points_of(references), levels, jumps ? T_by_corners : T_likely, holds, alignment);
+  return align_frame(points, levels, jumps ? T_by_corners : T_likely, holds, alignment);
 }
 
 Alignment KeyframeMap::held_by_corners(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const {

@@ -32,9 +32,10 @@ struct MapSettings {
   double least_inlier_share = 0.75;
   double least_seen_share = 0.25;
   double most_light_rms = 0.62;
-  int coarsest = 2;                                  ///< level on which registration begins
-  int fewest_corners = 12;                           ///< in common with another frame, to hold a pose
-  int sure_corners = 30;                             ///< in common with a keyframe, to say a pose of their own
+  int coarsest = 2;          ///< level on which registration begins
+  bool corners_hold = true;  ///< those of surroundings; of a thing that turns, shine has some too
+  int fewest_corners = 12;   ///< in common with another frame, to hold a pose
+  int sure_corners = 30;     ///< in common with a keyframe, to say a pose of their own
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
   std::optional<PlaneKnown> plane;                   ///< where the camera stands still
   int threads = 1;

@@ -166,13 +166,14 @@ std::optional<Alignment> ObjectTracker::follow(const RgbdFrame& frame, const Fra
   const Eigen::Isometry3d T_goes_on =
       motion_ == Motion::kObject ? T_last_ * (T_before_.inverse() * T_last_) : T_last_ * T_before_.inverse() * T_last_;
   const LevelPoints& points = map_.local_map(T_last_);
-  const std::optional<LandmarkMatch> flow = follow_corners(last_frame_, frame, landmark_mask(last_frame_, T_last_));
+  const bool goes_on = agreement_of(look_at(points, levels, T_goes_on, map_.settings().coarsest)) >
+                       agreement_of(look_at(points, levels, T_last_, map_.settings().coarsest));
+  const std::optional<LandmarkMatch> flow =
+      motion_ == Motion::kObject ? std::nullopt : follow_corners(last_frame_, frame, {});
   corners_.clear();
   if (flow && flow->inliers.size() >= static_cast<std::size_t>(map_.settings().fewest_corners)) {
     for (const auto& [before, now] : flow->inliers) corners_.push_back({T_last_.inverse() * before, now});
   }
-  const bool goes_on = agreement_of(look_at(points, levels, T_goes_on, map_.settings().coarsest)) >
-                       agreement_of(look_at(points, levels, T_last_, map_.settings().coarsest));
   const Eigen::Isometry3d T_likely = !corners_.empty() ? flow->T_b_a * T_last_ : goes_on ? T_goes_on : T_last_;
   const int coarsest = map_.settings().coarsest;
   Alignment best = lay_on_map(levels, T_likely, coarsest);
@@ -247,8 +248,8 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
     Landmarks landmarks = find_landmarks(frame, landmark_mask(frame, T_last_));
     Alignment held = alignment;
-    if (nearest >= 0) {
-      map_.local_map(T_last_);  // the keyframes that the new one is tied to
+    if (nearest >= 0) map_.local_map(T_last_);  // the keyframes that the new one is tied to
+    if (nearest >= 0 && map_.settings().corners_hold) {
       held = map_.held_by_corners(levels, landmarks, alignment);
       T_last_ = held.T_camera_world;
       T_before_ = T_before_ * alignment.T_camera_world.inverse() * T_last_;
@@ -311,6 +312,7 @@ void ObjectTracker::follow_object_only() {
   map.plane->offset = chosen_.plane.offset;
   map.least_inlier_share = 0.6;
   map.coarsest = 1;
+  map.corners_hold = false;
   map.sure_corners = 12;
   const cv::Rect& box = chosen_.box_px;
   const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);

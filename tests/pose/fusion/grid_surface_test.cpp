@@ -79,5 +79,27 @@ TEST(GridSurface, NothingInsideIsNoSurface) {
   EXPECT_TRUE(largest_part(extract_surface(grid)).triangles.empty());
 }
 
+TEST(GridSurface, WhatNobodySawIsTakenOutUnlessItIsSmallOrBelowTheFoot) {
+  const Mesh closed = largest_part(extract_surface(two_spheres()));
+  const auto left_of = [&](double unseen_above, double foot) {
+    Mesh mesh = closed;
+    mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(1, 2, 3));
+    std::vector<bool> seen;
+    for (const Eigen::Vector3f& vertex : mesh.vertices) seen.push_back(vertex.z() <= unseen_above);
+    take_out_unseen(foot, mesh, seen);
+    EXPECT_EQ(seen.size(), mesh.vertices.size());
+    EXPECT_EQ(mesh.colours.size(), mesh.vertices.size());
+    EXPECT_EQ(mesh.normals.size(), mesh.vertices.size());
+    for (const auto& t : mesh.triangles) EXPECT_LT(*std::max_element(t.begin(), t.end()), mesh.vertices.size());
+    return mesh;
+  };
+  const Mesh open = left_of(0.015, -1.0);
+  EXPECT_GT(open_edges(open), 0);
+  EXPECT_LT(mesh_bounds(open).max().z(), 0.02F);
+  EXPECT_LT(mesh_bounds(open).min().z(), -0.029F);
+  EXPECT_EQ(left_of(0.0298, -1.0).triangles.size(), closed.triangles.size()) << "a few square millimetres";
+  EXPECT_EQ(left_of(0.015, 1.0).triangles.size(), closed.triangles.size()) << "all of it is below the foot";
+}
+
 }  // namespace
 }  // namespace houghstream::fusion

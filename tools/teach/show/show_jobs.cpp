@@ -10,6 +10,7 @@
 #include "drivers/store/object_store.hpp"
 #include "drivers/store/store_build.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pose/fusion/grid_surface.hpp"
 #include "pose/reconstruction/object_tracker.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 #include "tools/teach/mesh_checks.hpp"
@@ -255,7 +256,8 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
   }
   shown.views.insert(shown.views.begin(), std::move(model.views));
   shown.mesh = std::move(model.mesh);
-  shown.seen = std::move(model.seen);
+  shown.seen_surface = share_of_seen(model.seen);
+  fusion::take_out_unseen(making_of(options).foot_m, shown.mesh, model.seen);
   shown.agreement_m = model.agreement_m;
   shown.seen_through = model.seen_through;
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

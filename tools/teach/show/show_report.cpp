@@ -49,11 +49,6 @@ reconstruction::SeenDirections seen_by_all(const Shown& shown) {
   return seen;
 }
 
-double seen_surface(const Shown& shown) {
-  return static_cast<double>(std::count(shown.seen.begin(), shown.seen.end(), true)) /
-         static_cast<double>(std::max<std::size_t>(1, shown.seen.size()));
-}
-
 std::string span_text(const Take& take, const LostSpan& span) {
   return fmt::format("lost between second {:.1f} and {:.1f}: {}", second_of(take, span.from), second_of(take, span.to),
                      span.why);
@@ -150,7 +145,7 @@ OrderedJson report_json(const Shown& shown, const Verdict& verdict) {
   json["outline_overlap"] = shown.outline_overlap ? OrderedJson(*shown.outline_overlap) : OrderedJson();
   json["seen_share"] =
       static_cast<double>(reconstruction::count_seen(seen_by_all(shown))) / reconstruction::kSphereDirections;
-  json["seen_surface"] = seen_surface(shown);
+  json["seen_surface"] = shown.seen_surface;
   json["degrees_round"] = shown.takes.front().degrees_round;
   json["lost"] = lost;
   json["diameter_mm"] = 1e3 * mesh_diameter(shown.mesh);
@@ -261,6 +256,11 @@ double second_of(const Take& take, int frame) {
          static_cast<double>(take.frames[static_cast<std::size_t>(frame)].id.utime - take.frames.front().id.utime);
 }
 
+double share_of_seen(const std::vector<bool>& seen) {
+  return static_cast<double>(std::count(seen.begin(), seen.end(), true)) /
+         static_cast<double>(std::max<std::size_t>(1, seen.size()));
+}
+
 Verdict judge(const Shown& shown) {
   constexpr double kMostDisagreement_m = 0.003;
   constexpr double kLeastSurface = 0.55;
@@ -273,8 +273,8 @@ Verdict judge(const Shown& shown) {
   if (shown.outline_overlap.value_or(1.0) < kLeastOverlap)
     verdict.reasons.push_back(fmt::format("the model's outline overlaps with the masks by {:.2f}, expected at least {}",
                                           *shown.outline_overlap, kLeastOverlap));
-  if (seen_surface(shown) < kLeastSurface)
-    verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * seen_surface(shown)));
+  if (shown.seen_surface < kLeastSurface)
+    verdict.reasons.push_back(fmt::format("only {:.0f} % of its surface was seen", 100.0 * shown.seen_surface));
   if (shown.seen_through > reconstruction::kMostSeenThrough)
     verdict.reasons.push_back(
         fmt::format("the model is seen through in {:.0f} % of its outline, expected less than {:.0f}: a hand or the "
@@ -297,7 +297,7 @@ std::string describe(const Shown& shown, const Verdict& verdict) {
   for (const Take& one : shown.takes) text += describe_take(one);
   text +=
       fmt::format("  {:.0f} mm across, views agree within {:.2f} mm, {:.0f} % of the surface seen; {:.1f} s\n",
-                  1e3 * mesh_diameter(shown.mesh), 1e3 * shown.agreement_m, 100.0 * seen_surface(shown), shown.seconds);
+                  1e3 * mesh_diameter(shown.mesh), 1e3 * shown.agreement_m, 100.0 * shown.seen_surface, shown.seconds);
   return text;
 }
 

@@ -15,13 +15,16 @@ struct Shown {
   std::vector<reconstruction::Take> takes;
   std::vector<std::vector<reconstruction::ShownView>> views;  ///< of each take
   Mesh mesh;
-  std::vector<bool> seen;   ///< per vertex
-  bool second_fits = true;  ///< the second take, where there was one
+  double seen_surface = 0.0;  ///< share of the closed surface that some view shows
+  bool second_fits = true;    ///< the second take, where there was one
   double agreement_m = 0.0;
   double seen_through = 0.0;              ///< reconstruction::seen_through_share()
   std::optional<double> outline_overlap;  ///< median over the views, with masks that were given
   double seconds = 0.0;                   ///< that it took until the model was there
 };
+
+/// Share of vertices.
+double share_of_seen(const std::vector<bool>& seen);
 
 /// Whether a model is worth teaching.
 struct Verdict {

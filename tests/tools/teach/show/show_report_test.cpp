@@ -13,7 +13,7 @@ Shown good_turntable() {
   shown.takes.emplace_back();
   shown.takes.front().motion = reconstruction::Motion::kTurntable;
   shown.views.emplace_back(20);
-  shown.seen.assign(100, true);
+  shown.seen_surface = 1.0;
   shown.outline_overlap = 0.93;
   return shown;
 }
