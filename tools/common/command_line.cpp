@@ -1,10 +1,16 @@
 #include "tools/common/command_line.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <limits>
+#include <type_traits>
 
 namespace houghstream {
 namespace {
@@ -45,6 +51,60 @@ std::string fault_of_config(const CLI::App& app, const CLI::ParseError& error) {
          nearest_option(app, key) + "'";
 }
 
+/// A word in a line about it.
+std::string said(const std::string& word) {
+  return word.empty() ? "nothing" : word;
+}
+
+/// What an option holds when it holds anything.
+template <typename T>
+struct Held {
+  using Type = T;
+};
+
+template <typename T>
+struct Held<std::optional<T>> {
+  using Type = T;
+};
+
+/// Why `word` is no number that an option of this type can have; empty where it is one. No option can have NaN, with
+/// which no comparison holds, or infinity.
+template <typename T>
+std::string fault_of_number(const std::string& word) {
+  T value{};
+  errno = 0;
+  const bool is_number = CLI::detail::lexical_cast(word, value);
+  if constexpr (std::is_floating_point_v<T>) {
+    if (is_number && std::isfinite(value)) return "";
+    return fmt::format("{}, expected a {}number", said(word), is_number ? "finite " : "");
+  } else {
+    // The library stops at the greatest number, and takes -1 for the greatest that has no sign.
+    const bool is_other = errno == ERANGE || (std::is_unsigned_v<T> && word.find('-') != std::string::npos);
+    if (is_number && !is_other) return "";
+    if (word.empty() || word.find_first_not_of("+-0123456789") != std::string::npos)
+      return fmt::format("{}, expected a whole number", said(word));
+    return fmt::format("{}, expected a whole number from {} to {}", word, std::numeric_limits<T>::min(),
+                       std::numeric_limits<T>::max());
+  }
+}
+
+/// Refuses numbers that do not fit; help and the refusal say what is `expected`.
+template <typename T, typename Fits>
+void check_number(CLI::Option& option, const std::string& expected, Fits fits) {
+  const auto fault = [expected, fits](const std::string& word) {
+    T value{};
+    if (CLI::detail::lexical_cast(word, value) && fits(value)) return std::string();
+    return fmt::format("{}, expected {}", said(word), expected);
+  };
+  option.check(fault, expected);
+}
+
+template <typename T>
+void check_range(CLI::Option& option, T low, T high) {
+  check_number<T>(option, fmt::format("{} to {}", low, high),
+                  [low, high](T value) { return value >= low && value <= high; });
+}
+
 }  // namespace
 
 CommandOption& CommandOption::required() {
@@ -73,32 +133,42 @@ CommandOption& CommandOption::delimiter(char between) {
 }
 
 CommandOption& CommandOption::range(int low, int high) {
-  option_->check(CLI::Range(low, high));
+  check_range(*option_, low, high);
   return *this;
 }
 
 CommandOption& CommandOption::range(double low, double high) {
-  option_->check(CLI::Range(low, high));
+  check_range(*option_, low, high);
   return *this;
 }
 
 CommandOption& CommandOption::positive() {
-  option_->check(CLI::PositiveNumber);
+  check_number<double>(*option_, "a number above 0", [](double value) { return value > 0.0; });
   return *this;
 }
 
 CommandOption& CommandOption::non_negative() {
-  option_->check(CLI::NonNegativeNumber);
+  check_number<double>(*option_, "0 or a number above", [](double value) { return value >= 0.0; });
   return *this;
 }
 
 CommandOption& CommandOption::one_of(const std::vector<int>& values) {
-  option_->check(CLI::IsMember(values));
+  check_number<int>(*option_, fmt::format("one of {}", fmt::join(values, ", ")),
+                    [values](int value) { return std::find(values.begin(), values.end(), value) != values.end(); });
   return *this;
 }
 
 CommandOption& CommandOption::transform(const std::map<std::string, double>& values) {
-  option_->transform(CLI::CheckedTransformer(values));
+  std::vector<std::string> names;
+  for (const auto& entry : values) names.push_back(entry.first);
+  const std::string expected = fmt::format("one of {}", fmt::join(names, ", "));
+  const auto replace = [values, expected](std::string& word) {
+    const auto found = values.find(word);
+    if (found == values.end()) return fmt::format("{}, expected {}", said(word), expected);
+    word = fmt::format("{}", found->second);
+    return std::string();
+  };
+  option_->transform(CLI::Validator(replace, expected));
   return *this;
 }
 
@@ -107,7 +177,11 @@ CommandLine::CommandLine(const std::string& words, const std::string& name)
 
 template <typename T>
 CommandOption CommandLine::add_option(const std::string& names, T& value, const std::string& words) {
-  return CommandOption(app_->add_option(names, value, words));
+  CLI::Option* option = app_->add_option(names, value, words);
+  using Number = typename Held<T>::Type;
+  if constexpr (std::is_arithmetic_v<Number>)
+    option->check([](const std::string& word) { return fault_of_number<Number>(word); });
+  return CommandOption(option);
 }
 
 template CommandOption CommandLine::add_option(const std::string&, int&, const std::string&);

@@ -43,7 +43,7 @@ class CommandLine {
   CommandLine(const std::string& words, const std::string& name);
 
   /// `names` as in CLI11: "-s,--start", or "log" for what is named by its place. The types are listed in
-  /// command_line.cpp; an optional stays empty where the option is not given.
+  /// command_line.cpp; an optional stays empty where the option is not given. Numbers are finite ones.
   template <typename T>
   CommandOption add_option(const std::string& names, T& value, const std::string& words = "");
   CommandOption add_flag(const std::string& names, bool& value, const std::string& words);

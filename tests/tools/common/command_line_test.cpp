@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 
@@ -13,6 +14,13 @@ void expect_refused(CommandLine& line, const std::vector<std::string>& words) {
   testing::internal::CaptureStderr();
   EXPECT_NE(line.parse(words).value_or(0), 0) << words.back();
   EXPECT_NE(testing::internal::GetCapturedStderr().find(words.front()), std::string::npos) << words.back();
+}
+
+/// What is said of words that are refused.
+std::string fault(CommandLine& line, const std::vector<std::string>& words) {
+  testing::internal::CaptureStderr();
+  EXPECT_NE(line.parse(words).value_or(0), 0) << words.back();
+  return testing::internal::GetCapturedStderr();
 }
 
 TEST(CommandLine, OptionsTakeWhatIsGivenAndKeepTheRest) {
@@ -60,6 +68,50 @@ TEST(CommandLine, WhatIsOutsideItsLimitsIsRefused) {
   expect_refused(line, {"--share", "0"});
   expect_refused(line, {"--weight", "-1"});
   expect_refused(line, {"--kernel", "4"});
+  for (const char* name : {"--part", "--share", "--weight"}) {
+    for (const char* none : {"nan", "-nan", "inf", "-inf", "1e400"}) expect_refused(line, {name, none});
+  }
+}
+
+TEST(CommandLine, NumbersAreFiniteAndFitTheirOption) {
+  CommandLine line("words", "tool");
+  float share = 0.0F;
+  std::optional<double> limit;
+  int count = 0;
+  std::uint64_t seed = 0;
+  line.add_option("--share", share);
+  line.add_option("--limit", limit);
+  line.add_option("--count", count);
+  line.add_option("--seed", seed);
+  EXPECT_EQ(line.parse({"--share", "-0.5", "--limit", "1e300", "--count", "-3", "--seed", "18446744073709551615"}),
+            std::nullopt);
+  EXPECT_EQ(seed, 18446744073709551615U);
+  expect_refused(line, {"--share", "nan"});
+  expect_refused(line, {"--share", "1e300"});
+  expect_refused(line, {"--limit", "inf"});
+  expect_refused(line, {"--count", "3000000000"});
+  expect_refused(line, {"--count", ""});
+  expect_refused(line, {"--seed", "-1"});
+  expect_refused(line, {"--seed", "18446744073709551616"});
+}
+
+TEST(CommandLine, ARefusedNumberIsSaidWithWhatIsExpected) {
+  CommandLine line("words", "tool");
+  double part = 1.0;
+  std::int64_t frames = 1;
+  int kernel = 3;
+  double unit_m = 1.0;
+  line.add_option("--part", part).range(0.5, 2.0);
+  line.add_option("--frames", frames).positive();
+  line.add_option("--kernel", kernel).one_of({3, 5});
+  line.add_option("--unit", unit_m).transform({{"mm", 1e-3}, {"m", 1.0}});
+  EXPECT_NE(fault(line, {"--part", "3"}).find("--part: 3, expected 0.5 to 2\n"), std::string::npos);
+  EXPECT_NE(fault(line, {"--part", "nan"}).find("--part: nan, expected a finite number\n"), std::string::npos);
+  EXPECT_NE(fault(line, {"--part", "half"}).find("--part: half, expected a number\n"), std::string::npos);
+  EXPECT_NE(fault(line, {"--frames", "0"}).find("--frames: 0, expected a number above 0\n"), std::string::npos);
+  EXPECT_NE(fault(line, {"--frames", "2.5"}).find("--frames: 2.5, expected a whole number\n"), std::string::npos);
+  EXPECT_NE(fault(line, {"--kernel", "4"}).find("--kernel: 4, expected one of 3, 5\n"), std::string::npos);
+  EXPECT_NE(fault(line, {"--unit", "inch"}).find("--unit: inch, expected one of m, mm\n"), std::string::npos);
 }
 
 TEST(CommandLine, WhatIsMissingOrUnknownIsRefused) {
