@@ -12,44 +12,10 @@
 #include <limits>
 #include <type_traits>
 
+#include "tools/common/command_faults.hpp"
+
 namespace houghstream {
 namespace {
-
-/// Letters to change, add or take away (Levenshtein 1966).
-std::size_t edits_between(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
-/// The long name that looks most like `key`.
-std::string nearest_option(const CLI::App& app, const std::string& key) {
-  std::string nearest;
-  for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_configurable()) continue;
-    for (const std::string& name : option->get_lnames()) {
-      if (nearest.empty() || edits_between(name, key) < edits_between(nearest, key)) nearest = name;
-    }
-  }
-  return nearest;
-}
-
-/// The line for a fault of the configuration file. CLI11's own names the key last.
-std::string fault_of_config(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string words = error.what();
-  const std::string key = words.substr(words.find_last_of(' ') + 1);
-  const std::string file = app.get_config_ptr()->as<std::string>();
-  return file + ": '" + key + "' is no key, expected one of the options' long names; the nearest is '" +
-         nearest_option(app, key) + "'";
-}
 
 /// A word in a line about it.
 std::string said(const std::string& word) {
@@ -245,11 +211,11 @@ std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes the last one first
     return std::nullopt;
-  } catch (const CLI::ConfigError& error) {
-    std::cerr << fault_of_config(*app_, error) << "\n";
-    return error.get_exit_code();
-  } catch (const CLI::ParseError& end) {
+  } catch (const CLI::Success& end) {
     return app_->exit(end);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << fault_line(*app_, error) << "\n";
+    return error.get_exit_code();
   }
 }
 

@@ -35,8 +35,8 @@ class CommandOption {
 };
 
 /// A command line, or a subcommand of one, as CLI11 understands it; copies are the same command line. Only
-/// command_line.cpp includes CLI11: each source that did would hold much of it again, and take four seconds longer to
-/// compile.
+/// command_line.cpp and command_faults.cpp include CLI11: each source that did would hold much of it again, and take
+/// four seconds longer to compile.
 class CommandLine {
  public:
   /// `words` say in help what the executable `name` does.
@@ -64,7 +64,7 @@ class CommandLine {
   std::string name() const;
   void set_version(const std::string& version);  ///< printed for --version
   /// Fills the options' values from `words`, without the executable's name. An exit status where that was all: after
-  /// help or version, which go to stdout, or after a fault of the words, whose line goes to stderr.
+  /// help or version, which go to stdout, or after a fault of the words, whose one line goes to stderr.
   std::optional<int> parse(const std::vector<std::string>& words);
 
  private:

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 namespace houghstream {
 namespace {
@@ -19,7 +20,7 @@ void expect_refused(CommandLine& line, const std::vector<std::string>& words) {
 /// What is said of words that are refused.
 std::string fault(CommandLine& line, const std::vector<std::string>& words) {
   testing::internal::CaptureStderr();
-  EXPECT_NE(line.parse(words).value_or(0), 0) << words.back();
+  EXPECT_NE(line.parse(words).value_or(0), 0);
   return testing::internal::GetCapturedStderr();
 }
 
@@ -154,6 +155,45 @@ TEST(CommandLine, OneOfItsCommandsIsGiven) {
   EXPECT_NE(testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(CommandLine, AFaultIsOneLineThatNamesProgramCommandAndWord) {
+  CommandLine line("words", "tool");
+  line.require_subcommand();
+  CommandLine first = line.add_subcommand("first", "words");
+  CommandLine second = line.add_subcommand("second", "words");
+  second.require_subcommand();
+  second.add_subcommand("inner", "words");
+  std::string file;
+  int start = 0;
+  bool loud = false;
+  first.add_option("file", file).required();
+  first.add_option("--start", start);
+  first.add_flag("--loud", loud, "words");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> faults = {
+      {{}, "tool: without a command, expected first, second\n"},
+      {{"bogus"}, "tool: unknown command 'bogus', expected first, second\n"},
+      {{"second", "bogus", "x"}, "tool second: unknown command 'bogus', expected inner\n"},
+      {{"--file", "first"}, "tool: unknown option --file (--help lists all)\n"},
+      {{"first"}, "tool first: file is required\n"},
+      {{"first", "a", "b"}, "tool first: 'b' is one word too many (--help lists what is expected)\n"},
+      {{"first", "a", "--strat=3"}, "tool first: unknown option --strat, did you mean --start? (--help lists all)\n"},
+      {{"first", "a", "--xyzzy", "3"}, "tool first: unknown option --xyzzy (--help lists all)\n"},
+      {{"first", "a", "--start"}, "tool first: --start: without a value, expected one\n"},
+      {{"first", "a", "--start", "abc"}, "tool first: --start: abc, expected a whole number\n"},
+      {{"first", "a", "--start", "1", "--start", "2"}, "tool first: --start: is given more than once\n"},
+      {{"first", "a", "--loud=maybe"}, "tool first: --loud: maybe, expected true or false\n"},
+      {{"first", "a", "---"}, "tool first: unknown option --- (--help lists all)\n"},
+  };
+  for (const auto& [words, expected] : faults) EXPECT_EQ(fault(line, words), expected);
+}
+
+TEST(CommandLine, WhatIsMissingMayBeMisspelt) {
+  CommandLine line("words", "tool");
+  std::string out;
+  line.add_option("--out", out).required();
+  EXPECT_EQ(fault(line, {"--outt", "x"}), "tool: unknown option --outt, did you mean --out? (--help lists all)\n");
+  EXPECT_EQ(fault(line, {}), "tool: --out is required\n");
+}
+
 TEST(CommandLine, HelpSaysWhatItIsFor) {
   CommandLine line("Counts sheep", "tool");
   int count = 17;
@@ -193,10 +233,8 @@ TEST(CommandLine, OptionsComeFromAFileAndTheCommandLineGoesBefore) {
 
 TEST(CommandLine, AnUnknownKeyOfAFileIsRefusedWithTheNearestOne) {
   Configured given("object = \"my.store\"\n");
-  testing::internal::CaptureStderr();
-  EXPECT_NE(given.line.parse({"--config", given.file.string()}).value_or(0), 0);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            given.file.string() +
+  EXPECT_EQ(fault(given.line, {"--config", given.file.string()}),
+            "tool: " + given.file.string() +
                 ": 'object' is no key, expected one of the options' long names; the nearest is 'objects'\n");
 }
 

@@ -1,0 +1,117 @@
+#include "tools/common/command_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <vector>
+
+#include "pipeline/base/printable.hpp"
+#include "tools/common/nearest_word.hpp"
+
+namespace houghstream {
+namespace {
+
+bool is_of(const CLI::ParseError& error, CLI::ExitCodes kind) {
+  return error.get_exit_code() == static_cast<int>(kind);
+}
+
+/// Words that a command has no place for.
+std::vector<std::string> left_over(const CLI::App& command) {
+  std::vector<std::string> words = command.remaining();
+  words.erase(std::remove(words.begin(), words.end(), "--"), words.end());
+  return words;
+}
+
+/// The first command that has words left over, else the last one that is given.
+const CLI::App& faulty_command(const CLI::App& app) {
+  const CLI::App* command = &app;
+  while (left_over(*command).empty() && !command->get_subcommands().empty())
+    command = command->get_subcommands().front();
+  return *command;
+}
+
+/// As a person types it: "hs-log export".
+std::string title_of(const CLI::App& command) {
+  std::string title = command.get_name();
+  for (const CLI::App* parent = command.get_parent(); parent != nullptr; parent = parent->get_parent())
+    title.insert(0, parent->get_name() + " ");
+  return title;
+}
+
+std::string commands_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* each : command.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(each->get_name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<std::string> long_names(const std::vector<const CLI::Option*>& options) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options)
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  return names;
+}
+
+std::string unknown_option(const CLI::App& command, const std::string& word) {
+  const std::string option = word.substr(0, word.find('='));
+  const std::size_t begin = option.find_first_not_of('-');
+  const std::string meant =
+      begin == std::string::npos ? "" : meant_word(option.substr(begin), long_names(command.get_options()));
+  return fmt::format("unknown option {}{} (--help lists all)", option,
+                     meant.empty() ? "" : fmt::format(", did you mean --{}?", meant));
+}
+
+std::string unknown_word(const CLI::App& command, const std::string& word) {
+  if (word.size() > 1 && word.front() == '-') return unknown_option(command, word);
+  const std::string commands = commands_of(command);
+  if (!commands.empty() && command.get_subcommands().empty())
+    return fmt::format("unknown command '{}', expected {}", word, commands);
+  return fmt::format("'{}' is one word too many (--help lists what is expected)", word);
+}
+
+/// CLI11's own words name the key last.
+std::string fault_of_config(const CLI::App& app, const std::string& words) {
+  const std::string key = words.substr(words.find_last_of(' ') + 1);
+  const auto is_key = [](const CLI::Option* option) { return option->get_configurable(); };
+  return fmt::format("{}: '{}' is no key, expected one of the options' long names; the nearest is '{}'",
+                     app.get_config_ptr()->as<std::string>(), key,
+                     nearest_word(key, long_names(app.get_options(is_key))));
+}
+
+/// CLI11's words about an option begin with its name, but where it is a flag that is neither true nor false.
+std::string fault_of_option(const std::string& words, const CLI::ParseError& error) {
+  const std::string name = words.substr(0, words.find(':'));
+  if (is_of(error, CLI::ExitCodes::ArgumentMismatch)) {
+    const bool is_repeated = words.find("At Most") != std::string::npos;
+    return name + (is_repeated ? ": is given more than once" : ": without a value, expected one");
+  }
+  if (is_of(error, CLI::ExitCodes::ConversionError) && words.find(" = ") != std::string::npos) {
+    const std::size_t equals = words.find(" = ");
+    const std::size_t begin = words.find(": ") + 2;
+    return fmt::format("{}: {}, expected true or false", words.substr(begin, equals - begin), words.substr(equals + 3));
+  }
+  return words;
+}
+
+std::string fault_of(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
+  const std::string words = error.what();
+  if (is_of(error, CLI::ExitCodes::ConfigError)) return fault_of_config(app, words);
+  const bool is_missing = is_of(error, CLI::ExitCodes::RequiredError);
+  const std::vector<std::string> others = left_over(command);
+  // What is missing may be there, misspelt.
+  if (!others.empty() && (is_missing || is_of(error, CLI::ExitCodes::ExtrasError)))
+    return unknown_word(command, others.front());
+  if (is_missing && command.get_subcommands().size() < command.get_require_subcommand_min())
+    return "without a command, expected " + commands_of(command);
+  return fault_of_option(words, error);
+}
+
+}  // namespace
+
+std::string fault_line(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& command = faulty_command(app);
+  return printable(fmt::format("{}: {}", title_of(command), fault_of(app, command, error)));
+}
+
+}  // namespace houghstream

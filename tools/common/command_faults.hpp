@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
+class App;
+class ParseError;
+}  // namespace CLI
+
+namespace houghstream {
+
+/// The line for what is wrong with the words of a command line, or with its configuration file: the program and its
+/// command, the option or the word, and what was expected.
+std::string fault_line(const CLI::App& app, const CLI::ParseError& error);
+
+}  // namespace houghstream
