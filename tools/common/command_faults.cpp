@@ -70,13 +70,26 @@ std::string unknown_word(const CLI::App& command, const std::string& word) {
   return fmt::format("'{}' is one word too many (--help lists what is expected)", word);
 }
 
-/// CLI11's own words name the key last.
-std::string fault_of_config(const CLI::App& app, const std::string& words) {
-  const std::string key = words.substr(words.find_last_of(' ') + 1);
+std::string config_file(const CLI::App& app) {
+  return app.get_config_ptr()->results().back();
+}
+
+/// CLI11's own words name the key first where it is an option that no file may set, else last.
+std::string fault_of_key(const CLI::App& app, const std::string& words) {
+  const std::size_t colon = words.find(": This option");
+  const std::string key = colon == std::string::npos ? words.substr(words.find("parse ") + 6) : words.substr(0, colon);
   const auto is_key = [](const CLI::Option* option) { return option->get_configurable(); };
   return fmt::format("{}: '{}' is no key, expected one of the options' long names; the nearest is '{}'",
-                     app.get_config_ptr()->as<std::string>(), key,
-                     nearest_word(key, long_names(app.get_options(is_key))));
+                     config_file(app), key, nearest_word(key, long_names(app.get_options(is_key))));
+}
+
+/// Whether what is said about an option, which it begins with, is about a value of the configuration file.
+bool is_about_config(const CLI::App& app, const std::string& words) {
+  const CLI::Option* option = app.get_option_no_throw(words.substr(0, words.find(':')));
+  if (option == nullptr || option->count() == 0) return false;
+  if (app.get_config_ptr() == nullptr || app.get_config_ptr()->count() != 1) return false;
+  const std::vector<CLI::Option*>& typed = app.parse_order();
+  return std::find(typed.begin(), typed.end(), option) == typed.end();
 }
 
 /// CLI11's words about an option begin with its name, but where it is a flag that is neither true nor false.
@@ -96,7 +109,9 @@ std::string fault_of_option(const std::string& words, const CLI::ParseError& err
 
 std::string fault_of(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::string words = error.what();
-  if (is_of(error, CLI::ExitCodes::ConfigError)) return fault_of_config(app, words);
+  if (is_of(error, CLI::ExitCodes::ConfigError)) return fault_of_key(app, words);
+  if (is_of(error, CLI::ExitCodes::FileError))
+    return config_file(app) + ": cannot be read, expected a file of lines key = value";
   const bool is_missing = is_of(error, CLI::ExitCodes::RequiredError);
   const std::vector<std::string> others = left_over(command);
   // What is missing may be there, misspelt.
@@ -104,7 +119,8 @@ std::string fault_of(const CLI::App& app, const CLI::App& command, const CLI::Pa
     return unknown_word(command, others.front());
   if (is_missing && command.get_subcommands().size() < command.get_require_subcommand_min())
     return "without a command, expected " + commands_of(command);
-  return fault_of_option(words, error);
+  const std::string of_option = fault_of_option(words, error);
+  return is_about_config(app, of_option) ? config_file(app) + ": " + of_option : of_option;
 }
 
 }  // namespace
@@ -112,6 +128,10 @@ std::string fault_of(const CLI::App& app, const CLI::App& command, const CLI::Pa
 std::string fault_line(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = faulty_command(app);
   return printable(fmt::format("{}: {}", title_of(command), fault_of(app, command, error)));
+}
+
+std::string config_fault_line(const CLI::App& app, const std::string& fault) {
+  return printable(fmt::format("{}: {}: {}", app.get_name(), config_file(app), fault));
 }
 
 }  // namespace houghstream

@@ -12,10 +12,26 @@
 #include <limits>
 #include <type_traits>
 
+#include "pipeline/base/checks.hpp"
 #include "tools/common/command_faults.hpp"
+#include "tools/common/key_values.hpp"
 
 namespace houghstream {
 namespace {
+
+/// The configuration file's format. CLI11's own passes over what it does not understand.
+class KeyValueConfig : public CLI::ConfigBase {
+ public:
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::vector<CLI::ConfigItem> items;
+    for (const KeyValue& line : read_key_values(input)) {
+      items.emplace_back();
+      items.back().name = line.key;
+      items.back().inputs = {line.value};
+    }
+    return items;
+  }
+};
 
 /// A word in a line about it.
 std::string said(const std::string& word) {
@@ -180,6 +196,7 @@ CommandOption CommandLine::get_option(const std::string& name) {
 void CommandLine::add_config_file() {
   app_->set_config("--config", "", "TOML file of these options (see init): key = value")->configurable(false);
   app_->allow_config_extras(CLI::config_extras_mode::error);
+  app_->config_formatter(std::make_shared<KeyValueConfig>());
   app_->get_help_ptr()->configurable(false);
 }
 
@@ -216,6 +233,9 @@ std::optional<int> CommandLine::parse(const std::vector<std::string>& words) {
   } catch (const CLI::ParseError& error) {
     std::cerr << fault_line(*app_, error) << "\n";
     return error.get_exit_code();
+  } catch (const InputError& error) {  // of a line of the configuration file
+    std::cerr << config_fault_line(*app_, error.what()) << "\n";
+    return static_cast<int>(CLI::ExitCodes::ConfigError);
   }
 }
 

@@ -52,7 +52,7 @@ class CommandLine {
   CommandOption get_option(const std::string& name);
 
   /// `--config FILE`: the long names of all options as keys of a TOML file, `key = value`; what stands on the command
-  /// line goes before. A key that is no option is refused with the nearest that is.
+  /// line goes before. A key that is no option is refused with the nearest that is; a fault names the file.
   void add_config_file();
   /// Such a file with every option, its default and what it does.
   std::string config_template() const;

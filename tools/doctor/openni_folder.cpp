@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "tools/common/trimmed.hpp"
+
 namespace houghstream::doctor {
 namespace {
 
@@ -18,12 +20,6 @@ bool ends_with(const std::string& text, const std::string& end) {
 std::string stem_of(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.substr(0, name.find(".so"));
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
 }  // namespace

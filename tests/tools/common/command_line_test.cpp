@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -214,11 +215,14 @@ struct Configured {
   CommandLine line{"words", "tool"};
   int count = 3;
   std::string objects = "none";
+  bool loud = false;
   std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "command_line_test.toml";
 
   explicit Configured(const std::string& text) {
     line.add_option("--count", count, "how many").capture_default_str();
     line.add_option("--objects", objects, "which");
+    line.add_flag("--loud", loud, "how");
+    line.set_version("tool 1");
     line.add_config_file();
     std::ofstream(file) << text;
   }
@@ -238,11 +242,48 @@ TEST(CommandLine, AnUnknownKeyOfAFileIsRefusedWithTheNearestOne) {
                 ": 'object' is no key, expected one of the options' long names; the nearest is 'objects'\n");
 }
 
-TEST(CommandLine, AWrongValueOfAFileIsRefused) {
-  Configured given("count = \"many\"\n");
-  testing::internal::CaptureStderr();
-  EXPECT_NE(given.line.parse({"--config", given.file.string()}).value_or(0), 0);
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("many"), std::string::npos);
+/// What is said of a file, behind its name.
+std::string fault_of_file(const std::string& text) {
+  Configured given(text);
+  const std::string said = fault(given.line, {"--config", given.file.string()});
+  const std::string named = "tool: " + given.file.string() + ": ";
+  EXPECT_EQ(said.rfind(named, 0), 0U) << said;
+  return said.substr(std::min(named.size(), said.size()));
+}
+
+TEST(CommandLine, AFaultOfAFileNamesIt) {
+  EXPECT_EQ(fault_of_file("count = \"many\"\n"), "--count: many, expected a whole number\n");
+  EXPECT_EQ(fault_of_file("loud = perhaps\n"), "--loud: perhaps, expected true or false\n");
+  EXPECT_EQ(fault_of_file("# one\n\n[section]\n"), "line 3: [section], expected key = value: there are no sections\n");
+  EXPECT_EQ(fault_of_file("count = 1\nobjects = a\ncount = 2\n"), "line 3: 'count' is in line 1 already\n");
+  EXPECT_EQ(fault_of_file("objects = \"my.store\n"), "line 1: \"my.store has no end, expected a second \"\n");
+  EXPECT_EQ(fault_of_file("objects = 'a' b\n"), "line 1: 'b' behind a text in quotes, expected nothing more\n");
+  EXPECT_EQ(fault_of_file("objects\n"), "line 1: objects, expected key = value\n");
+  EXPECT_EQ(fault_of_file("count = # none\n"), "line 1: count has no value, expected key = value\n");
+  for (const std::string key : {"version", "help", "config"})
+    EXPECT_EQ(fault_of_file(key + " = true\n").rfind("'" + key + "' is no key", 0), 0U) << key;
+}
+
+TEST(CommandLine, AFileThatCannotBeReadIsNamed) {
+  for (const std::string& file : {std::string(testing::TempDir()), std::string("/nowhere.toml")}) {
+    Configured given("");
+    EXPECT_EQ(fault(given.line, {"--config", file}),
+              "tool: " + file + ": cannot be read, expected a file of lines key = value\n");
+  }
+}
+
+TEST(CommandLine, WhatTheCommandLineSaysIsNoFaultOfTheFile) {
+  Configured given("count = 5\n");
+  EXPECT_EQ(fault(given.line, {"--config", given.file.string(), "--count", "many"}),
+            "tool: --count: many, expected a whole number\n");
+}
+
+TEST(CommandLine, ATextOfAFileMayHoldAnything) {
+  Configured given("objects = \"my # store, 'old' = 5\"  # which\n'count' = 4  # how many\nloud = true\n");
+  EXPECT_EQ(given.line.parse({"--config", given.file.string()}), std::nullopt);
+  EXPECT_EQ(given.objects, "my # store, 'old' = 5");
+  EXPECT_EQ(given.count, 4);
+  EXPECT_TRUE(given.loud);
 }
 
 TEST(CommandLine, ATemplateOfAFileIsSuchAFile) {
