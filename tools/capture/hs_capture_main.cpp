@@ -20,13 +20,14 @@ int main(int argc, char** argv) {
   add_source_options(app, source);
   app.add_flag("--list-devices", list, "print the cameras that OpenNI2 finds, and end");
   app.add_option("--log", log, "write this LCM log instead of publishing");
-  app.add_option("--rate", settings.rate_hz, "frames per second; default: the source's; a camera keeps its own");
+  app.add_option("--rate", settings.rate_hz, "frames per second; default: the source's; a camera keeps its own")
+      .range(1e-3, 1e3);
   app.add_option("--frames", settings.frames, "end after this many frames").positive();
   app.add_flag("--loop", settings.loop, "start again at the end");
   app.add_flag("--raw-colour", raw_colour, "colour as raw RGB instead of JPEG");
   app.add_flag("--raw-depth", raw_depth, "depth as DEPTH_MM instead of DEPTH_MM_ZIPPED");
-  app.add_option("--jpeg-quality", settings.format.jpeg_quality, "1 to 100").capture_default_str();
-  app.add_option("--zip-level", settings.format.zip_level, "1 to 9").capture_default_str();
+  app.add_option("--jpeg-quality", settings.format.jpeg_quality, "of the colour").range(1, 100).capture_default_str();
+  app.add_option("--zip-level", settings.format.zip_level, "of the depth").range(1, 9).capture_default_str();
   app.add_option("-c,--channel", settings.channel, "channel of the frames").capture_default_str();
   add_lcm_url_option(app, url);
 

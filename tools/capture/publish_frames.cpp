@@ -29,8 +29,9 @@ class FrameFeed {
     require(!source_->is_live() || !settings.rate_hz,
             "--rate is for recordings; a camera's rate belongs to its --mode");
     rate_hz_ = settings.rate_hz.value_or(source_->rate_hz());
-    require(std::isfinite(rate_hz_) && rate_hz_ > 0.0 && rate_hz_ <= 1000.0, "rate of {} Hz, expected above 0 to 1000",
-            rate_hz_);
+    constexpr double kLeastHz = 1e-3;  // no clock counts the periods of the smallest numbers
+    require(std::isfinite(rate_hz_) && rate_hz_ >= kLeastHz && rate_hz_ <= 1000.0, "rate of {} Hz, expected {} to 1000",
+            rate_hz_, kLeastHz);
   }
 
   std::optional<RgbdFrame> next() {

@@ -42,7 +42,8 @@ struct SearchOptions {
 
 inline void add_search_options(CommandLine& app, SearchOptions& options) {
   app.add_option("--threads", options.threads, "threads").range(1, 64).capture_default_str();
-  app.add_option("--threshold", options.threshold, "smallest score that is reported; default: the profile's");
+  app.add_option("--threshold", options.threshold, "smallest score that is reported; default: the profile's")
+      .range(0.0, 1.0);
   app.add_option("--stride", options.stride,
                  "patch offset, working pixels, whatever the distance; default: the profile's")
       .range(1, 64);

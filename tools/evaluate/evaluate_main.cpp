@@ -267,15 +267,20 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
                  "folder for summary.json, curves.csv, poses.csv, reliability.png, and bop_results.csv where there are "
                  "poses");
   EvaluationRules& rules = options.rules;
-  app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection").capture_default_str();
+  app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection")
+      .range(0.0, 1.0)
+      .capture_default_str();
   app.add_option("--min-visible", rules.detection.min_visible, "less visible objects are ignored")
+      .range(0.0, 1.0)
       .capture_default_str();
   app.add_option("--pose-min-visible", rules.pose_min_visible, "less visible objects do not enter the pose recall")
+      .range(0.0, 1.0)
       .capture_default_str();
   app.add_option(
-      "--operating-score", options.operating_score,
-      "score from which precision and false detections count; in-process, weaker ones are no candidates either; "
-      "default: as hs-detect reports them, and candidates that have a pose");
+         "--operating-score", options.operating_score,
+         "score from which precision and false detections count; in-process, weaker ones are no candidates either; "
+         "default: as hs-detect reports them, and candidates that have a pose")
+      .range(0.0, 1.0);
   app.add_option("--min-quality", options.min_quality,
                  "in-process: poses of lower quality are withheld; default: as by hs-pose")
       .range(0.0, 1.0);
@@ -283,7 +288,8 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
   app.add_option("--min-mass", options.search.min_mass_share,
-                 "in-process: vote mass, over a whole object's, from which a maximum counts; default: the profile's");
+                 "in-process: vote mass, over a whole object's, from which a maximum counts; default: the profile's")
+      .range(0.0, 1.0);
 }
 
 }  // namespace

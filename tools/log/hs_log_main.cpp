@@ -35,8 +35,8 @@ CommandLine add_filter(CommandLine& app, Options& options) {
   CommandLine filter = app.add_subcommand("filter", "copies a part of a log: of some time, of some channels");
   filter.add_option("log", options.in, "LCM log").required();
   filter.add_option("out", options.out, "LCM log to write").required();
-  filter.add_option("-s,--start", options.filter.start_s, "seconds since the log's first event");
-  filter.add_option("-e,--end", options.filter.end_s, "seconds since the log's first event");
+  filter.add_option("-s,--start", options.filter.start_s, "seconds since the log's first event").non_negative();
+  filter.add_option("-e,--end", options.filter.end_s, "seconds since the log's first event").non_negative();
   filter
       .add_option("-c,--channel,--channels", options.filter.channels,
                   "channels: a regular expression for the whole name")

@@ -92,9 +92,11 @@ int main(int argc, char** argv) {
   ObserveOptions options;
   app.add_option("--out", options.out, "write the summary to this JSON file instead of stdout");
   app.add_option("--csv", options.csv, "write one row for each frame to this file");
-  app.add_option("--duration", options.duration_s, "end after this many seconds; default: at a stop signal");
-  app.add_option("--expect", options.expect, "frames that are sent; end when they have come and the bus is quiet");
-  app.add_option("--quiet", options.quiet_s, "how long quiet is, seconds").capture_default_str();
+  app.add_option("--duration", options.duration_s, "end after this many seconds; default: at a stop signal")
+      .non_negative();
+  app.add_option("--expect", options.expect, "frames that are sent; end when they have come and the bus is quiet")
+      .non_negative();
+  app.add_option("--quiet", options.quiet_s, "how long quiet is, seconds").non_negative().capture_default_str();
   add_frame_channels_option(app, options.frame_channels);
   houghstream::add_lcm_url_option(app, options.url);
   return houghstream::run_tool(app, argc, argv, [&] { observe(options); });

@@ -101,7 +101,9 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
   show.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy of frames that come without");
   show.add_option("--channel", options.channel,
                   "of the frames in a log; default: the first that holds any; of a stream OPENNI_FRAME");
-  show.add_option("--seconds", options.longest_s, "that a take of a camera lasts at most").capture_default_str();
+  show.add_option("--seconds", options.longest_s, "that a take of a camera lasts at most")
+      .range(0.1, 86400.0)
+      .capture_default_str();
   show.add_option("--cache", options.rooms_cache, "where rendered rooms are kept; default ~/.cache/houghstream");
   show.add_option("--seed", options.seed, "same seed, same take: same store").capture_default_str();
   show.add_option("--threads", options.threads, "any number gives the same store").range(1, 256).capture_default_str();

@@ -10,6 +10,7 @@
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/training/forest_trainer.hpp"
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/train/training_sources.hpp"
@@ -48,7 +49,9 @@ void add_overrides(CommandLine& app, Overrides& overrides) {
       .range(0.1, 2.0);
   app.add_option("--scale-handling", overrides.scale_handling, "instead of the profile's: five, single or normalised");
   app.add_option("--seed", overrides.seed, "same seed, same data: same forest").capture_default_str();
-  app.add_option("--threads", overrides.threads, "any number gives the same forest").capture_default_str();
+  app.add_option("--threads", overrides.threads, "any number gives the same forest")
+      .range(1, 256)
+      .capture_default_str();
   app.add_option("--trees", overrides.trees).range(1, 1000);
   app.add_option("--max-depth", overrides.max_depth, "levels").range(1, 60);
   app.add_option("--tests", overrides.tests, "random tests tried per node, fewer where it has few samples")
@@ -61,8 +64,8 @@ void add_overrides(CommandLine& app, Overrides& overrides) {
       .range(0.0, 1.0);
   app.add_option("--patches", overrides.patches, "patches per training view").range(4, 100000);
   app.add_option("--composites", overrides.composites, "pictures made of one view").range(1, 100);
-  app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres");
-  app.add_option("--max-distance", overrides.max_distance, "farthest distance taught, metres");
+  app.add_option("--min-distance", overrides.min_distance, "nearest distance taught, metres").range(0.05, 20.0);
+  app.add_option("--max-distance", overrides.max_distance, "farthest distance taught, metres").range(0.05, 20.0);
 }
 
 template <typename T>
@@ -88,6 +91,9 @@ Profile overridden(const Overrides& overrides) {
   take(overrides.composites, training.composites_per_view);
   take(overrides.min_distance, training.min_distance);
   take(overrides.max_distance, training.max_distance);
+  require(training.min_distance < training.max_distance,
+          "--min-distance {}, expected less than the {} of --max-distance", training.min_distance,
+          training.max_distance);
   training.seed = overrides.seed;
   training.threads = overrides.threads;
   return profile;

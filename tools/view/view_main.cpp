@@ -29,7 +29,8 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
       .non_negative();
   app.add_option("--min-score", show.picture.min_score,
                  "weaker detections are not drawn; default 0: everything that is reported, which has a threshold "
-                 "of its own");
+                 "of its own")
+      .range(0.0, 1.0);
   app.add_clearing_flag("--no-depth", show.picture.show_depth, "show the colour image only");
   app.add_flag("--3d", show.picture.show_3d, "instead of the depth image: what was measured, seen from elsewhere");
   app.add_flag("--world", show.picture.show_world,

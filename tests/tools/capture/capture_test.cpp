@@ -126,8 +126,10 @@ TEST_F(CaptureLog, RefusesWhatMakesNoSense) {
   settings.loop = true;
   EXPECT_THROW(capture(0, settings), InputError);
   settings = CaptureSettings{};
-  settings.rate_hz = 0.0;
-  EXPECT_THROW(capture(3, settings), InputError);
+  for (const double none : {0.0, 1e-300}) {
+    settings.rate_hz = none;
+    EXPECT_THROW(capture(3, settings), InputError) << none;
+  }
   settings = CaptureSettings{};
   settings.format.jpeg_quality = 1000;
   EXPECT_THROW(capture(3, settings), InputError);

@@ -64,7 +64,8 @@ TEST(SearchOptions, TheReferenceEngineIsOfferedWhereTheProgramHasOne) {
 
 TEST(SearchOptions, AbsurdValuesAreRefused) {
   const std::vector<std::vector<std::string>> absurd = {
-      {"--stride", "0"}, {"--stride", "100"}, {"--threads", "0"}, {"--threshold", "high"}};
+      {"--stride", "0"},    {"--stride", "100"},   {"--threads", "0"},    {"--threshold", "high"},
+      {"--threshold", "5"}, {"--threshold", "-1"}, {"--threshold", "nan"}};
   for (const std::vector<std::string>& words : absurd) {
     SearchOptions options;
     CommandLine line("words", "name");

@@ -87,7 +87,8 @@ int main(int argc, char** argv) {
   app.add_option("--columns", options.columns, "pictures in a row").range(1, 20).capture_default_str();
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--operating-score", options.operating_score,
-                 "score from which a detection counts; default: what hs-detect publishes");
+                 "score from which a detection counts; default: what hs-detect publishes")
+      .range(0.0, 1.0);
   add_search_options(app, options.search);
   return houghstream::run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

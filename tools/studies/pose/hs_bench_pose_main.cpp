@@ -136,7 +136,8 @@ int main(int argc, char** argv) {
   app.add_flag("--no-rivals", options.no_rivals, "leave the rivals out");
   add_search_options(app, options.search);
   app.add_option("--min-mass", options.search.min_mass_share,
-                 "vote mass, over a whole object's, from which a maximum counts; default: the profile's");
+                 "vote mass, over a whole object's, from which a maximum counts; default: the profile's")
+      .range(0.0, 1.0);
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
   return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

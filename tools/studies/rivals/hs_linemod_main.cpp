@@ -141,10 +141,11 @@ void add_options(CommandLine& app, LinemodOptions& options) {
   app.add_option("--distance-step", options.templates.distance_step, "factor").capture_default_str();
   app.add_option("--min-distance", options.templates.min_distance, "of the scenes, metres").capture_default_str();
   app.add_option("--max-distance", options.templates.max_distance, "of the scenes, metres").capture_default_str();
-  app.add_option("--threads", options.templates.threads).capture_default_str();
+  app.add_option("--threads", options.templates.threads).range(1, 256).capture_default_str();
   options.rules.operating_score = 0.96F;
   app.add_option("--operating-score", options.rules.operating_score,
                  "score from which precision and false detections count")
+      .range(0.0, 1.0)
       .capture_default_str();
 }
 

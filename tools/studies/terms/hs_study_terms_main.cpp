@@ -122,11 +122,14 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "JSON file with all figures");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--min-visible", options.rules.min_visible, "less visible objects are passed over")
+      .range(0.0, 1.0)
       .capture_default_str();
   app.add_option("--score", options.rules.score,
                  "score from which an object counts as reported; of stores hs-detect publishes from 0.65 on")
+      .range(0.0, 1.0)
       .capture_default_str();
   app.add_option("--false-score", options.rules.false_score, "score from which false candidates are looked at")
+      .range(0.0, 1.0)
       .capture_default_str();
   add_search_options(app, options.search);
   return run_tool(app, argc, argv, [&] { run(options); });
