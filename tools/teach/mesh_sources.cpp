@@ -74,7 +74,8 @@ int parse_id(const std::string& text) {
 void append_bop_folder(const fs::path& folder, const MeshSources& sources, std::vector<TaughtMesh>& meshes) {
   const BopModels models = read_bop_models(folder);
   std::set<int> wanted;
-  for (const std::string& id : sources.ids) wanted.insert(parse_id(id));
+  for (const std::string& id : sources.ids)
+    require(wanted.insert(parse_id(id)).second, "--ids {}: stands there twice, expected each id once", id);
   for (const int id : wanted) {
     require(models.diameters.count(id) == 1, "--ids {}: {} has no such object", id,
             (folder / "models_info.json").string());
@@ -103,6 +104,7 @@ void append_plain_folder(const fs::path& folder, const MeshSources& sources, std
 
 /// New names, by id or by old name. Throws InputError for one without effect.
 void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& meshes) {
+  std::set<std::string> renamed;
   for (const std::string& rename : renames) {
     const std::size_t equals = rename.find('=');
     require(equals != std::string::npos && equals > 0 && equals + 1 < rename.size(),
@@ -112,6 +114,7 @@ void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& me
       return mesh.id > 0 ? std::to_string(mesh.id) == which : mesh.file.stem().string() == which;
     });
     require(found != meshes.end(), "--names '{}': no object '{}' is read", rename, which);
+    require(renamed.insert(which).second, "--names '{}': '{}' has another new name already", rename, which);
     found->name = rename.substr(equals + 1);
   }
 }

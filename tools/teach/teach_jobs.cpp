@@ -308,6 +308,7 @@ void name_lookalikes(const std::vector<NamedModel>& models) {
 void teach_meshes(const TeachOptions& options) {
   const Progress progress;
   world::parse_mesh_attitudes(options.attitudes);
+  if (options.rooms.camera) parse_camera(*options.rooms.camera);
   store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on
   Contents old;
   if (options.add) old = read_contents(options.out);

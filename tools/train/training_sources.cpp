@@ -66,6 +66,7 @@ void rename_classes(const std::vector<std::string>& renames, std::vector<Trainin
 }  // namespace
 
 std::vector<TrainingView> read_training_sources(const TrainingSources& sources, int threads) {
+  if (sources.camera) parse_camera(*sources.camera);  // also where no source needs it
   std::vector<TrainingView> all;
   std::vector<TrainingView> turntable;
   for (const std::string& source : sources.views) {

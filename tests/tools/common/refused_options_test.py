@@ -15,6 +15,7 @@ TRAIN = ("hs-train", "--views", f"bop:{NOWHERE}", "--background", f"bop:{NOWHERE
 EVALUATE = ("hs-evaluate", "--scene", NOWHERE)
 FILTER = ("hs-log", "filter", f"{NOWHERE}/in.log", f"{NOWHERE}/out.log")
 RENDER = ("hs-render", "training", "--out", NOWHERE)
+MESH = ("hs-teach", "mesh", f"{NOWHERE}.ply", "--out", NOWHERE)
 
 # Program and command, option, values that it refuses.
 REFUSED = (
@@ -38,8 +39,10 @@ REFUSED = (
     (RENDER, "--distance", ("nan",)),
     (RENDER, "--seed", ("-1",)),
     (("hs-stream",), "--every", ("nan",)),
-    (("hs-teach", "mesh", f"{NOWHERE}.ply", "--out", NOWHERE), "--seed", ("-1",)),
+    (MESH, "--camera", ("bogus",)),
+    (MESH, "--seed", ("-1",)),
     (("hs-track",), "--wait", ("nan",)),
+    (TRAIN, "--camera", ("1",)),
     (TRAIN, "--image-scale", ("nan",)),
     (TRAIN, "--min-distance", ("nan", "3", "-1")),
     (TRAIN, "--offset-share", ("nan",)),

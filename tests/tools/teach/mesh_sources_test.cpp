@@ -60,6 +60,11 @@ TEST(MeshSources, ABopFolderIsReadAsPublished) {
   expect_says(refusal(sources), {"--ids 7", "models_info.json", "no such object"});
   sources.ids = {"2"};
   expect_says(refusal(sources), {"--names '5=mustard'", "no object '5' is read"});
+  sources.ids = {"5", "05"};
+  expect_says(refusal(sources), {"--ids 05", "expected each id once"});
+  sources.ids = {"5"};
+  sources.names = {"5=mustard", "5=ketchup"};
+  expect_says(refusal(sources), {"--names '5=ketchup'", "'5' has another new name already"});
 }
 
 TEST(MeshSources, FilesHaveTheirNamesAndUnits) {

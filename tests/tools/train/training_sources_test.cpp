@@ -121,6 +121,9 @@ TEST(TrainingSources, BopObjectsHaveNamesAlready) {
   TrainingSources sources;
   sources.views = {"bop:" + folder.string()};
   EXPECT_EQ(refusal(sources), "");
+  sources.camera = "bogus";
+  EXPECT_NE(refusal(sources).find("--camera 'bogus'"), std::string::npos) << "though nobody needs it";
+  sources.camera.reset();
   sources.renames = {"object_1=can"};
   EXPECT_NE(refusal(sources).find("--rename goes with --views uw:DIR"), std::string::npos) << refusal(sources);
   sources.renames.clear();
