@@ -248,6 +248,15 @@ void require_utf8_name(const std::string& name, const std::string& where) {
   require(is_utf8(name), "{}: the name '{}' is not UTF-8, expected one that JSON can hold", where, printable(name));
 }
 
+void require_new_name(const std::string& name, const std::string& where) {
+  constexpr std::size_t kLongest = 100;
+  require_utf8_name(name, where);
+  const bool is_word = !name.empty() && name.front() != '.' && name.find_first_of(" ,/\\=") == std::string::npos;
+  require(is_word && name.size() <= kLongest && printable(name) == name,
+          "{}: the name '{}', expected a word of at most {} bytes without spaces, commas, slashes, '=' and a first dot",
+          where, printable(name), kLongest);
+}
+
 bool may_be_replaced(const fs::path& folder) {
   if (!fs::exists(folder)) return true;
   return fs::is_directory(folder) && (fs::is_empty(folder) || is_list_of_store(folder / kJsonFile));

@@ -75,6 +75,10 @@ void write_store_json(const ObjectStore& store);
 /// section 8.1), and the parts of the store would contradict one another.
 void require_utf8_name(const std::string& name, const std::string& where);
 
+/// Throws InputError naming `where` for a new object's name that lists, tables or files could not hold: it is a word of
+/// at most 100 bytes of UTF-8, without commas, slashes, '=' and control characters, and no dot comes first.
+void require_new_name(const std::string& name, const std::string& where);
+
 /// Whether the folder is empty or holds a store or what is left of one, which may be replaced; nothing else may. A
 /// store.json of anybody else makes no store.
 bool may_be_replaced(const std::filesystem::path& folder);

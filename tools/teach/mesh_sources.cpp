@@ -120,7 +120,7 @@ void rename(const std::vector<std::string>& renames, std::vector<TaughtMesh>& me
 }
 
 void require_names(const std::vector<TaughtMesh>& meshes) {
-  for (const TaughtMesh& mesh : meshes) store::require_utf8_name(mesh.name, mesh.file.string());
+  for (const TaughtMesh& mesh : meshes) store::require_new_name(mesh.name, mesh.file.string() + " (--names)");
 }
 
 void require_different(const std::vector<TaughtMesh>& meshes) {

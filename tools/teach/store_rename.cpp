@@ -53,9 +53,7 @@ void rename_in_store(const fs::path& folder, const std::string& old_name, const 
   store::StoreBuild build(folder);
   store = store::read_store(folder);  // nobody else changes it from here on
   const int id = store::object_called(store, old_name).id;
-  require(!new_name.empty(), "{}: a new name of '{}' without a letter, expected one", store.json_file().string(),
-          old_name);
-  store::require_utf8_name(new_name, store.json_file().string());
+  store::require_new_name(new_name, store.json_file().string());
   const bool is_taken = std::any_of(store.objects.begin(), store.objects.end(),
                                     [&](const StoredObject& other) { return other.name == new_name; });
   require(!is_taken, "{}: has a '{}' already, expected a new name for '{}'", store.json_file().string(), new_name,

@@ -111,6 +111,17 @@ TEST(ObjectStore, ANameIsUtf8) {
             "a.ply: the name 'm\\xfcg' is not UTF-8, expected one that JSON can hold");
 }
 
+TEST(ObjectStore, ANewNameIsAWordThatListsAndFilesCanHold) {
+  for (const std::string& good : {std::string("mug"), std::string("tasse-4_größe.b"), std::string(100, 'x')})
+    EXPECT_EQ(error_of([&] { require_new_name(good, "a.ply"); }), "") << good;
+  const std::vector<std::string> bad = {
+      "", " ", "a b", "a,b", "a/b", "a\\b", "a=b", "../x", "a\nb", "a\tb", std::string(101, 'x')};
+  for (const std::string& name : bad)
+    expect_says(error_of([&] { require_new_name(name, "a.ply"); }),
+                {"a.ply: the name '", "expected a word of at most 100"});
+  expect_says(error_of([] { require_new_name("m\xfcg", "a.ply"); }), {"is not UTF-8"});
+}
+
 TEST(ObjectStore, PartsThatContradictOneAnotherAreRefused) {
   const fs::path names = whole_store("store_names");
   replace_in_file(names / "models" / "names.json", "brick", "stone");

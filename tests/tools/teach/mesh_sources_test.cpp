@@ -97,6 +97,10 @@ TEST(MeshSources, WhatNoStoreCanHoldIsRefused) {
   expect_says(refusal(sources), {"the name 'm\\xfcg' is not UTF-8"});
   sources.names = {"m\xfcg=t\xf6pf"};
   expect_says(refusal(sources), {"the name 't\\xf6pf' is not UTF-8"});
+  for (const std::string none : {" ", "a b/c", "x,y", ".x"}) {
+    sources.names = {"m\xfcg=" + none};
+    expect_says(refusal(sources), {"(--names): the name '" + none + "', expected a word"});
+  }
   sources.names = {"m\xfcg=mug"};
   EXPECT_EQ(read_meshes(sources).at(0).name, "mug");
 }

@@ -108,8 +108,8 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   const store::ObjectStore before = store::read_store(options.out);
   const std::string forest = read_text(before.forest_file());
   const cv::Mat views = read_colour_image(before.view_picture(1));
-  rename_in_store(options.out, "bracket", "shelf support");
-  expect_named(options.out, "shelf support");
+  rename_in_store(options.out, "bracket", "shelf_support");
+  expect_named(options.out, "shelf_support");
   const store::ObjectStore after = store::read_store(options.out);
   EXPECT_EQ(after.objects[0].id, before.objects[0].id);
   EXPECT_EQ(after.objects[0].views, before.objects[0].views);
@@ -122,19 +122,26 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   EXPECT_GT(cv::sum(difference.rowRange(0, 26))[0], 0.0) << "another title";
   EXPECT_EQ(cv::sum(difference.rowRange(26, difference.rows)), cv::Scalar()) << "above the same views";
 
-  EXPECT_NE(error_of([&] { rename_in_store(options.out, "bracket", "x"); }).find("expected one of shelf support"),
+  EXPECT_NE(error_of([&] { rename_in_store(options.out, "bracket", "x"); }).find("expected one of shelf_support"),
             std::string::npos);
   EXPECT_NE(error_of([&] {
-              rename_in_store(options.out, "shelf support", "shelf support");
-            }).find("has a 'shelf support' already"),
+              rename_in_store(options.out, "shelf_support", "shelf_support");
+            }).find("has a 'shelf_support' already"),
             std::string::npos);
-  EXPECT_NE(error_of([&] { rename_in_store(options.out, "shelf support", ""); }).find("expected one"),
+  EXPECT_NE(error_of([&] { rename_in_store(options.out, "shelf_support", ""); }).find("expected a word"),
             std::string::npos);
+  for (const std::string& none : {std::string("a/b"), std::string("../x"), std::string("x,y"), std::string(300, 'x')}) {
+    EXPECT_NE(error_of([&] {
+                rename_in_store(options.out, "shelf_support", none);
+              }).find("store.json: the name '" + none + "', expected a word"),
+              std::string::npos)
+        << none;
+  }
   EXPECT_NE(error_of([&] {
-              rename_in_store(options.out, "shelf support", "m\xfcg");
+              rename_in_store(options.out, "shelf_support", "m\xfcg");
             }).find("store.json: the name 'm\\xfcg' is not UTF-8"),
             std::string::npos);
-  rename_in_store(options.out, "shelf support", "bracket");
+  rename_in_store(options.out, "shelf_support", "bracket");
   expect_named(options.out, "bracket");
   EXPECT_EQ(read_text(before.forest_file()), forest) << "byte for byte";
   EXPECT_EQ(std::distance(fs::directory_iterator(options.out.parent_path()), {}), 3) << "nothing is left beside it";

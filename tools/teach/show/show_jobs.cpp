@@ -99,9 +99,7 @@ void check_second(const ShowOptions& options) {
 
 /// What can be said before the take, which nobody wants to show twice.
 void check_show_options(const ShowOptions& options) {
-  require(!options.name.empty() && options.name.find_first_of("/\\ \t\n,=") == std::string::npos,
-          "--name '{}', expected a word without spaces, commas and slashes", options.name);
-  store::require_utf8_name(options.name, "--name");
+  store::require_new_name(options.name, "--name");
   if (!options.keep.empty()) require_keepable(options.keep);
   if (!options.teach) return;
   require(!options.out.empty(), "--out is missing, expected the store to teach into, or --no-teach");

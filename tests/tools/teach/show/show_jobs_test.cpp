@@ -74,7 +74,8 @@ TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
 }
 
 TEST(ShowJobs, BadInputIsOneLine) {
-  EXPECT_NE(line_of(options_for("two words"), take_of(40, 90.0)).find("--name 'two words'"), std::string::npos);
+  EXPECT_NE(line_of(options_for("two words"), take_of(40, 90.0)).find("--name: the name 'two words'"),
+            std::string::npos);
   EXPECT_NE(line_of(options_for("box"), take_of(5, 10.0)).find("5 frames, expected at least 20"), std::string::npos);
   EXPECT_NE(line_of(options_for("box"), take_of(0, 0.0)).find("a take: no frame"), std::string::npos);
   ShowOptions teaching = options_for("box");
