@@ -1,5 +1,7 @@
 #include "tools/capture/capture_options.hpp"
 
+#include <utility>
+
 #include "drivers/openni/camera_options.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "drivers/openni/openni_device.hpp"
@@ -20,11 +22,23 @@ Specification split(const std::string& source) {
 
 openni::CameraOptions camera_options(const SourceOptions& options) {
   openni::CameraOptions live = options.live;
-  live.mode = openni::parse_camera_mode(options.mode);
+  if (options.mode) live.mode = openni::parse_camera_mode(*options.mode);
   live.auto_exposure = !options.fixed_exposure;
   live.auto_white_balance = !options.fixed_white_balance;
   if (!options.camera.empty()) live.camera = openni::camera_of_option(options.camera);
   return live;
+}
+
+/// Throws InputError for an option that only a camera can heed.
+void require_no_camera_option(const SourceOptions& options) {
+  const std::pair<const char*, bool> given[] = {{"--mode", options.mode.has_value()},
+                                                {"--no-auto-exposure", options.fixed_exposure},
+                                                {"--no-auto-white-balance", options.fixed_white_balance},
+                                                {"--assume-registered", options.live.assume_registered},
+                                                {"--record", !options.live.record.empty()},
+                                                {"--record-jpeg", options.live.record_jpeg}};
+  for (const auto& [name, is_given] : given)
+    require(!is_given, "{} goes with --source openni2, not with {}", name, options.source);
 }
 
 }  // namespace
@@ -36,7 +50,8 @@ void add_source_options(CommandLine& app, SourceOptions& options) {
   app.add_option("--camera", options.camera,
                  "openni2, oni: intrinsics, a ROS camera_info YAML file or WIDTHxHEIGHT,fx,fy,cx,cy; default: from the "
                  "field of view that the device states");
-  app.add_option("--mode", options.mode, "openni2: size and rate, WIDTHxHEIGHT@RATE").capture_default_str();
+  app.add_option("--mode", options.mode, "openni2: size and rate, WIDTHxHEIGHT@RATE")
+      .default_str(openni::mode_text(openni::CameraMode()));
   app.add_flag("--no-auto-exposure", options.fixed_exposure, "openni2: leave the exposure as it is");
   app.add_flag("--no-auto-white-balance", options.fixed_white_balance, "openni2: leave the white balance as it is");
   app.add_flag("--assume-registered", options.live.assume_registered,
@@ -47,9 +62,11 @@ void add_source_options(CommandLine& app, SourceOptions& options) {
 
 std::unique_ptr<FrameSource> open_source(const SourceOptions& options, const openni::CameraListener& listener) {
   const auto [kind, value] = split(options.source);
-  const bool live = kind == "openni2";
-  require(live || options.live.record.empty(), "--record goes with --source openni2, not with {}", options.source);
-  if (live) return openni::open_camera_source(value, camera_options(options), listener);
+  if (kind == "openni2") {
+    require(!options.live.record_jpeg || !options.live.record.empty(), "--record-jpeg goes with --record FILE.oni");
+    return openni::open_camera_source(value, camera_options(options), listener);
+  }
+  require_no_camera_option(options);
   if (kind == "oni" && !value.empty())
     return openni::open_oni_source(value, camera_options(options), listener.stop_requested);
   require(options.camera.empty(), "--camera goes with --source openni2 or oni, not with {}", options.source);

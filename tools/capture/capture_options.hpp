@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "drivers/frame_source.hpp"
@@ -9,11 +10,11 @@
 
 namespace houghstream::capture {
 
-/// What the command line says of the source and of a camera. `live` is for openni2 and oni only.
+/// What the command line says of the source and of a camera.
 struct SourceOptions {
   std::string source;
   openni::CameraOptions live;
-  std::string mode = "640x480@30";
+  std::optional<std::string> mode;  ///< see parse_camera_mode; default: that of CameraMode
   std::string camera;
   bool fixed_exposure = false;
   bool fixed_white_balance = false;

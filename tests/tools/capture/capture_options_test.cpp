@@ -43,6 +43,20 @@ TEST(CaptureOptions, WhatTheSourceCannotHeedIsRefused) {
   EXPECT_NE(refusal({"--source", "bop:/x", "--record", "x.oni"}).find("--record"), std::string::npos);
   EXPECT_NE(refusal({"--source", "oni:/x.oni", "--record", "y.oni"}).find("--record"), std::string::npos);
   EXPECT_NE(refusal({"--source", "tum:/x", "--camera", camera}).find("--camera"), std::string::npos);
+  const std::vector<std::vector<std::string>> of_cameras = {{"--mode", "640x480@30"},
+                                                            {"--no-auto-exposure"},
+                                                            {"--no-auto-white-balance"},
+                                                            {"--assume-registered"},
+                                                            {"--record-jpeg"}};
+  for (const char* source : {"bop:/x", "oni:/x.oni"}) {
+    for (std::vector<std::string> words : of_cameras) {
+      const std::string option = words.front();
+      words.emplace_back("--source");
+      words.emplace_back(source);
+      EXPECT_EQ(refusal(words), option + " goes with --source openni2, not with " + source);
+    }
+  }
+  EXPECT_NE(refusal({"--source", "openni2", "--record-jpeg"}).find("goes with --record"), std::string::npos);
 }
 
 TEST(CaptureOptions, WhatNamesNoSourceModeOrCameraIsRefused) {

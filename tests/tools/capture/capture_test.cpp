@@ -141,6 +141,20 @@ TEST_F(CaptureLog, RefusesWhatMakesNoSense) {
   }
 }
 
+class LiveSource : public FakeSource {
+ public:
+  LiveSource() : FakeSource(1) {}
+  bool is_live() const override { return true; }
+};
+
+TEST_F(CaptureLog, ACameraHasNoEndToStartAgainAt) {
+  CaptureSettings settings;
+  settings.loop = true;
+  settings.frames = 3;
+  const auto open = [](const openni::CameraListener&) { return std::make_unique<LiveSource>(); };
+  EXPECT_THROW(capture_to_log(open, settings, file.string()), InputError);
+}
+
 /// Asks this process to end, a moment after it was made.
 class StopSoon {
  public:
