@@ -59,8 +59,9 @@ void judge_qualities(const std::vector<EvaluatedFrame>& frames, const std::map<s
     const auto model = models.find(result.class_name);
     if (model == models.end()) continue;
     const std::vector<Statement> published = pose_statements(frames, result, model->second);
-    out.published.count += static_cast<int>(published.size());
-    out.published.right += count_true(published);
+    if (!out.published) out.published.emplace();
+    out.published->count += static_cast<int>(published.size());
+    out.published->right += count_true(published);
     const std::vector<Statement> known = pose_statements(all, result, model->second);
     statements.insert(statements.end(), known.begin(), known.end());
   }

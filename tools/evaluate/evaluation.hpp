@@ -47,8 +47,8 @@ struct Evaluation {
   /// Of the quality of the poses of these detections (pose_statements()), those that were withheld among them where
   /// they are known; its recall is over all that are right.
   Calibration pose_calibration;
-  PublishedPoses published;
-  std::vector<JudgedPose> poses;  ///< of true detections of listed classes that have a model
+  std::optional<PublishedPoses> published;  ///< nothing unless a listed class has a model to judge poses with
+  std::vector<JudgedPose> poses;            ///< of true detections of listed classes that have a model
   std::map<std::string, double> add_s_recall;
   std::map<std::string, double> add_or_add_s_recall;
   std::optional<LocalisationScores> localisation;  ///< nothing unless poses were measured against depth too

@@ -160,8 +160,9 @@ OrderedJson summary_json(const Evaluation& evaluation, const EvaluationRules& ru
   json["pose_recall_add_s_10"] = recall_json(evaluation.add_s_recall);
   json["pose_recall_add_or_add_s_10"] = recall_json(evaluation.add_or_add_s_recall);
   json["pose_calibration"] = calibration_json(evaluation.pose_calibration);
-  json["published"] = evaluation.published.count;
-  json["published_good_fraction"] = ratio(evaluation.published.right, evaluation.published.count);
+  const std::optional<PublishedPoses>& published = evaluation.published;
+  json["published"] = published ? OrderedJson(published->count) : OrderedJson(nullptr);
+  json["published_good_fraction"] = published ? ratio(published->right, published->count) : OrderedJson(nullptr);
   if (evaluation.localisation) json["bop19"] = localisation_json(*evaluation.localisation);
   if (evaluation.localisation_nothing_withheld)
     json["bop19_nothing_withheld"] = localisation_json(*evaluation.localisation_nothing_withheld);
@@ -214,8 +215,11 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
   }
   text += fmt::format("{:<28}{:>8.3f} score, {:.3f} quality\n", "calibration error",
                       evaluation.detection_calibration.ece, evaluation.pose_calibration.ece);
-  if (evaluation.frames_with_poses > 0)
-    text += fmt::format("poses published {}, right {}\n", evaluation.published.count, evaluation.published.right);
+  if (evaluation.frames_with_poses > 0) {
+    text += evaluation.published ? fmt::format("poses published {}, right {}\n", evaluation.published->count,
+                                               evaluation.published->right)
+                                 : "poses not judged: no models of these objects (--models)\n";
+  }
   text += fmt::format("false detections {} from score {} on, or confirmed by a pose\n", evaluation.false_detections,
                       rules.operating_score);
   for (const auto& [stage, median] : evaluation.stage_ms) text += fmt::format("{:<28}{:>8.2f} ms\n", stage, median);

@@ -71,6 +71,18 @@ TEST(EvaluationReport, SummaryHoldsTheFigures) {
   EXPECT_EQ(json["stage_ms_median"]["pose.icp"], 2.0);
 }
 
+TEST(EvaluationReport, PosesAreNotCountedWithoutModels) {
+  const EvaluationRules rules;
+  const Evaluation with = evaluate(two_frames(), {"mug"}, kModels, rules);
+  EXPECT_EQ(summary_json(with, rules, std::nullopt)["published"], 1);
+  EXPECT_NE(summary_table(with, rules).find("poses published 1, right 1"), std::string::npos);
+  const Evaluation without = evaluate(two_frames(), {"mug"}, {}, rules);
+  EXPECT_TRUE(summary_json(without, rules, std::nullopt)["published"].is_null());
+  EXPECT_TRUE(summary_json(without, rules, std::nullopt)["published_good_fraction"].is_null());
+  EXPECT_EQ(summary_table(without, rules).find("poses published"), std::string::npos);
+  EXPECT_NE(summary_table(without, rules).find("poses not judged"), std::string::npos);
+}
+
 TEST(EvaluationReport, AverageRecallsStandInTheSummaryWhereTheyWereMeasured) {
   const EvaluationRules rules;
   Evaluation evaluation = evaluate(two_frames(), {"mug"}, kModels, rules);

@@ -271,8 +271,8 @@ TEST(PoseMetrics, PublishedPosesOfFalseDetectionsAndThoseOffAreWrong) {
   frames[0].poses->poses.push_back(of_false);
   const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
   const Evaluation evaluation = evaluate(frames, {"mug"}, models, {});
-  EXPECT_EQ(evaluation.published.count, 3);
-  EXPECT_EQ(evaluation.published.right, 1);
+  EXPECT_EQ(evaluation.published->count, 3);
+  EXPECT_EQ(evaluation.published->right, 1);
   EXPECT_EQ(evaluation.pose_calibration.count, 3);
 }
 
@@ -283,8 +283,8 @@ TEST(PoseMetrics, QualityIsJudgedByWithheldPosesToo) {
   frames[0].poses->poses[0].T_camera_object.reset();
   const std::map<std::string, PoseModel> models = {{"mug", {kCorners, 0.2, false}}};
   const Evaluation evaluation = evaluate(frames, {"mug"}, models, {});
-  EXPECT_EQ(evaluation.published.count, 1);
-  EXPECT_EQ(evaluation.published.right, 0);
+  EXPECT_EQ(evaluation.published->count, 1);
+  EXPECT_EQ(evaluation.published->right, 0);
   EXPECT_EQ(evaluation.pose_calibration.count, 2);
   EXPECT_EQ(evaluation.pose_calibration.bins[3].true_fraction, 1.0);
   EXPECT_EQ(evaluation.add_s_recall.at("mug"), 0.0) << "as published";
