@@ -8,6 +8,7 @@
 #include "pipeline/process/warm_up.hpp"
 #include "pose/following/object_follower.hpp"
 #include "pose/pose_estimator.hpp"
+#include "tools/common/mesh_size.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 
@@ -85,6 +86,8 @@ void run_with_models(PoseOptions options) {
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   const int threads = threads_to_start(options.settings.threads);
   std::map<std::string, Mesh> meshes = load_models(options, threads);
+  const std::string fault = fault_of_sizes(meshes, options.model_unit_m, "--model-unit");
+  if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
   if (options.min_quality) publish_from(*options.min_quality, options.settings);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
   const auto estimator = warmed_up(std::move(meshes), options.settings, {threads, made_up.get()});

@@ -11,37 +11,14 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/model/surface_tree.hpp"
+#include "tools/common/mesh_size.hpp"
 
 namespace houghstream::teach {
 namespace {
 
-constexpr double kSmallest_m = 0.01;
-constexpr double kLargest_m = 1.5;  // what the camera's range of 0.3 to 2.6 m shows whole
-
-struct Unit {
-  const char* name;
-  double metres;
-};
-constexpr Unit kUnits[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}};
-
-std::string unit_name(double unit_m) {
-  for (const Unit& unit : kUnits) {
-    if (std::abs(unit.metres - unit_m) < 1e-9) return unit.name;
-  }
-  return fmt::format("units of {} m", unit_m);
-}
-
 void require_size(const std::string& where, double unit_m, const Mesh& mesh) {
-  const double size = mesh_diameter(mesh);
-  if (size >= kSmallest_m && size <= kLargest_m) return;
-  std::vector<std::string> fitting;
-  for (const Unit& unit : kUnits) {
-    const double other = size / unit_m * unit.metres;
-    if (other >= kSmallest_m && other <= kLargest_m)
-      fitting.push_back(fmt::format("--unit {} would make it {:.3g} m", unit.name, other));
-  }
-  fail("{}: {:.4g} m across when read in {}, expected {} to {} m, what the camera sees{}{}", where, size,
-       unit_name(unit_m), kSmallest_m, kLargest_m, fitting.empty() ? "" : ": ", fmt::join(fitting, ", "));
+  const std::string fault = fault_of_size(mesh_diameter(mesh), unit_m, "--unit");
+  require(fault.empty(), "{}: {}", where, fault);
 }
 
 /// CAD in an assembly's coordinates may lie far beside its origin.
