@@ -90,7 +90,10 @@ void check_range(CLI::Option& option, T low, T high) {
 }  // namespace
 
 CommandOption& CommandOption::required() {
-  option_->required();
+  const auto is_missing = [](const std::string& word) {
+    return word.empty() ? said(word) + ", expected a value" : std::string();
+  };
+  option_->required()->check(is_missing);
   return *this;
 }
 

@@ -18,7 +18,7 @@ namespace houghstream {
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option* option) : option_(option) {}
-  CommandOption& required();
+  CommandOption& required();                             ///< nor may its value be empty
   CommandOption& capture_default_str();                  ///< help shows the value from before
   CommandOption& default_str(const std::string& words);  ///< help shows this instead
   CommandOption& description(const std::string& words);  ///< instead of the one that it was added with

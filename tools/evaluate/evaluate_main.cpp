@@ -223,7 +223,8 @@ void check_place(const EvaluateOptions& options) {
 
 void run(EvaluateOptions options) {
   check_place(options);
-  require(!options.log.empty() || !options.forest.empty(), "neither --log nor --forest, expected results to evaluate");
+  require(!options.log.empty() || !options.forest.empty(),
+          "neither --log nor --forest nor --objects, expected results to evaluate");
   require(options.log.empty() || options.scenes.size() == 1, "--log with {} scenes, expected the one that it is of",
           options.scenes.size());
   std::optional<Latencies> latencies;

@@ -193,6 +193,7 @@ TEST(CommandLine, WhatIsMissingMayBeMisspelt) {
   line.add_option("--out", out).required();
   EXPECT_EQ(fault(line, {"--outt", "x"}), "tool: unknown option --outt, did you mean --out? (--help lists all)\n");
   EXPECT_EQ(fault(line, {}), "tool: --out is required\n");
+  EXPECT_EQ(fault(line, {"--out", ""}), "tool: --out: nothing, expected a value\n");
 }
 
 TEST(CommandLine, HelpSaysWhatItIsFor) {

@@ -63,6 +63,12 @@ class RefusedOptions(unittest.TestCase):
         self.assertTrue(done.stderr.startswith(words[0]), done.stderr)
         self.assertIn(option, done.stderr)
 
+    def test_results_to_evaluate(self):
+        self.check(EVALUATE, "neither --log nor --forest nor --objects")
+
+    def test_an_empty_name(self):
+        self.check(("hs-log", "filter", f"{NOWHERE}/in.log", ""), "out: nothing, expected a value")
+
     def test_values(self):
         for command, option, values in REFUSED:
             for value in values:
