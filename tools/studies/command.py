@@ -39,11 +39,13 @@ def positive(text):
 
 
 class Options(argparse.ArgumentParser):
-    """Wrong options end the command with one line. --bin names programs that are there already: none are built."""
+    """Wrong options end the command with one line. --bin names programs that are there already: none are built. A launcher
+    that is installed under another name says so in $HOUGHSTREAM_CALLED."""
 
     def __init__(self, name, description):
-        os.environ["HOUGHSTREAM_COMMAND"] = name
-        super().__init__(prog=f"tools/{name}", description=description, allow_abbrev=False)
+        called = os.environ.get("HOUGHSTREAM_CALLED", f"tools/{name}")
+        os.environ["HOUGHSTREAM_COMMAND"] = os.path.basename(called)
+        super().__init__(prog=called, description=description, allow_abbrev=False)
         self.add_argument("--bin", metavar="DIR", help="programs that are there already; installs and builds nothing")
 
     def error(self, message):

@@ -83,6 +83,10 @@ class Programs(unittest.TestCase):
                 run(program, "--version", cwd="/", env={"PATH": "/usr/bin:/bin"}), rf"^{program.name} \d+\.\d+\.\d+\n$"
             )
 
+    def test_the_demo_has_the_name_that_it_is_started_by(self):
+        self.assertTrue(run(HOME / "bin/houghstream-demo", "--help").startswith("usage: houghstream-demo "))
+        self.assertIn("houghstream-demo: unrecognized", run(HOME / "bin/houghstream-demo", "--nonsense", status=1))
+
     def test_nothing_names_the_source_folder(self):
         for file in HOME.rglob("*"):
             if file.is_file() and not file.is_symlink() and file.suffix != ".a":

@@ -47,7 +47,7 @@ def parse(words):
     if options.unplug and not options.live:
         die("--unplug goes with --live")
     paths = {options.real, options.bin, str(options.out)}
-    options.command = " ".join(["tools/demo", *("DIR" if word in paths else word for word in words)])
+    options.command = " ".join([parser.prog, *("DIR" if word in paths else word for word in words)])
     kind = "teach_demo" if options.teach else "live" if options.live else "real" if options.real else "demo"
     options.out = (options.out or pathlib.Path("out", kind)).resolve()
     return options
