@@ -98,7 +98,7 @@ file(RELATIVE_PATH pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/") # whereve
 configure_file("${PROJECT_SOURCE_DIR}/.cmake/houghstream.pc.in" "${PROJECT_BINARY_DIR}/houghstream.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/houghstream.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/examples/" DESTINATION share/doc/libhoughstream-dev/examples
-        COMPONENT development PATTERN "README.md" EXCLUDE)
+        COMPONENT development USE_SOURCE_PERMISSIONS PATTERN "README.md" EXCLUDE)
 
 # Python and Java
 # Debian's Python looks in lib/python3 below /usr, and in the folder of its own version elsewhere. Which prefix it is, is known

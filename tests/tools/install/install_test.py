@@ -140,10 +140,18 @@ for number in range(100):
 
     def test_the_log_is_read_by_python(self):
         plot = self.folder / "plot.png"
-        said = run("/usr/bin/python3", self.source / "python/read_log.py", self.log, plot, env=python_of_installation())
+        said = run(self.source / "python/read_log.py", self.log, plot, env=python_of_installation())
         self.assertEqual(said.count("mug                  at 0.100 0.200 1.500 m, quality 0.90"), 100)
         self.assertNotIn("can", said)
         self.assertEqual(plot.read_bytes()[:4], b"\x89PNG")
+
+    def test_python_says_in_a_line_why_a_log_is_not_read(self):
+        cut = self.folder / "cut.lcmlog"
+        cut.write_bytes(self.log.read_bytes()[:-10])
+        for words, part in (((), "expected LOG"), (("/nowhere",), "/nowhere"), ((cut,), f"{cut}: cut within event 99")):
+            said = run(self.source / "python/read_log.py", *words, status=1, env=python_of_installation())
+            self.assertIn(part, said.splitlines()[-1])
+            self.assertNotIn("Traceback", said)
 
     def test_without_the_lcm_module_python_says_so(self):
         try:
