@@ -39,27 +39,47 @@ struct Overrides {
   int threads = 2;
 };
 
+bool has_scale_space() {
+  return extensions().search_scale_space != nullptr;
+}
+
+/// Those that this program can train by.
+std::string profiles_here() {
+  std::vector<std::string> names;
+  for (const std::string& name : profile_names()) {
+    const bool in_scale_space = make_profile(name).features.handling == ScaleHandling::kScaleSpace;
+    if (!in_scale_space || has_scale_space()) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Those that this program can compute.
+std::string features_here() {
+  std::uint32_t families = 0;
+  for (const FamilyName& known : kFamilyNames) {
+    if (!is_surface_family(known.family) || extensions().surface_planes != nullptr) families |= known.family;
+  }
+  return family_names(families);
+}
+
 void add_overrides(CommandLine& app, Overrides& overrides) {
-  app.add_option("--profile", overrides.profile, fmt::format("{}", fmt::join(profile_names(), ", ")))
+  app.add_option("--profile", overrides.profile, "settings before all that follow: " + profiles_here())
       .capture_default_str();
-  app.add_option("--features", overrides.features, "instead of the profile's: " + family_names(255));
+  app.add_option("--features", overrides.features, "some of " + features_here());
   app.add_option("--depth-kernel", overrides.depth_kernel, "of the depth derivatives, working pixels")
       .one_of({3, 5, 7, 9});
-  app.add_option("--image-scale", overrides.image_scale, "working size over frame size, instead of the profile's")
-      .range(0.1, 2.0);
-  app.add_option("--scale-handling", overrides.scale_handling, "instead of the profile's: five, single or normalised");
+  app.add_option("--image-scale", overrides.image_scale, "working size over frame size").range(0.1, 2.0);
+  if (has_scale_space()) app.add_option("--scale-handling", overrides.scale_handling, "five, single or normalised");
   app.add_option("--seed", overrides.seed, "same seed, same data: same forest").capture_default_str();
   app.add_option("--threads", overrides.threads, "any number gives the same forest")
       .range(1, 256)
       .capture_default_str();
-  app.add_option("--trees", overrides.trees).range(1, 1000);
+  app.add_option("--trees", overrides.trees, "trees of the forest").range(1, 1000);
   app.add_option("--max-depth", overrides.max_depth, "levels").range(1, 60);
-  app.add_option("--tests", overrides.tests, "random tests tried per node, fewer where it has few samples")
-      .range(1, 100000);
-  app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets rather than by labels")
+  app.add_option("--tests", overrides.tests, "random tests tried per node, at most").range(1, 100000);
+  app.add_option("--offset-share", overrides.offset_share, "of the nodes are split by offsets, not by labels")
       .range(0.0, 1.0);
-  app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel rather than compare two")
-      .range(0.0, 1.0);
+  app.add_option("--alone-share", overrides.alone_share, "of the tests look at one pixel, not at two").range(0.0, 1.0);
   app.add_option("--shape-alone-share", overrides.shape_alone_share, "at least so many of those on depth features")
       .range(0.0, 1.0);
   app.add_option("--patches", overrides.patches, "patches per training view").range(4, 100000);
@@ -126,22 +146,18 @@ void train(const TrainingSources& sources, const Profile& profile, const std::op
 }  // namespace
 
 int train_main(int argc, char** argv, const std::string& name) {
-  CommandLine app(
-      "Teaches objects to a depth-normalised Hough Forest: training views and background in, one forest file out",
-      name);
+  CommandLine app("Teaches a Hough Forest objects: training views and rooms in, one forest file out", name);
   TrainingSources sources;
   Overrides overrides;
   std::string out;
   std::string add_to;
   app.add_option("--views", sources.views, "training views: bop:DIR or uw:DIR").required();
-  app.add_option("--background", sources.backgrounds,
-                 "rooms without the objects: bop:DIR or images:DIR, with the folders below it")
-      .required();
+  app.add_option("--background", sources.backgrounds, "rooms without the objects: bop:DIR or images:DIR").required();
   app.add_option("--instances", sources.instances, "instances of a uw: folder to teach").delimiter(',');
   app.add_option("--rename", sources.renames, "can_1=can: what an instance is called").delimiter(',');
-  app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data that publish none");
+  app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data without one");
   app.add_option("--out", out, "forest file to write").required();
-  app.add_option("--add-to", add_to, "forest that learns the objects beside those it knows; it decides the profile");
+  app.add_option("--add-to", add_to, "forest that learns them too; its profile counts");
   add_overrides(app, overrides);
   return run_tool(app, argc, argv, [&] {
     require_writable(out);

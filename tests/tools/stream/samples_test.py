@@ -1,4 +1,4 @@
-"""The sample .pmd and the systemd units start executables that exist, with options that they know.
+"""The sample .pmd and the systemd units start executables that exist, with options that they know; what --help says is so.
 
 Usage: samples_test.py SOURCE_FOLDER EXECUTABLES_FOLDER
 """
@@ -23,6 +23,18 @@ def check_command(test, name, words):
     test.assertTrue(options)
     for option in options:
         test.assertRegex(words_of_help, rf"(?m)^ .*{option}\b", f"{name} {words}")
+
+
+def help_of(*words):
+    """What --help of a program, or of a program's job, says."""
+    return subprocess.run([str(EXECUTABLES / words[0]), *words[1:], "--help"], capture_output=True, text=True, check=False).stdout
+
+
+class Help(unittest.TestCase):
+    def test_the_product_offers_no_settings_that_studies_alone_have(self):
+        for word in ("gall", "pfh", "--scale-handling"):
+            self.assertNotRegex(help_of("hs-train"), rf"(?<![\w-]){word}\b")
+            self.assertRegex(help_of("hs-study-train"), rf"(?<![\w-]){word}\b")
 
 
 class Samples(unittest.TestCase):
