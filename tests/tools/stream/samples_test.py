@@ -36,6 +36,9 @@ class Help(unittest.TestCase):
             self.assertNotRegex(help_of("hs-train"), rf"(?<![\w-]){word}\b")
             self.assertRegex(help_of("hs-study-train"), rf"(?<![\w-]){word}\b")
 
+    def test_a_benchmark_names_its_own_options(self):
+        self.assertIn("--scene", help_of("hs-bench-kernels"))
+
 
 class Samples(unittest.TestCase):
     def test_pmd(self):

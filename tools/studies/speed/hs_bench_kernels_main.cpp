@@ -1,5 +1,9 @@
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include "detector/forest/forest_file.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
@@ -7,16 +11,40 @@
 #include "tools/common/tool_main.hpp"
 #include "tools/studies/speed/kernels.hpp"
 
+namespace {
+
+bool is_for_benchmark(const char* word) {
+  return std::string_view(word).substr(0, 12) == "--benchmark_";
+}
+
+/// Hands Google Benchmark its own options, and no other: it would answer --help by itself. Returns the rest, and those
+/// of its kind that it does not know.
+std::vector<char*> without_benchmark_options(std::vector<char*> words) {
+  const auto theirs =
+      std::stable_partition(words.begin() + 1, words.end(), [](const char* word) { return !is_for_benchmark(word); });
+  std::vector<char*> handed = {words.front()};
+  handed.insert(handed.end(), theirs, words.end());
+  int count = static_cast<int>(handed.size());
+  benchmark::Initialize(&count, handed.data());
+  words.erase(theirs, words.end());
+  words.insert(words.end(), handed.begin() + 1, handed.begin() + count);
+  return words;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace houghstream;
-  benchmark::Initialize(&argc, argv);  // takes its own options, --benchmark_*, away
-  CommandLine app("Google Benchmarks of what a frame goes through, on one thread; takes --benchmark_* too",
-                  "hs-bench-kernels");
+  std::vector<char*> words = without_benchmark_options({argv, argv + argc});
+  CommandLine app(
+      "Google Benchmarks of what a frame goes through, on one thread; takes Google Benchmark's own options, "
+      "--benchmark_filter=REGEX and others, too",
+      "hs-bench-kernels");
   std::string scene_folder;
   std::string forest_file;
   app.add_option("--scene", scene_folder, "BOP scene folder, whose first frame is looked at").required();
   app.add_option("--forest", forest_file, "depth-normalised forest").required();
-  return run_tool(app, argc, argv, [&] {
+  return run_tool(app, static_cast<int>(words.size()), words.data(), [&] {
     const Forest forest = load_forest(forest_file);
     require(forest.features.handling == ScaleHandling::kDepthNormalised,
             "{}: searches a scale space, expected a forest "
