@@ -208,7 +208,9 @@ std::string CommandLine::config_template() const {
 }
 
 CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& words) {
-  return CommandLine({app_, app_->add_subcommand(name, words)});  // lives as long as the whole line
+  CLI::App* job = app_->add_subcommand(name, words);
+  job->fallthrough();
+  return CommandLine({app_, job});  // lives as long as the whole line
 }
 
 void CommandLine::require_subcommand() {

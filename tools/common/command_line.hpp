@@ -57,6 +57,7 @@ class CommandLine {
   /// Such a file with every option, its default and what it does.
   std::string config_template() const;
 
+  /// What stands behind the subcommand and is no option of it may be one of this line: -v.
   CommandLine add_subcommand(const std::string& name, const std::string& words);
   void require_subcommand();  ///< exactly one
   bool given() const;         ///< this subcommand was asked for

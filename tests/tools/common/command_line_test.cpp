@@ -146,11 +146,15 @@ TEST(CommandLine, OneOfItsCommandsIsGiven) {
   int count = 0;
   CommandLine first = line.add_subcommand("first", "words");
   const CommandLine second = line.add_subcommand("second", "words");
+  bool loud = false;
   first.add_option("--count", count);
-  EXPECT_EQ(line.parse({"first", "--count", "2"}), std::nullopt);
+  line.add_flag("-v,--loud", loud, "words");
+  EXPECT_EQ(line.parse({"first", "--count", "2", "-v"}), std::nullopt);
+  EXPECT_TRUE(loud) << "an option of the whole line, behind the command";
   EXPECT_TRUE(first.given());
   EXPECT_FALSE(second.given());
   EXPECT_EQ(count, 2);
+  expect_refused(line, {"--before", "first", "--behind"});
   testing::internal::CaptureStderr();
   EXPECT_NE(line.parse({}).value_or(0), 0);
   EXPECT_NE(testing::internal::GetCapturedStderr(), "");
