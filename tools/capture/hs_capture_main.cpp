@@ -30,6 +30,8 @@ int main(int argc, char** argv) {
   app.add_option("--zip-level", settings.format.zip_level, "of the depth").range(1, 9).capture_default_str();
   app.add_option("-c,--channel", settings.channel, "channel of the frames").capture_default_str();
   add_lcm_url_option(app, url);
+  app.add_example("hs-capture --source openni2");
+  app.add_example("hs-capture --source bop:out/demo/data/scene --log scene.lcmlog");
 
   return run_tool(app, argc, argv, [&] {
     if (list) {

@@ -210,7 +210,13 @@ std::string CommandLine::config_template() const {
 CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& words) {
   CLI::App* job = app_->add_subcommand(name, words);
   job->fallthrough();
+  job->footer(std::string());       // not that of the whole line
   return CommandLine({app_, job});  // lives as long as the whole line
+}
+
+void CommandLine::add_example(const std::string& command) {
+  const std::string before = app_->get_footer();
+  app_->footer((before.empty() ? "Examples:" : before) + "\n  $ " + command);
 }
 
 void CommandLine::require_subcommand() {

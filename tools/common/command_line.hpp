@@ -62,6 +62,9 @@ class CommandLine {
   void require_subcommand();  ///< exactly one
   bool given() const;         ///< this subcommand was asked for
 
+  /// One of the commands that stand at the end of help as a person types them; a subcommand has its own.
+  void add_example(const std::string& command);
+
   std::string name() const;
   void set_version(const std::string& version);  ///< printed for --version
   /// Fills the options' values from `words`, without the executable's name. An exit status where that was all: after

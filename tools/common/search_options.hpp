@@ -42,13 +42,12 @@ struct SearchOptions {
 
 inline void add_search_options(CommandLine& app, SearchOptions& options) {
   app.add_option("--threads", options.threads, "threads").range(1, 64).capture_default_str();
-  app.add_option("--threshold", options.threshold, "smallest score that is reported; default: the profile's")
-      .range(0.0, 1.0);
+  app.add_option("--threshold", options.threshold, "smallest score reported; default: the profile's").range(0.0, 1.0);
   app.add_option("--stride", options.stride,
                  "patch offset, working pixels, whatever the distance; default: the profile's")
       .range(1, 64);
   if (extensions().reference_engine == nullptr) return;
-  app.add_flag("--reference", options.reference, "search by the slow reference engine; the same detections");
+  app.add_flag("--reference", options.reference, "by the slow reference engine; the same detections");
 }
 
 }  // namespace houghstream

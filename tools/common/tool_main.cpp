@@ -26,14 +26,14 @@ int run_tool(CommandLine& line, int argc, char** argv, const std::function<void(
 }
 
 void add_lcm_url_option(CommandLine& line, std::string& url) {
-  line.add_option("-l,--lcm-url", url, "LCM URL; default $LCM_DEFAULT_URL, else udpm with ttl=0");
+  line.add_option("-l,--lcm-url", url, "default $LCM_DEFAULT_URL, else udpm with ttl=0");
 }
 
 CommandOption add_frame_channels_option(CommandLine& line, std::string& channels) {
   return line
       .add_option("-c,--channel", channels,
-                  "channels of the cameras' frames, on the bus or in a log: a regular expression for the whole "
-                  "name, for instance 'LEFT|RIGHT'")
+                  "channels of the cameras' frames: a regular expression for the whole name, for instance "
+                  "'LEFT|RIGHT'")
       .capture_default_str();
 }
 

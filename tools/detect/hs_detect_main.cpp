@@ -108,6 +108,8 @@ int main(int argc, char** argv) {
   app.add_flag("--keep-frames", options.process.keep_frames,
                "with --output-log: write the frames too, each before its result, so that hs-pose can work on that log");
   add_lcm_url_option(app, options.url);
+  app.add_example("hs-detect --objects my.store");
+  app.add_example("hs-detect --forest out/demo/data/forest -l file://IN.lcmlog --output-log OUT.lcmlog");
 
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = parse_camera(camera);

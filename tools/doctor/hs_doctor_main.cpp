@@ -22,6 +22,8 @@ int main(int argc, char** argv) {
   app.add_option("--height", settings.height, "pixels").range(1, 16384).capture_default_str();
   app.add_option("-c,--channel", settings.frame_channel, "channel of the frames").capture_default_str();
   add_lcm_url_option(app, settings.lcm_url);
+  app.add_example("hs-doctor");
+  app.add_example("hs-doctor --live -c CAMERA_1");
 
   return run_tool(app, argc, argv, [&] {
     hush_log();  // the bus would warn of small buffers itself

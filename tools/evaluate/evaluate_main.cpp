@@ -249,8 +249,8 @@ void run(EvaluateOptions options) {
 
 void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--scene", options.scenes,
-                 "BOP scene folder with the truth; without objects, every detection is false; several, of one camera "
-                 "and the same models, are judged together and each by itself")
+                 "BOP scene folder with the truth; without objects every detection is false; several, of one camera: "
+                 "together and each by itself")
       .required();
   app.add_option("--targets", options.targets,
                  "BOP's list of targets (test_targets_bop19.json): only its images and objects are asked for");
@@ -258,15 +258,15 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   add_frame_channels_option(app, options.channel)
       .description(
           "with --log: results of frames on these channels, a regular expression for the whole name; one camera's");
-  app.add_option("--forest", options.forest, "forest: detects in-process without --log, and names the classes");
-  app.add_option("--objects", options.objects, "object store of hs-teach, instead of --forest and --models");
-  app.add_option("--models", options.models, "models/ of the scene: measures poses (in-process: estimates them)");
-  app.add_option("--classes", options.classes, "classes to measure; default: the forest's, else the truth's")
-      .delimiter(',');
+  app.add_option("--forest", options.forest, "searched where no --log is given; names the classes");
+  app.add_option("--objects", options.objects, "store of hs-teach, for --forest and --models");
+  app.add_option("--models", options.models, "models/ of the scene: poses are measured too");
+  app.add_option("--classes", options.classes, "measured; default: the forest's, else the truth's").delimiter(',');
   app.add_option("--latency", options.latency, "hs-observe's CSV");
-  app.add_option("--out", options.out,
-                 "folder for summary.json, curves.csv, poses.csv, reliability.png, and bop_results.csv where there are "
-                 "poses");
+  app.add_option(
+      "--out", options.out,
+      "folder for summary.json, curves.csv, frames.csv, poses.csv, reliability.png, and bop_results.csv where "
+      "there are poses");
   EvaluationRules& rules = options.rules;
   app.add_option("--min-iou", rules.detection.min_iou, "overlap of a true detection")
       .range(0.0, 1.0)
@@ -285,7 +285,7 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   app.add_option("--min-quality", options.min_quality,
                  "in-process: poses of lower quality are withheld; default: as by hs-pose")
       .range(0.0, 1.0);
-  app.add_flag("--processed-only", rules.processed_only, "leave skipped frames out; default: they count as missed");
+  app.add_flag("--processed-only", rules.processed_only, "skipped frames are left out, not missed");
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
   app.add_option("--min-mass", options.search.min_mass_share,
@@ -315,6 +315,7 @@ int evaluate_main(int argc, char** argv, const std::string& name) {
   CommandLine app("Compares detections and poses with the truth of a scene", name);
   EvaluateOptions options;
   add_options(app, options);
+  app.add_example(name + " --scene SCENE --objects my.store --out RESULTS");
   return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }
 

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
       .range(0, 1000)
       .capture_default_str();
   app.add_option("--threads", settings.threads, "any number gives the same models").range(1, 64).capture_default_str();
+  app.add_example("hs-fuse --views uw:VIEWS --camera 640x480,525,525,319.5,239.5 --out MODELS");
   return run_tool(app, argc, argv, [&] {
     check_outputs(outputs, sources.views);
     settings.grid.voxel = 1e-3 * voxel_mm;

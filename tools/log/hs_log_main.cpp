@@ -28,6 +28,7 @@ constexpr const char* kSources =
 CommandLine add_info(CommandLine& app, Options& options) {
   CommandLine info = app.add_subcommand("info", "channels, types, rates, gaps and sizes");
   info.add_option("log", options.in, "LCM log").required();
+  info.add_example("hs-log info out/demo/data/stream.lcmlog");
   return info;
 }
 
@@ -42,6 +43,7 @@ CommandLine add_filter(CommandLine& app, Options& options) {
                   "channels: a regular expression for the whole name")
       .capture_default_str();
   filter.add_flag("-i,--invert", options.filter.others, "keep the channels that do not match");
+  filter.add_example("hs-log filter IN.lcmlog OUT.lcmlog -s 2.5 -e 10 -c 'OPENNI_.*'");
   return filter;
 }
 
@@ -50,6 +52,7 @@ CommandLine add_seal(CommandLine& app, Options& options) {
       app.add_subcommand("seal", "copies a log with a checksum for each event, which every reader checks");
   seal.add_option("log", options.in, "LCM log").required();
   seal.add_option("out", options.out, "LCM log to write").required();
+  seal.add_example("hs-log seal IN.lcmlog OUT.lcmlog");
   return seal;
 }
 
@@ -61,6 +64,7 @@ CommandLine add_import(CommandLine& app, Options& options) {
   import.add_option("--from-channel", options.recording.channel,
                     "the one channel to read; default: the first with frames");
   import.add_option("-c,--channel", options.channel, "the one channel to write").capture_default_str();
+  import.add_example("hs-log import recording.klg OUT.lcmlog --camera 640x480,525,525,319.5,239.5");
   return import;
 }
 
@@ -69,6 +73,8 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
   const bool frames = name == "bop" || name == "png";
   part.add_option("source", options.in, frames ? kSources : "LCM log with results").required();
   part.add_option("out", options.out, frames ? "folder to write" : "file to write").required();
+  part.add_example(fmt::format("hs-log export {} {}", name,
+                               frames ? "IN.lcmlog FOLDER" : "RESULTS.lcmlog OUT." + name.substr(name.rfind('-') + 1)));
   if (!frames) return part;
   part.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   part.add_option("--from-channel", options.recording.channel,
@@ -87,6 +93,8 @@ int main(int argc, char** argv) {
       "What is damaged is passed over and reported.",
       "hs-log");
   app.require_subcommand();
+  app.add_example("hs-log info out/demo/data/stream.lcmlog");
+  app.add_example("hs-log export csv RESULTS.lcmlog results.csv");
   Options options;
   const CommandLine info = add_info(app, options);
   const CommandLine filter = add_filter(app, options);
@@ -94,6 +102,7 @@ int main(int argc, char** argv) {
   const CommandLine import = add_import(app, options);
   CommandLine exporter = app.add_subcommand("export", "writes frames or results to files");
   exporter.require_subcommand();
+  exporter.add_example("hs-log export bop IN.lcmlog FOLDER");
   const CommandLine bop = add_export(exporter, "bop", "frames as a BOP scene folder", options);
   const CommandLine png = add_export(exporter, "png", "frames as NNNNNN_color.png, NNNNNN_depth.png", options);
   const CommandLine csv =

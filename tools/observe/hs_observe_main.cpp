@@ -99,5 +99,6 @@ int main(int argc, char** argv) {
   app.add_option("--quiet", options.quiet_s, "how long quiet is, seconds").non_negative().capture_default_str();
   add_frame_channels_option(app, options.frame_channels);
   houghstream::add_lcm_url_option(app, options.url);
+  app.add_example("hs-observe --duration 60 --csv frames.csv");
   return houghstream::run_tool(app, argc, argv, [&] { observe(options); });
 }

@@ -140,6 +140,8 @@ int main(int argc, char** argv) {
   add_frame_channels_option(app, options.process.frame_channels);
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
   add_lcm_url_option(app, options.url);
+  app.add_example("hs-pose --objects my.store");
+  app.add_example("hs-pose --models out/demo/data/training/models");
 
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = parse_camera(camera);

@@ -50,6 +50,7 @@ CommandLine add_training(CommandLine& app, Arguments& arguments) {
                   "upright, tilted (as if held) and lying (on its sides or upside down; half a turn's views for each)")
       .delimiter(',')
       .capture_default_str();
+  training.add_example("hs-render training --out VIEWS");
   return training;
 }
 
@@ -58,6 +59,7 @@ CommandLine add_background(CommandLine& app, Arguments& arguments) {
   add_common(background, arguments);
   background.add_option("--seed", arguments.common.seed, "of the training rooms").capture_default_str();
   background.add_option("--count", arguments.background_count, "frames").capture_default_str();
+  background.add_example("hs-render background --out ROOMS");
   return background;
 }
 
@@ -71,6 +73,7 @@ void add_scene(CommandLine& app, Arguments& arguments) {
       .add_option("--sensor", arguments.sensor,
                   "structured_light, as everything is taught, or time_of_flight, with another colour camera too")
       .capture_default_str();
+  scene.add_example("hs-render scene table_small_1 --out SCENE --every 10");
 }
 
 CommandLine add_takes(CommandLine& app, Arguments& arguments) {
@@ -85,6 +88,7 @@ CommandLine add_takes(CommandLine& app, Arguments& arguments) {
       .capture_default_str()
       .range(0, 999);
   takes.add_flag("--development", arguments.takes.development, "rooms to choose settings in, of training seeds");
+  takes.add_example("hs-render takes --objects mug --out TAKES");
   return takes;
 }
 
@@ -100,6 +104,7 @@ CommandLine add_sequences(CommandLine& app, Arguments& arguments) {
   sequences.add_option("--fps", arguments.sequences.fps, "frames a second").capture_default_str();
   sequences.add_flag("--development", arguments.sequences.development,
                      "rooms to choose settings in, of training seeds");
+  sequences.add_example("hs-render sequences --names walk,pushed --out SEQUENCES");
   return sequences;
 }
 
@@ -111,6 +116,7 @@ int main(int argc, char** argv) {
   cv::setNumThreads(1);  // frames are rendered in parallel, each on one thread
   CommandLine app("Renders training views, backgrounds and test scenes in BOP format", "hs-render");
   app.require_subcommand();
+  app.add_example("hs-render scene table_small_1 --out SCENE --every 10");
   const CommandLine training = add_training(app, arguments);
   const CommandLine background = add_background(app, arguments);
   const CommandLine takes = add_takes(app, arguments);

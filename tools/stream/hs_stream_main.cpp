@@ -25,17 +25,17 @@ struct Pace {
 };
 
 void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
-  app.add_option("--source", options.source, "as hs-capture takes it; without it the frames are somebody else's");
+  app.add_option("--source", options.source, "as of hs-capture; without it others send frames");
   app.add_option("--objects", options.objects, "object store of hs-teach");
   app.add_option("--forest", options.forest, "forest file of hs-train, instead of --objects");
-  app.add_option("--models", options.models, "with --forest: models folder; without it there are no poses");
-  app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--models", options.models, "with --forest: models folder, for poses");
+  app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy where frames carry none");
   app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
   app.add_clearing_flag("--no-view", options.view, "no window");
   app.add_flag("--follow", options.follow,
                "poses for each frame at once: hs-pose --follow, and hs-detect --looks-per-second 5 unless "
                "--detect-options say how many");
-  app.add_flag("--track", options.track, "hs-track too: the objects of the world on HOUGHSTREAM_OBJECTS");
+  app.add_flag("--track", options.track, "hs-track too: objects on HOUGHSTREAM_OBJECTS");
   app.add_option("--capture-options", options.capture_options,
                  "further options for hs-capture: --capture-options='--loop --rate 5'");
   app.add_option("--detect-options", options.detect_options, "further options for hs-detect");
@@ -43,17 +43,15 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--track-options", options.track_options, "further options for hs-track");
   app.add_option("--view-options", options.view_options, "further options for hs-view");
   app.add_option("--every", pace.every, "seconds between two lines of state").range(0.1, 3600.0).capture_default_str();
-  app.add_option("--patience", pace.patience, "seconds to end in, before a process is killed; a video may need more")
+  app.add_option("--patience", pace.patience, "seconds in which to end; a video may need more")
       .range(0.1, 600.0)
       .capture_default_str();
   app.add_option(
          "--hang-patience", pace.hang_patience,
-         "seconds without a status (each process sends one a second) after which a process counts as hung: it is "
-         "asked to end, killed --patience later, and started again")
+         "seconds without a status (each process sends one a second) after which one counts as hung: started again")
       .range(2.0, 3600.0)
       .capture_default_str();
-  app.add_option("--start-patience", pace.start_patience,
-                 "the same for a process that has not sent any yet, as it may still read a forest or models")
+  app.add_option("--start-patience", pace.start_patience, "the same for one that has sent none so far")
       .range(2.0, 3600.0)
       .capture_default_str();
   add_lcm_url_option(app, options.lcm_url);
@@ -154,14 +152,17 @@ int main(int argc, char** argv) {
   using namespace houghstream;
   using namespace houghstream::stream;
   CommandLine app(
-      "Starts capture, detection, poses and view, shows their state, starts again what dies or hangs, and ends "
-      "all on Ctrl-C. The end of the source and the closing of the window end the stream too.",
+      "Starts capture, detection, poses and view, shows their state, starts again what dies or hangs. Ends on Ctrl-C, "
+      "at the source's end, and when the window is closed.",
       "hs-stream");
   StreamOptions options;
   Pace pace;
   add_options(app, options, pace);
   app.add_config_file();
-  const CommandLine init = app.add_subcommand("init", "prints a file for --config that says what each option does");
+  app.add_example("hs-stream --source openni2 --objects my.store");
+  app.add_example("hs-stream --source bop:SCENE --capture-options=--loop --objects my.store");
+  CommandLine init = app.add_subcommand("init", "prints a file for --config, with what options do");
+  init.add_example("hs-stream init > stream.toml");
   return run_tool(app, argc, argv, [&] {
     if (init.given()) {
       fmt::print("{}", app.config_template());

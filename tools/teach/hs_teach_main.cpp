@@ -63,6 +63,7 @@ CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   mesh.add_option("--cache", options.rooms.cache, "where rendered rooms are kept; default ~/.cache/houghstream");
   add_practice_options(mesh, options);
   mesh.add_option("--dump-views", options.dump_views, "writes the training views as a BOP training folder too");
+  mesh.add_example("hs-teach mesh mug.ply drill.glb --out my.store");
   return mesh;
 }
 
@@ -108,6 +109,7 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
   show.add_option("--seed", options.seed, "same seed, same take: same store").capture_default_str();
   show.add_option("--threads", options.threads, "any number gives the same store").range(1, 256).capture_default_str();
   add_lcm_url_option(show, words.lcm_url);
+  show.add_example("hs-teach show --from-stream --name mug --out my.store --add");
   return show;
 }
 
@@ -134,21 +136,26 @@ int main(int argc, char** argv) {
       "Teaches objects from their meshes, or by showing them, into an object store for hs-detect and hs-pose",
       "hs-teach");
   app.require_subcommand();
+  app.add_example("hs-teach mesh mug.ply drill.glb --out my.store");
   const CommandLine mesh = add_mesh(app, options, lists);
   const CommandLine show = add_show(app, shown, words);
   CommandLine list = app.add_subcommand("list", "the objects of a store");
   list.add_option("store", folder, "object store").required();
+  list.add_example("hs-teach list my.store");
   CommandLine remove = app.add_subcommand("remove", "takes an object out of a store");
   remove.add_option("store", folder, "object store").required();
   remove.add_option("name", name, "of the object").required();
+  remove.add_example("hs-teach remove my.store mug");
   CommandLine rename = app.add_subcommand("rename", "gives an object of a store another name");
   rename.add_option("store", folder, "object store").required();
   rename.add_option("name", name, "of the object").required();
   rename.add_option("new-name", new_name, "that it gets").required();
+  rename.add_example("hs-teach rename my.store object_1 cup");
   CommandLine practise = app.add_subcommand("practise", "learns anew what detections and poses of a store are worth");
   practise.add_option("store", folder, "object store").required();
   practise.add_option("--names", lists.names, "MUG,DRILL: these only; default: all");
   add_practice_options(practise, options);
+  practise.add_example("hs-teach practise my.store --names mug");
   const int failed = run_tool(app, argc, argv, [&] {
     options.meshes.names = split(lists.names);
     options.meshes.ids = split(lists.ids);

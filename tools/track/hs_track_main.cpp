@@ -104,6 +104,7 @@ int main(int argc, char** argv) {
   TrackOptions options;
   std::string camera;
   add_options(app, options, camera);
+  app.add_example("hs-track --objects my.store -c 'CAMERA_[12]' --cameras cameras.yaml");
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
     if (!camera.empty()) options.process.camera = parse_camera(camera);

@@ -63,8 +63,7 @@ std::string features_here() {
 }
 
 void add_overrides(CommandLine& app, Overrides& overrides) {
-  app.add_option("--profile", overrides.profile, "settings before all that follow: " + profiles_here())
-      .capture_default_str();
+  app.add_option("--profile", overrides.profile, "to begin with: " + profiles_here()).capture_default_str();
   app.add_option("--features", overrides.features, "some of " + features_here());
   app.add_option("--depth-kernel", overrides.depth_kernel, "of the depth derivatives, working pixels")
       .one_of({3, 5, 7, 9});
@@ -159,6 +158,7 @@ int train_main(int argc, char** argv, const std::string& name) {
   app.add_option("--out", out, "forest file to write").required();
   app.add_option("--add-to", add_to, "forest that learns them too; its profile counts");
   add_overrides(app, overrides);
+  app.add_example(name + " --views bop:VIEWS --background bop:ROOMS --out my.forest");
   return run_tool(app, argc, argv, [&] {
     require_writable(out);
     std::optional<Forest> old;

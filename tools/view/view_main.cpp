@@ -49,6 +49,8 @@ int main(int argc, char** argv) {
   houghstream::view::ViewerSettings settings;
   std::string camera;
   add_options(app, settings, camera);
+  app.add_example("hs-view --objects my.store");
+  app.add_example("hs-view --models out/demo/data/training/models --snapshot seen.png --after 30");
   return houghstream::run_tool(app, argc, argv, [&] {
     if (!camera.empty()) settings.show.camera = houghstream::parse_camera(camera);
     houghstream::view::run_viewer(settings);

@@ -215,6 +215,22 @@ TEST(CommandLine, HelpSaysWhatItIsFor) {
   EXPECT_EQ(help.find("unsaid"), std::string::npos);
 }
 
+TEST(CommandLine, HelpEndsWithExamplesOfItsOwn) {
+  CommandLine line("words", "tool");
+  line.add_example("tool first");
+  line.add_example("tool second --count 2");
+  line.add_subcommand("first", "words");
+  const auto help = [&](const std::vector<std::string>& words) {
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(line.parse(words), 0);
+    return testing::internal::GetCapturedStdout();
+  };
+  const std::string examples = "\nExamples:\n  $ tool first\n  $ tool second --count 2\n";
+  const std::string said = help({"--help"});
+  EXPECT_EQ(said.substr(said.size() - std::min(said.size(), examples.size())), examples);
+  EXPECT_EQ(help({"first", "--help"}).find("Examples"), std::string::npos);
+}
+
 /// A line with options of a file.
 struct Configured {
   CommandLine line{"words", "tool"};

@@ -3,6 +3,7 @@
 Usage: samples_test.py SOURCE_FOLDER EXECUTABLES_FOLDER
 """
 
+import math
 import os
 import pathlib
 import re
@@ -30,7 +31,42 @@ def help_of(*words):
     return subprocess.run([str(EXECUTABLES / words[0]), *words[1:], "--help"], capture_output=True, text=True, check=False).stdout
 
 
+def jobs_in(text):
+    """The jobs that a help names."""
+    listed = re.search(r"^Subcommands:\n(.*?)(?:\n\n|\Z)", text, re.M | re.S)
+    return re.findall(r"^  ([a-z][a-z-]*) ", listed[1], re.M) if listed else []
+
+
+def every_help(*words):
+    """(command, what its --help says) of a program and of each of its jobs."""
+    text = help_of(*words)
+    yield " ".join(words), text
+    for job in jobs_in(text):
+        yield from every_help(*words, job)
+
+
 class Help(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.helps = dict(pair for program in sorted(EXECUTABLES.glob("hs-*")) for pair in every_help(program.name))
+
+    def test_it_fits_a_screen(self):
+        columns, lines = 80, 50
+        self.assertGreater(len(self.helps), 40)
+        for command, text in self.helps.items():
+            taken = sum(max(1, math.ceil(len(line) / columns)) for line in text.rstrip("\n").split("\n"))
+            self.assertLessEqual(taken, lines, command)
+
+    def test_it_ends_with_examples_whose_options_are_there(self):
+        for command, text in self.helps.items():
+            examples = text.partition("\n\nExamples:\n")[2].splitlines()
+            self.assertTrue(examples, command)
+            for example in examples:
+                self.assertTrue(example.startswith("  $ ") and command in example, f"{command}: {example}")
+                here = max((known for known in self.helps if known in example), key=len)
+                for option in re.findall(r"(?<=\s)--?[a-z3][\w-]*", example[4:]):
+                    self.assertIn(option, self.helps[here], example)
+
     def test_the_product_offers_no_settings_that_studies_alone_have(self):
         for word in ("gall", "pfh", "--scale-handling"):
             self.assertNotRegex(help_of("hs-train"), rf"(?<![\w-]){word}\b")

@@ -17,7 +17,10 @@ int main(int argc, char** argv) {
     command.add_option("source", source, "folder with the frames").required();
     command.add_option("scene", scene, "scene folder to write").required();
   }
+  boxes.add_example("hs-import boxes FRAMES SCENE");
+  uw_scene.add_example("hs-import uw-scene DIR/desk/desk_1 SCENE");
   uw_scene.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy").capture_default_str();
+  app.add_example("hs-import uw-scene DIR/desk/desk_1 SCENE");
   return run_tool(app, argc, argv, [&] {
     const int count =
         boxes.given() ? import_boxes(source, scene) : import_uw_scene(source, parse_camera(camera), scene);

@@ -90,5 +90,6 @@ int main(int argc, char** argv) {
                  "score from which a detection counts; default: what hs-detect publishes")
       .range(0.0, 1.0);
   add_search_options(app, options.search);
+  app.add_example("hs-failures --forest my.forest --scene SCENE --out failures.png");
   return houghstream::run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

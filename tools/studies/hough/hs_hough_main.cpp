@@ -87,5 +87,6 @@ int main(int argc, char** argv) {
   app.add_option("--frame", options.frame, "position in the scene, from 0").required();
   app.add_option("--out", options.out, "picture to write, PNG").required();
   add_search_options(app, options.search);
+  app.add_example("hs-hough --forest my.forest --scene SCENE --frame 0 --out votes.png");
   return houghstream::run_tool(app, argc, argv, [&] { run(options); });
 }

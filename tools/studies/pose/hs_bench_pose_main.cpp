@@ -139,5 +139,6 @@ int main(int argc, char** argv) {
                  "vote mass, over a whole object's, from which a maximum counts; default: the profile's")
       .range(0.0, 1.0);
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
+  app.add_example("hs-bench-pose --forest my.forest --scene SCENE --out OUT");
   return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

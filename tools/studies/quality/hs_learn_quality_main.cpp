@@ -92,5 +92,6 @@ int main(int argc, char** argv) {
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   add_search_options(app, options.search);
   app.get_option("--threshold").description("smallest score of a detection that is tried; default: 0.1");
+  app.add_example("hs-learn-quality --forest my.forest --scene A B C D --models VIEWS/models");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

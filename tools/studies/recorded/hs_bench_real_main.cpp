@@ -86,5 +86,8 @@ int main(int argc, char** argv) {
   app.add_option("--references", options.references, "JSON with its reference poses").required();
   app.add_option("--out", options.out, "folder for poses.json, sheet_N.png and a picture of the scan").required();
   add_search_options(app, options.search);
+  app.add_example(
+      "hs-bench-real --scenes SCENES --forest my.forest --models MODELS --scan scan.ply --references poses.json --out "
+      "OUT");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

@@ -155,5 +155,6 @@ int main(int argc, char** argv) {
   CommandLine app("Teaches objects to OpenCV's LINEMOD and measures it in scenes of known truth", "hs-linemod");
   LinemodOptions options;
   add_options(app, options);
+  app.add_example("hs-linemod --views bop:VIEWS --scene SCENE --out OUT");
   return houghstream::run_tool(app, argc, argv, [&] { options.tune ? tune(options) : evaluate_scenes(options); });
 }

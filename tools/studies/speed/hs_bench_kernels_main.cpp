@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   std::string forest_file;
   app.add_option("--scene", scene_folder, "BOP scene folder, whose first frame is looked at").required();
   app.add_option("--forest", forest_file, "depth-normalised forest").required();
+  app.add_example("hs-bench-kernels --scene SCENE --forest my.forest --benchmark_filter=vote");
   return run_tool(app, static_cast<int>(words.size()), words.data(), [&] {
     const Forest forest = load_forest(forest_file);
     require(forest.features.handling == ScaleHandling::kDepthNormalised,

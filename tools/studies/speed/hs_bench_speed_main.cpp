@@ -78,5 +78,6 @@ int main(int argc, char** argv) {
   app.add_option("--linemod-threads", options.linemod.threads).capture_default_str();
   app.add_option("--out", options.out, "JSON file to write");
   app.add_flag("--instruction-sets", options.list_sets, "list those that this processor has, and end");
+  app.add_example("hs-bench-speed --scene SCENE --detector ours=my.forest --detector one=my.forest,threads=1");
   return run_tool(app, argc, argv, [&] { options.list_sets ? list_instruction_sets() : run(options); });
 }

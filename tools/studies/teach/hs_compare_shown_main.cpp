@@ -78,5 +78,6 @@ int main(int argc, char** argv) {
   app.add_option("--object", options.object, "its name there").required();
   app.add_option("--kept", options.kept, "folder of hs-teach show --keep").required();
   app.add_option("--out", options.out, "folder for compared.json, taught.png and true.png").required();
+  app.add_example("hs-compare-shown --takes TAKES --object mug --kept KEPT --out OUT");
   return run_tool(app, argc, argv, [&] { run(options); });
 }

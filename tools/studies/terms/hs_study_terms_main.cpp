@@ -132,5 +132,6 @@ int main(int argc, char** argv) {
       .range(0.0, 1.0)
       .capture_default_str();
   add_search_options(app, options.search);
+  app.add_example("hs-study-terms --forest my.forest --group rendered=SCENE_1,SCENE_2 --group recorded=SCENE_3");
   return run_tool(app, argc, argv, [&] { run(options); });
 }
