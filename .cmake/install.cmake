@@ -29,18 +29,25 @@ install(FILES "${PROJECT_BINARY_DIR}/virtual_camera/libOpenNI2.so.0" DESTINATION
 install(FILES "${PROJECT_BINARY_DIR}/virtual_camera/OpenNI2/Drivers/libOniFile.so.0"
         DESTINATION "${virtual_camera}/OpenNI2/Drivers" COMPONENT programs)
 
-# Manual pages and completions are made of --help.
+# Manual pages and completions are made of --help. Scripts are files, all others targets.
 find_program(HELP2MAN help2man)
 set(manual "${PROJECT_BINARY_DIR}/man")
 set(pages)
-foreach(program IN LISTS programs)
+set(hs-spy_script "${PROJECT_BINARY_DIR}/bin/hs-spy")
+set(houghstream-demo_script "${PROJECT_SOURCE_DIR}/tools/houghstream-demo")
+foreach(program IN LISTS programs ITEMS hs-spy houghstream-demo)
   install(FILES "${PROJECT_SOURCE_DIR}/tools/stream/bash_completion" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
           RENAME "${program}" COMPONENT programs)
   if(HELP2MAN AND NOT HOUGHSTREAM_SANITIZE) # a leak of a library would fail --help
-    add_custom_command(OUTPUT "${manual}/${program}.1.gz" DEPENDS ${program}
-      COMMAND "${CMAKE_COMMAND}" -E make_directory "${manual}"
-      COMMAND "${HELP2MAN}" --no-info --no-discard-stderr --output "${manual}/${program}.1" "$<TARGET_FILE:${program}>"
-      COMMAND gzip -9nf "${manual}/${program}.1"
+    set(made_of ${program})
+    set(told_by "$<TARGET_FILE:${program}>")
+    if(DEFINED ${program}_script)
+      set(made_of "${${program}_script}")
+      set(told_by "${made_of}")
+    endif()
+    add_custom_command(OUTPUT "${manual}/${program}.1.gz" DEPENDS "${made_of}" "${PROJECT_SOURCE_DIR}/.cmake/manual_page.sh"
+      COMMAND "${CMAKE_COMMAND}" -E env PYTHONDONTWRITEBYTECODE=1 "HELP2MAN=${HELP2MAN}"
+              sh "${PROJECT_SOURCE_DIR}/.cmake/manual_page.sh" "${told_by}" "${PROJECT_VERSION}" "${manual}/${program}.1.gz"
       VERBATIM)
     list(APPEND pages "${manual}/${program}.1.gz")
   endif()

@@ -1,6 +1,7 @@
 """What `cmake --install` leaves: programs that run from there, libraries and headers that the examples build with, and types
 for Python. Arguments: the source folder, the build folder."""
 
+import gzip
 import os
 import pathlib
 import re
@@ -75,13 +76,22 @@ class PythonPackage(unittest.TestCase):
 
 
 class Programs(unittest.TestCase):
-    def test_they_run_from_where_they_are_and_have_manual_pages(self):
+    def test_they_run_from_where_they_are(self):
         programs = sorted(HOME.glob("bin/hs-*"))
         self.assertGreater(len(programs), 14)
         for program in programs:
             self.assertRegex(
                 run(program, "--version", cwd="/", env={"PATH": "/usr/bin:/bin"}), rf"^{program.name} \d+\.\d+\.\d+\n$"
             )
+
+    @unittest.skipUnless(shutil.which("help2man"), "no manual pages without help2man")
+    def test_they_have_manual_pages_with_the_options_of_their_jobs(self):
+        pages = {page.name: gzip.decompress(page.read_bytes()).decode() for page in HOME.glob("share/man/man1/*.gz")}
+        self.assertEqual(sorted(pages), sorted(f"{program.name}.1.gz" for program in HOME.glob("bin/*")))
+        for page, words in (("hs-log", r".SH HS\-LOG EXPORT BOP"), ("hs-log", r"\-\-from\-channel"), ("hs-teach", r"\-\-no\-teach"),
+                            ("hs-render", r"\-\-pitches"), ("hs-import", "hs-import boxes FRAMES SCENE"), ("hs-spy", r"\-\-heap"),
+                            ("houghstream-demo", r"\-\-unplug"), ("hs-detect", ".SH EXAMPLES")):  # fmt: skip
+            self.assertIn(words, pages[f"{page}.1.gz"], page)
 
     def test_the_demo_has_the_name_that_it_is_started_by(self):
         self.assertTrue(run(HOME / "bin/houghstream-demo", "--help").startswith("usage: houghstream-demo "))
