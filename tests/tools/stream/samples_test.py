@@ -76,6 +76,31 @@ class Help(unittest.TestCase):
         self.assertIn("--scene", help_of("hs-bench-kernels"))
 
 
+class Completion(unittest.TestCase):
+    def completed(self, *words):
+        """What the last of the words may become."""
+        script = 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _houghstream "$1"; printf "%s\\n" "${COMPREPLY[@]}"'
+        words = (str(EXECUTABLES / words[0]), *words[1:])
+        said = subprocess.run(["bash", "-c", script, "bash", str(SAMPLES / "bash_completion"), *words], capture_output=True,
+                              text=True, check=True)  # fmt: skip
+        return said.stdout.split()
+
+    def test_jobs_wherever_one_is_awaited(self):
+        self.assertEqual(self.completed("hs-log", "ex"), ["export"])
+        self.assertEqual(self.completed("hs-log", "-v", "fi"), ["filter"])
+        self.assertIn("objects-json", self.completed("hs-log", "export", ""))
+        self.assertEqual(self.completed("hs-log", "info", ""), [])
+        self.assertEqual(self.completed("hs-stream", "--objects", "in"), [], "that is a file")
+
+    def test_options_of_the_job_that_help_lists(self):
+        self.assertEqual(self.completed("hs-view", "--3"), ["--3d"])
+        self.assertEqual(self.completed("hs-log", "export", "csv", "--"), ["--help"])
+        self.assertIn("--channels", self.completed("hs-log", "filter", "a", "--"))
+        self.assertNotIn("--invert", self.completed("hs-log", "--"))
+        self.assertEqual(self.completed("hs-stream", "--loo"), [])
+        self.assertEqual(self.completed("hs-spy", "--he"), ["--help", "--heap"])
+
+
 class Samples(unittest.TestCase):
     def test_pmd(self):
         commands = re.findall(r'exec = "build/bin/(\S+) ([^"]*)"', (SAMPLES / "houghstream.pmd").read_text())
