@@ -68,7 +68,9 @@ void read_line(CameraScript& script, const std::string& line) {
   std::istringstream words(line.substr(0, line.find('#')));
   std::string key;
   std::string value;
-  words >> key >> value;
+  words >> key;
+  std::getline(words >> std::ws, value);  // a folder's name may have blanks in it
+  value.erase(value.find_last_not_of(" \t\r") + 1);
   if (key.empty()) return;
   const auto setter = setters().find(key);
   require(setter != setters().end(), "unknown key '{}'", key);

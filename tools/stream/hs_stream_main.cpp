@@ -37,7 +37,7 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
                "--detect-options say how many");
   app.add_flag("--track", options.track, "hs-track too: objects on HOUGHSTREAM_OBJECTS");
   app.add_option("--capture-options", options.capture_options,
-                 "further options for hs-capture: --capture-options='--loop --rate 5'");
+                 "further options for hs-capture, with quotes as in a shell: '--loop --record \"my file.oni\"'");
   app.add_option("--detect-options", options.detect_options, "further options for hs-detect");
   app.add_option("--pose-options", options.pose_options, "further options for hs-pose");
   app.add_option("--track-options", options.track_options, "further options for hs-track");

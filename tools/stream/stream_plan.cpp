@@ -1,18 +1,11 @@
 #include "tools/stream/stream_plan.hpp"
 
-#include <sstream>
+#include "tools/stream/shell_words.hpp"
 
 namespace houghstream::stream {
 namespace {
 
 using Words = std::vector<std::string>;
-
-Words split(const std::string& text) {
-  std::istringstream in(text);
-  Words words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
 
 /// hs-NAME with what all of them take, and with the further words.
 ChildPlan plan(const StreamOptions& options, const std::string& name, const Words& words, const std::string& further) {
@@ -21,7 +14,7 @@ ChildPlan plan(const StreamOptions& options, const std::string& name, const Word
   plan.command = {(options.executables / ("hs-" + name)).string(), "--channel", options.channel};
   if (!options.lcm_url.empty()) plan.command.insert(plan.command.end(), {"--lcm-url", options.lcm_url});
   plan.command.insert(plan.command.end(), words.begin(), words.end());
-  const Words more = split(further);
+  const Words more = shell_words(further, "--" + name + "-options");
   plan.command.insert(plan.command.end(), more.begin(), more.end());
   return plan;
 }

@@ -21,7 +21,7 @@ struct StreamOptions {
   bool view = true;
   bool track = false;           ///< hs-track too
   bool follow = false;          ///< hs-pose follows known objects, hs-detect looks a few times a second
-  std::string capture_options;  ///< further options, words between spaces
+  std::string capture_options;  ///< further options, with quotes as in a shell
   std::string detect_options;
   std::string pose_options;
   std::string track_options;
@@ -29,6 +29,7 @@ struct StreamOptions {
 };
 
 /// The processes with their command lines, in the order of the stream. Without models or store there is no hs-pose.
+/// Throws InputError where further options have a quote without an end.
 std::vector<ChildPlan> plan_stream(const StreamOptions& options);
 
 }  // namespace houghstream::stream

@@ -35,6 +35,14 @@ TEST(CameraScript, EveryLineSetsOneThing) {
   EXPECT_EQ(script.rate_hz, 15);
 }
 
+TEST(CameraScript, AFoldersNameMayHaveBlanks) {
+  const auto file = fresh_folder("camera_script_blanks") / "script";
+  write_text(file, "scene /my data/a scene \t # of yesterday\r\nplugged no\r\n");
+  const CameraScript script = read_camera_script(file);
+  EXPECT_EQ(script.scene, "/my data/a scene");
+  EXPECT_FALSE(script.plugged);
+}
+
 TEST(CameraScript, BadLinesAreRefusedWithTheirNumber) {
   const auto file = fresh_folder("camera_script_bad") / "script";
   EXPECT_THROW(read_camera_script(file), InputError) << "missing";

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream::stream {
 namespace {
 
@@ -52,6 +54,15 @@ TEST(StreamPlan, WhoFollowsLooksSeldom) {
   const Words own = plan_stream(options)[0].command;
   EXPECT_EQ(own.back(), "3");
   EXPECT_EQ(std::count(own.begin(), own.end(), "--looks-per-second"), 1);
+}
+
+TEST(StreamPlan, FurtherOptionsMayHaveBlanksInQuotes) {
+  StreamOptions options;
+  options.objects = "store";
+  options.view_options = "--video 'my file.mp4'";
+  EXPECT_EQ(plan_stream(options)[2].command.back(), "my file.mp4");
+  options.view_options = "--video 'my file.mp4";
+  EXPECT_THROW(plan_stream(options), InputError);
 }
 
 TEST(StreamPlan, LeavesOutWhatIsNotAskedFor) {
