@@ -53,6 +53,20 @@ TEST(FrameSource, UwFramesComeInNaturalOrder) {
   }
 }
 
+TEST(FrameSource, AFoldersNameMayHoldCommas) {
+  const std::string folder = write_uw_folder("source_uw,of,1", ".png").string();
+  EXPECT_EQ(open_frame_source("uw:" + folder + kCameraText)->next()->camera.fx, 60.0);
+  EXPECT_EQ(error_of([&] { open_frame_source("uw:" + folder); }), "");
+  const std::string missing = folder + ",2";
+  EXPECT_NE(error_of([&] { open_frame_source("uw:/no/such" + missing); }).find("/no/such" + missing),
+            std::string::npos);
+}
+
+TEST(FrameSource, WhatIsNotKnownIsRefusedWithAllThatTheCallerTakes) {
+  EXPECT_EQ(error_of([] { open_frame_source("bogus", "oni:FILE, "); }),
+            "source 'bogus', expected oni:FILE, bop:DIR, uw:DIR or tum:DIR");
+}
+
 TEST(FrameSource, BadSpecificationsAreRefused) {
   for (const std::string text : {"", "bop", "bop:", "nothing:x", "bop:/no/such/folder", "uw:/no/such/folder"}) {
     EXPECT_THROW(open_frame_source(text), InputError) << text;

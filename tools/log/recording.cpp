@@ -173,7 +173,7 @@ NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses)
     return reading(std::make_shared<SourceRecording>(openni::open_oni_source(*file, options)));
   }
   if (is_frame_source(settings.source)) {
-    return reading(std::make_shared<SourceRecording>(open_frame_source(settings.source)));
+    return reading(std::make_shared<SourceRecording>(open_frame_source(settings.source, "LOG, FILE.klg, FILE.oni, ")));
   }
   return reading(std::make_shared<LogRecording>(settings, losses));
 }
