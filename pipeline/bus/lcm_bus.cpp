@@ -18,6 +18,7 @@
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/bus/lcm_url.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
@@ -33,7 +34,9 @@ constexpr int kQueueCapacity = 100;
 
 std::string complete_url(const std::string& url) {
   const char* environment = std::getenv("LCM_DEFAULT_URL");
-  const std::string chosen = !url.empty() ? url : environment != nullptr ? environment : kDefaultUrl;
+  const bool has_one = environment != nullptr && *environment != '\0';
+  const std::string chosen = !url.empty() ? url : has_one ? environment : kDefaultUrl;
+  check_lcm_url(chosen);
   // Asked for more than is granted, LCM would print a warning of its own that tells nothing.
   return with_receive_buffer(chosen, std::max(granted_receive_buffer(kAskedReceiveBuffer), std::int64_t{1}));
 }
@@ -124,9 +127,12 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(s
   }
   require(output_log.empty(), "an output log goes with a file:// URL, not with {}; record a bus with lcm-logger",
           state_->url);
+  require_multicast_route(state_->url);
+  const std::string unknown = unknown_options_advice(state_->url);
+  if (!unknown.empty()) log_warning("{}", unknown);
   const BlockStopSignals block;  // LCM's threads, started here, leave signals to ours
   state_->lcm.reset(lcm_create(state_->url.c_str()));
-  require(state_->lcm != nullptr, "LCM cannot be opened at {}; is there a multicast route?", state_->url);
+  require(state_->lcm != nullptr, "LCM cannot be opened at {}", state_->url);
   if (state_->url.rfind("udpm://", 0) == 0) {
     const std::string advice = receive_buffer_advice(granted_receive_buffer(kAskedReceiveBuffer));
     if (!advice.empty()) log_warning("{}", advice);

@@ -28,7 +28,8 @@ class LcmBus {
   /// With ttl=0, messages that other hosts send are dropped by the kernel; with a ttl of 1 or more anybody on the
   /// network may send, and nobody is asked who he is. `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with
   /// ttl=0. A udpm URL that does not state it gets a recv_buf_size. Logs what is missing where the kernel grants less
-  /// than needed. `output_log` is for file:// only, and may be empty: then nothing can be published. Throws InputError.
+  /// than needed, and options that LCM does not know. `output_log` is for file:// only, and may be empty: then nothing
+  /// can be published. Throws InputError, also where there is no route to the group.
   explicit LcmBus(const std::string& url, const std::string& output_log = "");
   ~LcmBus();
 

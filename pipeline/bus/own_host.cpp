@@ -9,37 +9,18 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
+
+#include "pipeline/bus/lcm_url.hpp"
 
 namespace houghstream {
-namespace {
-
-const std::string kMulticast = "udpm://";
-const std::string kTcp = "tcpq://";
-
-std::optional<BusPlace> place_of(const std::string& url, const std::string& scheme, const BusPlace& usual) {
-  if (url.rfind(scheme, 0) != 0) return std::nullopt;
-  const std::string place = url.substr(scheme.size(), url.find('?') - scheme.size());
-  const std::size_t colon = place.find(':');
-  const std::string address = place.substr(0, colon);
-  const std::string port = colon == std::string::npos ? "" : place.substr(colon + 1);
-  return BusPlace{address.empty() ? usual.address : address, port.empty() ? usual.port : port};
-}
-
-}  // namespace
-
-std::optional<BusPlace> multicast_group(const std::string& url) {
-  return place_of(url, kMulticast, {"239.255.76.67", "7667"});
-}
-
-std::optional<BusPlace> tcp_server(const std::string& url) {
-  return place_of(url, kTcp, {"127.0.0.1", "7700"});
-}
 
 bool is_of_own_host(const std::string& url) {
-  if (url.rfind(kMulticast, 0) != 0) return false;
-  const std::size_t options = url.find('?');
-  const std::size_t ttl = options == std::string::npos ? std::string::npos : url.find("ttl=", options);
-  return ttl == std::string::npos || std::atoi(url.c_str() + ttl + 4) == 0;
+  if (!multicast_group(url)) return false;
+  for (const auto& [name, value] : url_options(url)) {
+    if (name == "ttl" && std::atoi(value.c_str()) > 0) return false;
+  }
+  return true;
 }
 
 std::vector<int> receiving_sockets(const std::string& url) {

@@ -1,22 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace houghstream {
-
-/// Where an LCM URL leads, with LCM's own where it states none.
-struct BusPlace {
-  std::string address;
-  std::string port;
-};
-
-/// The group of udpm://ADDRESS:PORT?...; nothing for other URLs.
-std::optional<BusPlace> multicast_group(const std::string& url);
-
-/// The server of tcpq://ADDRESS:PORT?...; nothing for other URLs.
-std::optional<BusPlace> tcp_server(const std::string& url);
 
 /// Whether an LCM URL is of multicast that stays on this machine: udpm with ttl=0, which is also LCM's default.
 bool is_of_own_host(const std::string& url);

@@ -68,6 +68,16 @@ std::vector<UsbCamera> plugged_cameras(const Machine& machine) {
   return cameras;
 }
 
+/// The command that lists what is plugged in of all that is known.
+std::string listing_of_cameras() {
+  std::string vendors;
+  for (const CameraKind& kind : kKinds) {
+    const std::string vendor = kind.vendor;
+    if (vendors.find(vendor) == std::string::npos) vendors += (vendors.empty() ? "" : "|") + vendor;
+  }
+  return fmt::format("lsusb | grep -E 'ID ({})'", vendors);
+}
+
 Finding check_rights(const Machine& machine, const UsbCamera& camera) {
   const std::string name = fmt::format("{} ({})", camera.kind.name, camera.id);
   if (!machine.may_use(camera.device)) {
@@ -134,7 +144,8 @@ Findings check_camera(const Machine& machine, bool needed) {
   const Finding::Level missing = needed || !cameras.empty() ? Finding::Level::kWrong : Finding::Level::kNote;
   Findings findings;
   if (cameras.empty()) {
-    findings.push_back({missing, "camera", "no RGB-D camera that is known here is plugged in", ""});
+    findings.push_back({missing, "camera", "no RGB-D camera that is known here is plugged in",
+                        needed ? "plug one in, and see whether it is there: " + listing_of_cameras() : ""});
   }
   for (const UsbCamera& camera : cameras) findings.push_back(check_rights(machine, camera));
   const std::optional<fs::path> library = find_openni(machine);

@@ -8,7 +8,9 @@
 #include <sstream>
 #include <tuple>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/printable.hpp"
+#include "pipeline/bus/lcm_url.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
 
@@ -20,7 +22,7 @@ constexpr const char* kBuffer = "receive buffer";
 constexpr const char* kJavaBuffer = "Java's buffer";
 constexpr const char* kSenders = "who may send";
 constexpr const char* kSelfTest = "LCM self test";
-const std::string kRouteRemedy = "sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo";
+constexpr const char* kBus = "the bus";
 
 /// Text off the wire, which is anybody's.
 std::string off_the_wire(const std::string& text) {
@@ -62,11 +64,25 @@ std::optional<std::string> interface_to(const Machine& machine, const std::strin
   return best ? std::optional<std::string>(std::get<2>(*best)) : std::nullopt;
 }
 
+/// Whether a stream can run at the URL at all.
+Finding check_url(const std::string& url) {
+  const std::string remedy = "export LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0', and no -l";
+  if (url.rfind("file://", 0) == 0) return wrong(kBus, fmt::format("{} is a log, expected a network", url), remedy);
+  try {
+    check_lcm_url(url);
+  } catch (const InputError& error) {
+    return wrong(kBus, error.what(), remedy);
+  }
+  const std::string unknown = unknown_options_advice(url);
+  return unknown.empty() ? ok(kBus, url) : note(kBus, unknown);
+}
+
 Finding check_route(const Machine& machine, const std::string& url) {
   const std::optional<BusPlace> group = multicast_group(url);
   if (!group) return ok(kRoute, fmt::format("not needed with {}", url));
   const std::optional<std::string> name = interface_to(machine, group->address);
-  if (!name) return wrong(kRoute, fmt::format("no route to {}: LCM cannot send", group->address), kRouteRemedy);
+  if (!name)
+    return wrong(kRoute, fmt::format("no route to {}: LCM cannot send", group->address), multicast_route_remedy());
   return ok(kRoute, fmt::format("{} goes through {}", group->address, *name));
 }
 
@@ -102,7 +118,8 @@ Finding check_self_test(const Machine& machine, const std::string& url, std::siz
       group    ? fmt::format("sudo iptables -I INPUT -p udp -d {} --dport {} -j ACCEPT", group->address, group->port)
       : server ? fmt::format("sudo iptables -I INPUT -p tcp --dport {} -j ACCEPT", server->port)
                : "";
-  if (!test.error.empty()) return wrong(kSelfTest, test.error, server ? server_remedy(*server) : kRouteRemedy);
+  if (!test.error.empty())
+    return wrong(kSelfTest, test.error, server ? server_remedy(*server) : multicast_route_remedy());
   const std::string what = fmt::format("{} of {} messages of {} kB came back", test.received, test.sent, bytes / 1000);
   if (test.received == test.sent) return ok(kSelfTest, what);
   if (test.received == 0) return wrong(kSelfTest, what + "; is there a firewall?", firewall);
@@ -157,7 +174,11 @@ Finding check_senders(const Machine& machine, const std::string& url) {
 }  // namespace
 
 Findings check_network(const Machine& machine, const BusSettings& settings) {
-  Findings findings = {check_route(machine, settings.url)};
+  const Finding bus = check_url(settings.url);
+  if (bus.level == Finding::Level::kWrong) return {bus};
+  Findings findings;
+  if (bus.level == Finding::Level::kNote) findings.push_back(bus);
+  findings.push_back(check_route(machine, settings.url));
   const bool route = findings.back().level == Finding::Level::kOk;
   const std::size_t heard = route ? machine.heard_bytes(settings.url, settings.frame_channel) : 0;
   const std::size_t frame_bytes = heard > 0 ? heard : settings.frame_bytes;

@@ -14,8 +14,8 @@ struct BusSettings {
   std::size_t frame_bytes;    ///< taken where no frame is heard
 };
 
-/// Multicast route, receive buffers for the frames in use and for Java, who may send, messages of that size sent and
-/// received, and what processes on the bus complain of.
+/// What is wrong with the URL; or multicast route, receive buffers for the frames in use and for Java, who may send,
+/// messages of that size sent and received, and what processes on the bus complain of.
 Findings check_network(const Machine& machine, const BusSettings& settings);
 
 }  // namespace houghstream::doctor

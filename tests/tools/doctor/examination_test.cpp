@@ -88,7 +88,13 @@ const std::vector<Fault> kFaults = {
        fs::remove_all(m.machine.root / "sys/bus/usb/devices/1-1");
        m.settings.live = true;
      },
-     Level::kWrong, "camera", ""},
+     Level::kWrong, "camera", "lsusb | grep -E 'ID (1d27|045e|2bc5|8086)'"},
+    {"a URL that is none", [](HealthyMachine& m) { m.settings.lcm_url = "bogus"; }, Level::kWrong, "the bus",
+     "export LCM_DEFAULT_URL="},
+    {"a log in place of a bus", [](HealthyMachine& m) { m.settings.lcm_url = "file:///x"; }, Level::kWrong, "the bus",
+     "export LCM_DEFAULT_URL="},
+    {"an option that LCM does not know", [](HealthyMachine& m) { m.settings.lcm_url = "udpm://?tll=1"; }, Level::kNote,
+     "the bus", ""},
     {"one processor",
      [](HealthyMachine& m) { plant(m.machine.root / "proc/cpuinfo", "processor : 0\nflags : avx2\n"); }, Level::kNote,
      "processor", ""},

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace houghstream {
+
+/// Where an LCM URL leads, with LCM's own where it states none.
+struct BusPlace {
+  std::string address;
+  std::string port;
+};
+
+/// The group of udpm://ADDRESS:PORT?...; nothing for other URLs.
+std::optional<BusPlace> multicast_group(const std::string& url);
+
+/// The server of tcpq://ADDRESS:PORT?...; nothing for other URLs.
+std::optional<BusPlace> tcp_server(const std::string& url);
+
+/// Name and value of each option behind the '?' of a URL.
+std::vector<std::pair<std::string, std::string>> url_options(const std::string& url);
+
+/// Throws InputError unless LCM understands the URL: a scheme that it has, and of udpm a multicast group, a port, a ttl
+/// and a receive buffer that are such. What it does not understand LCM itself passes over, or takes for a number.
+void check_lcm_url(const std::string& url);
+
+/// One line about options of a network's URL that LCM does not know; "" where there are none.
+std::string unknown_options_advice(const std::string& url);
+
+/// Throws InputError, with the command that mends it, where this machine has no route to the group of a udpm URL. LCM
+/// asks the same, and says it in fifteen lines with an address of chance.
+void require_multicast_route(const std::string& url);
+
+/// The command that makes a route for multicast within this machine, until its next start.
+std::string multicast_route_remedy();
+
+}  // namespace houghstream
