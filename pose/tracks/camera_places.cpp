@@ -179,4 +179,10 @@ std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& 
                                         {numbers[3], numbers[4], numbers[5], numbers[6]}, "--camera-pose " + text)};
 }
 
+void add_camera_place(const std::string& text, std::map<std::string, Eigen::Isometry3d>& places) {
+  const auto [camera, T_world_camera] = parse_camera_place(text);
+  require(places.emplace(camera, T_world_camera).second,
+          "--camera-pose '{}': {} has a place already, of --cameras or of another --camera-pose", text, camera);
+}
+
 }  // namespace houghstream::tracks

@@ -63,4 +63,7 @@ std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesyste
 /// The value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.
 std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text);
 
+/// Adds such a value to the places that are given. Throws InputError also where its camera has one.
+void add_camera_place(const std::string& text, std::map<std::string, Eigen::Isometry3d>& places);
+
 }  // namespace houghstream::tracks

@@ -285,8 +285,10 @@ void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std
     rate += how.crowded_out;
     why += ", where something else is";
   }
-  if (track.pose.filter().moving() && unseen_s > settings.pose.motion.coast_s)
+  if (track.pose.filter().moving() && unseen_s > settings.pose.motion.coast_s) {
     rate += look.state == TrackState::kHidden ? 0.25 * how.lost : how.lost;
+    why += "; it moved when it was seen last";
+  }
   if (track.id == 0) rate += how.unconfirmed;
   track.log_odds -= seconds * rate;
   // Of several cameras the one that saw it last has the word, as long as that is not long ago.

@@ -58,7 +58,7 @@ struct FrameSeen {
 
 /// The objects of a world, over time and over all cameras: which measured pose is of which object (class, place,
 /// rotation but for symmetries), whether an object is there (Bayes, with the evidence of depth against it: seen through
-/// is gone, hidden and out of view is kept), where it is (MotionFilter), and which number it has.
+/// is gone, hidden and out of view is kept unless it moved), where it is (MotionFilter), and which number it has.
 ///
 /// A frame's result follows from the frames before, in their order, and nothing else. Not thread-safe.
 class Tracker {

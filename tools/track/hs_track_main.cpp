@@ -117,10 +117,7 @@ int main(int argc, char** argv) {
     if (options.drake_viewer)
       options.process.output.drake_meshes = cache_folder("one of them for the meshes of --drake-viewer") / "meshes";
     if (!options.cameras_file.empty()) options.process.places = tracks::read_camera_places(options.cameras_file);
-    for (const std::string& text : options.camera_poses) {
-      const auto [name, T_world_camera] = tracks::parse_camera_place(text);
-      options.process.places[name] = T_world_camera;
-    }
+    for (const std::string& text : options.camera_poses) tracks::add_camera_place(text, options.process.places);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);
   });
 }

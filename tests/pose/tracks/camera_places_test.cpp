@@ -152,5 +152,16 @@ TEST(CameraPlaces, TheOptionIsParsed) {
   EXPECT_NE(error_of([] { parse_camera_place("1,2,3"); }).find("expected CHANNEL="), std::string::npos);
 }
 
+TEST(CameraPlaces, ACameraHasOnePlaceOfTheCommandLine) {
+  std::map<std::string, Eigen::Isometry3d> places = {{"LEFT", at(0.2)}};
+  add_camera_place("RIGHT=1,2,3,1,0,0,0", places);
+  EXPECT_EQ(places.at("RIGHT").translation().y(), 2.0);
+  for (const std::string camera : {"LEFT", "RIGHT"}) {
+    const std::string error = error_of([&] { add_camera_place(camera + "=4,5,6,1,0,0,0", places); });
+    EXPECT_NE(error.find(camera + " has a place already"), std::string::npos) << error;
+  }
+  EXPECT_EQ(places.at("RIGHT").translation().y(), 2.0);
+}
+
 }  // namespace
 }  // namespace houghstream::tracks

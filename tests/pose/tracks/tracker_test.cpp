@@ -87,6 +87,27 @@ TEST(Tracker, WhatIsHiddenIsKeptForAsLongAsItIsHidden) {
   EXPECT_EQ(scene.frames(1).objects.at(0).track_id, 1);
 }
 
+TEST(Tracker, WhatMovedBeforeItWasHiddenIsGoneAndSaysWhy) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(-0.3, 0)}});
+  scene.frames(60);
+  for (int i = 1; i <= 28; ++i) {
+    scene.show({{"can", on_table(-0.3 + 0.01 * i, 0)}});
+    scene.frame();
+  }
+  scene.posed.clear();
+  // Near the camera: it hides all of the can's way.
+  scene.obstacle = Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.51, 0.404));
+  WorldObjects world;
+  for (int i = 0; i < 120; ++i) {
+    world = scene.frame();
+    ASSERT_EQ(world.objects.size(), 1U);
+    if (world.objects[0].state == TrackState::kGone) break;
+  }
+  EXPECT_EQ(world.objects[0].state, TrackState::kGone);
+  EXPECT_EQ(world.objects[0].reason, "something stands before it in CAMERA; it moved when it was seen last");
+}
+
 TEST(Tracker, WhatIsOutOfViewIsKept) {
   TrackedScene scene;
   scene.show({{"can", on_table(0, 0)}});
