@@ -164,8 +164,9 @@ cv::Mat draw_world_from_above(const WorldState& world, const cv::Size& size) {
     cv::polylines(picture, way, false, class_colour(object.class_id), 1, cv::LINE_AA);
     if (object.state != TrackState::kGone) draw_object(picture, scale, object);
   }
-  draw_text(picture, fmt::format("{} from above, grid 10 cm, {} objects", world.last.world, world.last.objects.size()),
-            {8, 16});
+  const auto there = std::count_if(world.last.objects.begin(), world.last.objects.end(),
+                                   [](const TrackedObject& object) { return object.state != TrackState::kGone; });
+  draw_text(picture, fmt::format("{} from above, grid 10 cm, {} objects", world.last.world, there), {8, 16});
   return picture;
 }
 

@@ -94,6 +94,23 @@ TEST(WorldView, FromAboveObjectsAndCamerasAreDrawn) {
   EXPECT_EQ(pixels_of(draw_world_from_above({}, {320, 240}), class_colour(2)), 0);
 }
 
+/// What stands in words above the world.
+cv::Mat caption_of(const WorldObjects& world) {
+  WorldState state;
+  state.add(world);
+  return draw_world_from_above(state, {640, 240}).rowRange(0, 22).clone();
+}
+
+TEST(WorldView, WhatIsGoneIsNotCounted) {
+  const WorldObjects there = one_can(0.0);
+  WorldObjects gone = there;
+  gone.objects[0].state = TrackState::kGone;
+  WorldObjects empty = there;
+  empty.objects.clear();
+  EXPECT_EQ(cv::norm(caption_of(gone), caption_of(empty)), 0.0);
+  EXPECT_GT(cv::norm(caption_of(there), caption_of(empty)), 0.0);
+}
+
 TEST(WorldView, PlacesFarAwayAreSurvived) {
   for (const double far : {1e8, -1e9}) {
     WorldState state;
