@@ -186,6 +186,10 @@ void PageServer::State::serve_events(httplib::Response& response) {
 void PageServer::State::take_orders(const httplib::Request& request, httplib::Response& response) {
   const bool may =
       request.has_header(kTokenHeader) && (token.empty() || same_token(request.get_header_value(kTokenHeader), token));
+  if (!may && token.empty())
+    return answer(
+        response, 403,
+        fmt::format("orders need a header {}, of any value: no other page can send it unasked", kTokenHeader));
   if (!may)
     return answer(response, 403, "the buttons need the token of the address that hs-view printed when it started");
   try {

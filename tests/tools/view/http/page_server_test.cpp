@@ -90,6 +90,9 @@ TEST(PageServer, ThisMachinesButtonsNeedNoTokenButTheHeaderThatOthersCannotSend)
   Served served;
   EXPECT_EQ(served.server.token(), "");
   EXPECT_EQ(served.order(R"({"paused":true})", {}), 403);
+  const httplib::Result refused = served.client.Post("/orders", "{}", "application/json");
+  ASSERT_TRUE(refused);
+  EXPECT_NE(refused->body.find("a header X-Houghstream-Token"), std::string::npos) << refused->body;
   EXPECT_EQ(served.order(R"({"paused":true,"min_score":0.5})", kNoToken), 204);
   const PageOrders orders = served.board.take_orders();
   EXPECT_EQ(orders.paused, true);
