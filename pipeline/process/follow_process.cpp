@@ -6,6 +6,7 @@
 #include <memory>
 #include <thread>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
@@ -86,6 +87,7 @@ class FollowProcess {
 
   void receive_frame(const Arrival& arrival) {
     if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
+    if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
     try {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
@@ -114,6 +116,7 @@ class FollowProcess {
       if (!bus_.is_log() && repeats_.is_repeated(frame, arrival.bytes.data, arrival.bytes.size, arrival.time))
         return status_.note_duplicate();
       if (channels_.matches(frame.channel)) {
+        if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
         detections_.put_detections(frame, {arrival.bytes.data, arrival.bytes.data + arrival.bytes.size});
       } else {
         transforms_.note_other_camera(frame.channel);
@@ -197,6 +200,7 @@ class FollowProcess {
 }  // namespace
 
 void run_follow_process(LcmBus& bus, const PoseProcessOptions& options, const FollowPoses& poses) {
+  require(!options.keep_frames || bus.is_log(), "frames are kept of a log (-l file://LOG), not of {}", bus.url());
   FollowProcess(bus, options, poses).run();
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
@@ -66,6 +67,7 @@ class PoseProcess {
  private:
   void receive_frame(const Arrival& arrival) {
     if (!channels_.is_name() && !is_frame_message(arrival.bytes)) return;
+    if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
     try {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
@@ -90,6 +92,7 @@ class PoseProcess {
         transforms_.note_other_camera(frame.channel);
         return;
       }
+      if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
       inbox_.put_detections(frame, copy(arrival.bytes));
       status_.count_received();
     } catch (const InputError& error) {
@@ -223,6 +226,7 @@ class PoseProcess {
 }  // namespace
 
 void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate) {
+  require(!options.keep_frames || bus.is_log(), "frames are kept of a log (-l file://LOG), not of {}", bus.url());
   PoseProcess(bus, options, estimate).run();
 }
 

@@ -18,6 +18,7 @@ struct PoseProcessOptions {
   std::string process = "hs-pose";               ///< its name in status_t
   std::string frame_channels = channel::kFrame;  ///< a ChannelPattern: one camera's channel, or several cameras'
   std::optional<Camera> camera;                  ///< for frames that do not bring their own
+  bool keep_frames = false;                      ///< of a log: frames and their detections go to the output log too
   std::set<std::string> models;                  ///< classes that have one; where none is detected, it warns
   std::function<KnownObjects()> objects;         ///< what its store holds, for the status; they have models too
 };
@@ -36,8 +37,8 @@ using EstimatePoses = std::function<ObjectPoses(const RgbdFrame&, const Detectio
 /// On a network the newest detections of each camera come first, the cameras in turn; each frame is decoded as soon as
 /// there is time, also before it is known whether something was detected in it. A log (which must hold frames and
 /// detections) is worked on in its order, and a frame without detections is not decoded. In its status a frame counts
-/// as received when its detections have come. Throws InputError where none of a log's detections has its frame; returns
-/// as run_process_loop does.
+/// as received when its detections have come. Throws InputError where none of a log's detections has its frame, and
+/// where frames are to be kept without a log; returns as run_process_loop does.
 void run_pose_process(LcmBus& bus, const PoseProcessOptions& options, const EstimatePoses& estimate);
 
 }  // namespace houghstream

@@ -177,6 +177,22 @@ def check_evaluation(tools, made, folder, results):
     assert summary["auc"]["soda_can"] > 0.5, summary["auc"]
 
 
+def check_kept_frames(tools, folder, found, posed):
+    """What hs-pose keeps beside its poses is a log for hs-track and for the exports; its poses alone are none."""
+    write_log(folder / "found.log", found)
+    run(tools / "hs-pose", "--models", folder / "models", "-c", "LEFT|RIGHT", "-l", f"file://{folder / 'found.log'}",
+        "--output-log", folder / "kept.log", "--keep-frames")  # fmt: skip
+    kept = list(read_log(folder / "kept.log"))
+    assert [event for event in kept if event[1] != "HOUGHSTREAM_POSES" and "_TO_" not in event[1]] == list(found)
+    run(tools / "hs-log", "export", "csv", folder / "kept.log", folder / "kept.csv")
+    track = (tools / "hs-track", "--models", folder / "models", "-c", "LEFT", "-l")
+    run(*track, f"file://{folder / 'kept.log'}", "--output-log", folder / "objects.log")
+    write_log(folder / "poses.log", [event for event in posed if event[1] not in CAMERAS])
+    result = subprocess.run([str(part) for part in (*track, f"file://{folder / 'poses.log'}", "--output-log",
+                                                    folder / "none.log")], capture_output=True, text=True, check=False)  # fmt: skip
+    assert result.returncode != 0 and "hs-pose --keep-frames" in result.stderr, result
+
+
 def check_missing_frames(tools, folder, detections):
     """Detections without their frames: one line, and a failure."""
     write_log(folder / "frameless.log", detections)
@@ -206,6 +222,7 @@ def check_logs(tools, made, folder):
     write_log(results, [event for event in merged if event[1] not in CAMERAS] + posed)
     check_exports(tools, folder, results, frames, detections)
     check_evaluation(tools, made, folder, results)
+    check_kept_frames(tools, folder, found, posed)
     check_missing_frames(tools, folder, more)
     return detections, expected
 

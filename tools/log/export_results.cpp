@@ -99,7 +99,9 @@ std::vector<ExportedFrame> read_results(const std::filesystem::path& log_file, L
       losses.note_refused(fmt::format("poses of frame {}, of no detections in the log", to_string(frame)));
     }
   }
-  require(!results.empty(), "{}: no message on {}, and none of followed objects on {}, expected results",
+  require(!results.empty(),
+          "{}: no message on {}, and none of followed objects on {}, expected results; hs-pose --keep-frames keeps "
+          "detections beside its poses",
           log_file.string(), channel::kDetections, channel::kPoses);
   return results;
 }

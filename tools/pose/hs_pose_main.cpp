@@ -139,6 +139,9 @@ int main(int argc, char** argv) {
       "follow known objects from frame to frame: poses for each frame, at once, whether detections come or not");
   add_frame_channels_option(app, options.process.frame_channels);
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
+  app.add_flag(
+      "--keep-frames", options.process.keep_frames,
+      "with --output-log: write frames and detections too, each before its poses, for hs-track and hs-log export");
   add_lcm_url_option(app, options.url);
   app.add_example("hs-pose --objects my.store");
   app.add_example("hs-pose --models out/demo/data/training/models");

@@ -102,6 +102,11 @@ class TrackProcess {
     require(!bus_.is_log() || poses_ > 0,
             "{}: no poses of frames on {}, expected a log with frames, detections and poses", bus_.url(),
             options_.frame_channels);
+    const std::int64_t poses = poses_;
+    require(!bus_.is_log() || without_frame_ < poses,
+            "{}: {} object_poses_t and the frames of none, expected a log with frames, detections and poses; hs-pose "
+            "--keep-frames keeps all three",
+            bus_.url(), poses);
     end_process(bus_, status_);
     return check_;
   }
@@ -288,6 +293,7 @@ class TrackProcess {
   void count_dropped() {
     const PairInbox::Dropped dropped = inbox_.take_dropped();
     status_.count_skipped(dropped.skipped);
+    without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) refuse(frame, "the frame itself has not come");
   }
 
@@ -327,7 +333,8 @@ class TrackProcess {
   std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
   std::deque<Waiting> waiting_;
   std::string world_;
-  std::string alone_;  // the camera whose frame is the world, where no place is known
+  std::string alone_;               // the camera whose frame is the world, where no place is known
+  std::int64_t without_frame_ = 0;  // poses
   // What the receiving thread writes.
   mutable std::mutex mutex_;
   std::int64_t event_us_ = 0;

@@ -241,6 +241,29 @@ TEST(PoseProcess, ALogWithoutFramesFailsAndOneWithoutSomeSaysHowMany) {
   EXPECT_EQ(ResultLog(4).run().find("had no frame"), std::string::npos);
 }
 
+TEST(PoseProcess, FramesAndDetectionsOfALogAreKeptWhereAskedEachBeforeItsPoses) {
+  const ResultLog log(4);
+  PoseProcessOptions options;
+  options.keep_frames = true;
+  catch_stop_signals();
+  {
+    LcmBus bus("file://" + log.path.string(), log.out());
+    run_pose_process(bus, options, at_one_metre);
+  }
+  std::vector<std::string> kept;
+  LogReader results(log.out());
+  while (const std::optional<LogEvent> event = results.next()) kept.push_back(event->channel);
+  ASSERT_EQ(kept.size(), 16U);
+  for (std::size_t i = 0; i < kept.size(); i += 4) {
+    EXPECT_EQ(kept[i], channel::kFrame);
+    EXPECT_EQ(kept[i + 1], channel::kDetections);
+    EXPECT_EQ(kept[i + 2], channel::kPoses);
+    EXPECT_EQ(kept[i + 3], "BOWL_TO_CAMERA");
+  }
+  LcmBus network("memq://");
+  EXPECT_THROW(run_pose_process(network, options, at_one_metre), InputError);
+}
+
 TEST(PoseProcess, ModelsOfOtherObjectsThanTheDetectorsAreToldOnce) {
   ProcessOnMemq test({channel::kPoses});
   PoseProcessOptions options;

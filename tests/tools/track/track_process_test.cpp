@@ -249,5 +249,26 @@ TEST(TrackProcess, ALogWithoutPosesIsRefused) {
   EXPECT_THROW(run_track_process(bus, {}, [&] { return none; }), InputError);
 }
 
+TEST(TrackProcess, ALogOfPosesWithoutTheirFramesIsRefusedWithWhatKeepsThem) {
+  catch_stop_signals();
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "houghstream_track_no_frames.lcmlog";
+  LogWriter writer(file);
+  for (int i = 0; i < 3; ++i) {
+    const std::vector<std::uint8_t> bytes = encode_message(to_message(one_bowl(time_of(i))));
+    writer.write(time_of(i), channel::kPoses, {bytes.data(), bytes.size()});
+  }
+  writer.close();
+  LcmBus bus("file://" + file.string());
+  const auto none = std::make_shared<const tracks::TrackModels>();
+  try {
+    run_track_process(bus, {}, [&] { return none; });
+    ADD_FAILURE() << "expected an error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("3 object_poses_t and the frames of none"), std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("hs-pose --keep-frames"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace houghstream::track
