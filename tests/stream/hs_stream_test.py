@@ -12,6 +12,8 @@ import sys
 import time
 
 from folders import read_arguments
+from houghstream import status_t
+from houghstream.event_log import read_log
 from studies.stream import enter_private_network
 
 NAMES = ["detect", "pose", "view", "capture"]
@@ -39,7 +41,7 @@ class Stream:
             time.sleep(0.05)
 
     def pids(self):
-        return {name: int(self.find(rf"{name} started, process (\d+)", 10)) for name in NAMES}
+        return {name: int(self.find(rf"{name} started, process (\d+)", 30)) for name in NAMES}
 
 
 def is_alive(pid):
@@ -98,7 +100,23 @@ def check_bad_start(tools, made, folder):
     words = stream.log.read_text()
     assert "detect ended with status 1 at its start" in words and str(made / "missing.forest") in words, words
     assert words.count("detect started") == 1, words
-    wait_until_gone(stream.pids().values(), 1)
+    assert "capture started" not in words, words
+    wait_until_gone([int(pid) for pid in re.findall(r"started, process (\d+)", words)], 1)
+
+
+def check_short_scene(tools, made, folder):
+    """The source waits until the others hear it: of two frames none is lost."""
+    seen = folder / "short.log"
+    logger = subprocess.Popen(["lcm-logger", "-f", "-q", "-c", "HOUGHSTREAM_STATUS", str(seen)], stderr=subprocess.DEVNULL)
+    command = [tools / "hs-stream", "--source", f"bop:{made / 'scene'}", "--capture-options=--frames 2 --rate 1", "--forest",
+               made / "small.forest", "--no-view"]  # fmt: skip
+    subprocess.run([str(word) for word in command], check=True, timeout=120, capture_output=True)
+    time.sleep(0.5)
+    logger.terminate()
+    logger.wait()
+    states = [status_t.decode(event.data) for event in read_log(seen)]
+    received = max(state.frames_received for state in states if state.process == "hs-detect")
+    assert received == 2, received
 
 
 def main():
@@ -108,6 +126,7 @@ def main():
     check_restart_and_stop(tools, made, folder)
     check_killed_supervisor(tools, made, folder)
     check_bad_start(tools, made, folder)
+    check_short_scene(tools, made, folder)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,9 @@ std::string StateBoard::line(const std::vector<Supervisor::State>& states, Clock
   for (const Supervisor::State& state : states) {
     const auto entry = entries_.find(state.pid);
     std::string text = "silent";
-    if (state.pid == 0) {
+    if (state.waits) {
+      text = "waits for the others";
+    } else if (state.pid == 0) {
       text = "down";
     } else if (entry != entries_.end() && now - entry->second.time < kStale) {
       text = describe(entry->second.status);

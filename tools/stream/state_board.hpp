@@ -20,8 +20,8 @@ class StateBoard {
   /// Forgets all processes but these.
   void keep(const std::vector<Supervisor::State>& states);
 
-  /// The stream in one line: rate, latency and losses of each process, or that it waits for its restart, or has not
-  /// been heard of for three seconds.
+  /// The stream in one line: rate, latency and losses of each process, or that it waits for the others or for its
+  /// restart, or has not been heard of for three seconds.
   std::string line(const std::vector<Supervisor::State>& states, Clock::time_point now) const;
 
  private:

@@ -47,6 +47,7 @@ std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
   if (!options.source.empty()) {
     plans.push_back(plan(options, "capture", {"--source", options.source}, options.capture_options));
     plans.back().ends_stream = true;
+    plans.back().awaits_others = true;
   }
   return plans;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <thread>
+#include <utility>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/printable.hpp"
@@ -32,7 +33,10 @@ Supervisor::Supervisor(std::vector<ChildPlan> plans, const SupervisorSettings& s
     members_.emplace_back();
     members_.back().plan = std::move(plan);
   }
-  for (Member& member : members_) start(member);
+  for (Member& member : members_) {
+    member.waits = member.plan.awaits_others;
+    if (!member.waits) start(member);
+  }
 }
 
 Supervisor::~Supervisor() {
@@ -46,6 +50,21 @@ void Supervisor::start(Member& member) {
   member.silent = Clock::duration(0);
   member.asked_end.reset();
   say_(fmt::format("{} started, process {}", member.plan.name, member.child->pid()));
+}
+
+void Supervisor::start_who_waits() {
+  std::string silent;  // names of the others
+  for (const Member& member : members_) {
+    if (!member.waits && !member.has_spoken) silent += (silent.empty() ? "" : ", ") + member.plan.name;
+  }
+  if (!silent.empty() && Clock::now() - begun_ < settings_.others_patience) return;
+  for (Member& member : members_) {
+    if (!std::exchange(member.waits, false)) continue;
+    if (!silent.empty())
+      say_(fmt::format("{} starts without waiting any longer for {}: nothing was heard of it for {:.1f} s",
+                       member.plan.name, silent, seconds(settings_.others_patience)));
+    start(member);
+  }
 }
 
 void Supervisor::plan_restart(Member& member, const std::string& words) {
@@ -81,6 +100,7 @@ void Supervisor::look_for_hang(Member& member, Clock::duration listened) {
 }
 
 bool Supervisor::look_after(Member& member, Clock::duration listened) {
+  if (member.waits) return true;
   if (!member.child) {
     restart_if_due(member);
     return true;
@@ -111,6 +131,7 @@ bool Supervisor::step() {
   const Clock::time_point now = Clock::now();
   const Clock::duration listened = std::min<Clock::duration>(now - last_step_, kLongestStep);
   last_step_ = now;
+  start_who_waits();
   return std::all_of(members_.begin(), members_.end(), [&](Member& member) { return look_after(member, listened); });
 }
 
@@ -148,7 +169,7 @@ std::vector<std::string> Supervisor::stop() {
 std::vector<Supervisor::State> Supervisor::states() const {
   std::vector<State> states;
   for (const Member& member : members_) {
-    states.push_back({member.plan.name, member.child ? member.child->pid() : 0, member.restarts});
+    states.push_back({member.plan.name, member.child ? member.child->pid() : 0, member.restarts, member.waits});
   }
   return states;
 }

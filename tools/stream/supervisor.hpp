@@ -16,25 +16,27 @@ struct ChildPlan {
   std::string name;                  ///< for people, for instance "detect"
   std::vector<std::string> command;  ///< program with its path, arguments
   bool ends_stream = false;          ///< when it ends with status 0, all do: the source's end, the closed window
+  bool awaits_others = false;        ///< started when all others have spoken: the source, whose frames they are to hear
 };
 
 struct SupervisorSettings {
   std::chrono::milliseconds first_wait{250};  ///< before a second restart; doubled by each failure that follows
   std::chrono::milliseconds longest_wait{10'000};
-  std::chrono::milliseconds settled{10'000};        ///< after so long a run the next failure counts as the first
-  int most_failures = 8;                            ///< in a row: then it is given up, and the stream ends
-  std::chrono::milliseconds start_time{3000};       ///< who runs that long has started
-  std::chrono::milliseconds patience{1500};         ///< for a process to end by itself when it is asked to
-  std::chrono::milliseconds silence{10'000};        ///< who has spoken and then says nothing for so long hangs
-  std::chrono::milliseconds start_silence{60'000};  ///< the same for one that has not spoken yet: it may still read
+  std::chrono::milliseconds settled{10'000};          ///< after so long a run the next failure counts as the first
+  int most_failures = 8;                              ///< in a row: then it is given up, and the stream ends
+  std::chrono::milliseconds start_time{3000};         ///< who runs that long has started
+  std::chrono::milliseconds patience{1500};           ///< for a process to end by itself when it is asked to
+  std::chrono::milliseconds silence{10'000};          ///< who has spoken and then says nothing for so long hangs
+  std::chrono::milliseconds start_silence{60'000};    ///< the same for one that has not spoken yet: it may still read
+  std::chrono::milliseconds others_patience{10'000};  ///< who awaits the others starts after so long without them
 };
 
 /// Keeps the processes of a stream running: one that dies is started again, at once the first time, after a pause that
 /// grows with each failure that follows, until it has failed `most_failures` times in a row. One that fails before it
-/// has ever run is not: it would fail again for the same reason. One that hangs, as its silence tells, is asked to end
-/// (SIGTERM), killed where it does not (SIGKILL after `patience`), and started again likewise. Only silence that was
-/// listened to counts: where this process has stood still itself, or its bus was gone, its children have not. Call it
-/// from one thread.
+/// has ever run is not: it would fail again for the same reason. One that awaits the others starts when each of them
+/// has spoken, or `others_patience` after them. One that hangs, as its silence tells, is asked to end (SIGTERM), killed
+/// where it does not (SIGKILL after `patience`), and started again likewise. Only silence that was listened to counts:
+/// where this process has stood still itself, or its bus was gone, its children have not. Call it from one thread.
 class Supervisor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -63,6 +65,7 @@ class Supervisor {
     std::string name;
     pid_t pid = 0;  ///< 0 while it waits for its restart
     int restarts = 0;
+    bool waits = false;  ///< for the others, before its first start
   };
   std::vector<State> states() const;
 
@@ -70,6 +73,7 @@ class Supervisor {
   struct Member {
     ChildPlan plan;
     std::unique_ptr<Child> child;
+    bool waits = false;    // for the others, before its first start
     bool has_run = false;  // once, since the stream began
     bool has_spoken = false;
     Clock::duration silent{0};                   // so long, as far as was listened
@@ -80,6 +84,7 @@ class Supervisor {
     Clock::time_point since;  // of the start, or when the restart is due
   };
   void start(Member& member);
+  void start_who_waits();
   bool look_after(Member& member, Clock::duration listened);
   void look_for_hang(Member& member, Clock::duration listened);
   void plan_restart(Member& member, const std::string& words);
@@ -88,7 +93,8 @@ class Supervisor {
   std::vector<Member> members_;
   SupervisorSettings settings_;
   Say say_;
-  Clock::time_point last_step_ = Clock::now();
+  Clock::time_point begun_ = Clock::now();
+  Clock::time_point last_step_ = begun_;
 };
 
 }  // namespace houghstream::stream

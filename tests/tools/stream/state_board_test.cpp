@@ -30,6 +30,7 @@ TEST(StateBoard, TellsTheStreamsStateInOneLine) {
   board.note(status_of(12, 30.0F), now);
   const std::string line =
       board.line({{"detect", 10, 0}, {"pose", 11, 0}, {"view", 0, 2}, {"capture", 12, 1}, {"new", 13, 0}}, now);
+  EXPECT_EQ(board.line({{"capture", 0, 0, true}}, now), "capture waits for the others");
   EXPECT_EQ(line,
             "detect 9.8 Hz 119 ms, 3 lost, 2 refused: no camera | pose silent | view down (restarts: 2) | "
             "capture 30.0 Hz (restarts: 1) | new silent");

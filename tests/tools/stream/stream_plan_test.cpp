@@ -29,6 +29,7 @@ TEST(StreamPlan, PutsTheStreamTogether) {
   EXPECT_FALSE(plans[0].ends_stream);
   EXPECT_TRUE(plans[2].ends_stream);
   EXPECT_TRUE(plans[3].ends_stream);
+  for (std::size_t i = 0; i < plans.size(); ++i) EXPECT_EQ(plans[i].awaits_others, i == 3) << "the source";
 }
 
 TEST(StreamPlan, AnObjectStoreIsForAll) {

@@ -177,6 +177,39 @@ TEST(Supervisor, WhoIsKnownToRunNeedNotWait) {
   EXPECT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 1; }));
 }
 
+ChildPlan source_of_frames() {
+  ChildPlan source = shell("capture", "exec sleep 100", true);
+  source.awaits_others = true;
+  return source;
+}
+
+TEST(Supervisor, TheSourceStartsWhenAllOthersHaveSpoken) {
+  Supervisor supervisor({shell("a", "exec sleep 100"), shell("b", "exec sleep 100"), source_of_frames()}, quick(),
+                        be_silent);
+  supervisor.note_running(supervisor.states()[0].pid);
+  EXPECT_TRUE(supervisor.step());
+  EXPECT_TRUE(supervisor.states()[2].waits);
+  EXPECT_EQ(supervisor.states()[2].pid, 0) << "b has said nothing yet";
+  supervisor.note_running(supervisor.states()[1].pid);
+  EXPECT_TRUE(supervisor.step());
+  EXPECT_FALSE(supervisor.states()[2].waits);
+  EXPECT_NE(supervisor.states()[2].pid, 0);
+  EXPECT_EQ(supervisor.states()[2].restarts, 0);
+}
+
+TEST(Supervisor, TheSourceDoesNotWaitForEver) {
+  SupervisorSettings settings = quick();
+  settings.others_patience = milliseconds(200);
+  std::vector<std::string> lines;
+  Supervisor supervisor({shell("mute", "exec sleep 100"), source_of_frames()}, settings,
+                        [&](const std::string& words) { lines.push_back(words); });
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_TRUE(step_until(supervisor, [&] { return supervisor.states()[1].pid != 0; }));
+  EXPECT_GE(std::chrono::steady_clock::now() - start, milliseconds(150));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[1], "capture starts without waiting any longer for mute: nothing was heard of it for 0.2 s");
+}
+
 TEST(Supervisor, TheEndOfTheSourceEndsTheStream) {
   Supervisor supervisor({shell("detect", "exec sleep 100"), shell("capture", "exit 0", true)}, quick(), be_silent);
   bool ended = false;
