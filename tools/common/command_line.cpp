@@ -23,13 +23,13 @@ namespace {
 class KeyValueConfig : public CLI::ConfigBase {
  public:
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    std::vector<CLI::ConfigItem> items;
+    std::vector<CLI::ConfigItem> read;
     for (const KeyValue& line : read_key_values(input)) {
-      items.emplace_back();
-      items.back().name = line.key;
-      items.back().inputs = {line.value};
+      read.emplace_back();
+      read.back().name = line.key;
+      read.back().inputs = {line.value};
     }
-    return items;
+    return read;
   }
 };
 

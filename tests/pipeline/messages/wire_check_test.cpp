@@ -12,7 +12,7 @@ std::vector<std::uint8_t> encoded_frame() {
   return encode_message(to_message(make_test_frame(1234567), WireFormat{}, 41));
 }
 
-ByteView view(const std::vector<std::uint8_t>& bytes) {
+ByteView view_of(const std::vector<std::uint8_t>& bytes) {
   return {bytes.data(), bytes.size()};
 }
 
@@ -33,35 +33,35 @@ TEST(WireCheck, FingerprintsAreThoseOfBotCore) {
 
 TEST(WireCheck, HeaderIsReadWithoutDecoding) {
   const std::vector<std::uint8_t> bytes = encoded_frame();
-  const FrameHeader header = read_frame_header(view(bytes));
+  const FrameHeader header = read_frame_header(view_of(bytes));
   EXPECT_EQ(header.utime, 1234567);
   EXPECT_EQ(header.sequence, 41);
-  EXPECT_EQ(read_utime(view(bytes), "test"), 1234567);
+  EXPECT_EQ(read_utime(view_of(bytes), "test"), 1234567);
 }
 
 TEST(WireCheck, AFrameWithoutCounterHasNone) {
   images_t message = to_message(make_test_frame(5), WireFormat{}, 41);
   message.images[0].metadata.clear();
   message.images[0].nmetadata = 0;
-  EXPECT_FALSE(read_frame_header(view(encode_message(message))).sequence.has_value());
+  EXPECT_FALSE(read_frame_header(view_of(encode_message(message))).sequence.has_value());
 }
 
 TEST(WireCheck, AnUnreadableCounterIsRefused) {
   images_t message = to_message(make_test_frame(5), WireFormat{}, 41);
   message.images[0].metadata[2].value = {'4', 'x'};
-  EXPECT_THROW(read_frame_header(view(encode_message(message))), InputError);
+  EXPECT_THROW(read_frame_header(view_of(encode_message(message))), InputError);
 }
 
 TEST(WireCheck, EveryCutIsRefused) {
   std::vector<std::uint8_t> bytes = encoded_frame();
-  EXPECT_NO_THROW(decode_message<images_t>(view(bytes)));
+  EXPECT_NO_THROW(decode_message<images_t>(view_of(bytes)));
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
     EXPECT_THROW(decode_message<images_t>({bytes.data(), size}), InputError) << size;
     EXPECT_THROW(read_frame_header({bytes.data(), size}), InputError) << size;
   }
   bytes.push_back(0);
-  EXPECT_THROW(decode_message<images_t>(view(bytes)), InputError);
-  EXPECT_THROW(read_frame_header(view(bytes)), InputError);
+  EXPECT_THROW(decode_message<images_t>(view_of(bytes)), InputError);
+  EXPECT_THROW(read_frame_header(view_of(bytes)), InputError);
 }
 
 TEST(WireCheck, NegativeAndAbsurdCountsAreRefused) {
@@ -69,8 +69,8 @@ TEST(WireCheck, NegativeAndAbsurdCountsAreRefused) {
     for (const std::int32_t count : {-1, -2147483647 - 1, 2147483647, 100000000}) {
       std::vector<std::uint8_t> bytes = encoded_frame();
       put_int32(bytes, position, count);
-      EXPECT_THROW(decode_message<images_t>(view(bytes)), InputError) << position << " " << count;
-      EXPECT_THROW(read_frame_header(view(bytes)), InputError) << position << " " << count;
+      EXPECT_THROW(decode_message<images_t>(view_of(bytes)), InputError) << position << " " << count;
+      EXPECT_THROW(read_frame_header(view_of(bytes)), InputError) << position << " " << count;
     }
   }
 }
@@ -78,7 +78,7 @@ TEST(WireCheck, NegativeAndAbsurdCountsAreRefused) {
 TEST(WireCheck, AnotherTypeIsRefusedByName) {
   const std::vector<std::uint8_t> bytes = encoded_frame();
   try {
-    decode_message<detections_t>(view(bytes));
+    decode_message<detections_t>(view_of(bytes));
     FAIL() << "images_t passed as detections_t";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("20ba4f05e8f5e33a"), std::string::npos) << error.what();
@@ -96,12 +96,12 @@ TEST(WireCheck, DamagedResultsNeverCrash) {
   detections.detections = {detection};
   detections.stages = {{"detect.leaves", 3}};
   const std::vector<std::uint8_t> whole = encode_message(to_message(detections));
-  EXPECT_EQ(decode_message<detections_t>(view(whole)).n_detections, 1);
+  EXPECT_EQ(decode_message<detections_t>(view_of(whole)).n_detections, 1);
   for (std::size_t i = 0; i < whole.size(); ++i) {
     std::vector<std::uint8_t> bytes = whole;
     bytes[i] ^= 0xFFU;
     try {
-      detections_from_message(decode_message<detections_t>(view(bytes)));
+      detections_from_message(decode_message<detections_t>(view_of(bytes)));
     } catch (const InputError&) {
       continue;  // refusing is right; anything else thrown, or a crash, is not
     }
