@@ -196,7 +196,9 @@ void Rasteriser::fill(const std::array<Snapped, 3>& corners, Triangle& triangle)
 
 void Rasteriser::fill_rows(const std::array<Edge, 3>& edges, const cv::Rect& box, Triangle& triangle) {
   constexpr int kNarrow = 4;  // pixels: what is tried one by one sooner than divided for
-  const auto [first_edge, second_edge, third_edge] = edges;
+  const Edge first_edge = edges[0];
+  const Edge second_edge = edges[1];
+  const Edge third_edge = edges[2];
   const auto is_inside = [&](int x, int y) {
     return (first_edge.at(x, y) | second_edge.at(x, y) | third_edge.at(x, y)) >= 0;
   };
