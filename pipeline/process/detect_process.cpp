@@ -56,7 +56,7 @@ class Reception {
                                       : newest_.put(arrival.channel, std::move(frame));
   }
 
-  const bool is_log_;
+  bool is_log_;
   StatusReporter& status_;
   NewestOfEach<WaitingFrame>& newest_;
   LookBudget budget_;

@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 class FilterLog : public testing::Test {
  protected:
   /// Ten events a second apart, even ones on A_ONE, odd ones on B.
-  FilterLog() : folder_(fresh_folder("filter_log")) {
-    LogWriter writer(folder_ / "in");
+  FilterLog() : folder(fresh_folder("filter_log")) {
+    LogWriter writer(folder / "in");
     for (int i = 0; i < 10; ++i) {
       const std::vector<std::uint8_t> data(5, static_cast<std::uint8_t>(i));
       writer.write(1'000'000'000 + 1'000'000 * i, i % 2 == 0 ? "A_ONE" : "B", {data.data(), data.size()});
@@ -25,9 +25,9 @@ class FilterLog : public testing::Test {
   /// The numbers of the events that pass.
   std::vector<int> pass(const LogFilter& filter) const {
     LossAccount losses;
-    const std::int64_t count = filter_log(folder_ / "in", filter, folder_ / "out", losses);
+    const std::int64_t count = filter_log(folder / "in", filter, folder / "out", losses);
     std::vector<int> numbers;
-    LogReader log(folder_ / "out");
+    LogReader log(folder / "out");
     while (const auto event = log.next()) {
       EXPECT_EQ(event->timestamp, 1'000'000'000 + 1'000'000 * event->data[0]);
       EXPECT_EQ(event->channel, event->data[0] % 2 == 0 ? "A_ONE" : "B");
@@ -37,7 +37,7 @@ class FilterLog : public testing::Test {
     return numbers;
   }
 
-  fs::path folder_;
+  fs::path folder;
 };
 
 TEST_F(FilterLog, ByTime) {
@@ -109,12 +109,12 @@ TEST_F(FilterLog, WhatMakesNoSenseIsRefused) {
   EXPECT_THROW(pass(filter), InputError);
   filter = {};
   filter.start_s = 100.0;
-  fs::remove(folder_ / "out");
+  fs::remove(folder / "out");
   EXPECT_THROW(pass(filter), InputError);
-  EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing is written where nothing passes";
+  EXPECT_FALSE(fs::exists(folder / "out")) << "nothing is written where nothing passes";
   LossAccount losses;
-  EXPECT_THROW(filter_log(folder_ / "in", {}, folder_ / "in", losses), InputError);
-  EXPECT_GT(fs::file_size(folder_ / "in"), 300U);
+  EXPECT_THROW(filter_log(folder / "in", {}, folder / "in", losses), InputError);
+  EXPECT_GT(fs::file_size(folder / "in"), 300U);
 }
 
 }  // namespace
