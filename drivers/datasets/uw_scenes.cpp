@@ -56,7 +56,7 @@ std::vector<UwBox> read_boxes(const MatArray& structs, const cv::Size& size, con
 
 FrameFiles numbered_pair(const fs::path& folder, std::size_t number) {
   const std::string name = fmt::format("{}_{}", folder.filename().string(), number);
-  const FrameFiles pair{name, folder / (name + ".png"), folder / (name + "_depth.png")};
+  FrameFiles pair{name, folder / (name + ".png"), folder / (name + "_depth.png")};
   for (const fs::path& file : {pair.colour, pair.depth})
     require(fs::exists(file), "{}: missing, expected as frame {} of the annotated video", file.string(), number);
   return pair;

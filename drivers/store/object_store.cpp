@@ -35,7 +35,7 @@ bool truth(const nlohmann::json& entry, const char* key, const std::string& wher
 Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& where) {
   if (!entry.contains("vote_centre_m")) return Eigen::Vector3f::Zero();
   const std::vector<double> xyz = json_numbers(entry, "vote_centre_m", 3, where);
-  const Eigen::Vector3f centre = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).cast<float>();
+  Eigen::Vector3f centre = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).cast<float>();
   require(centre.norm() < kFarthestCentre_m, "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where,
           entry.at("vote_centre_m").dump());
   return centre;

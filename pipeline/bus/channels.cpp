@@ -31,7 +31,7 @@ unsigned int short_number(const std::string& text) {
 
 std::string camera_name(const std::string& camera_channel) {
   constexpr std::size_t kLongest = 31;
-  const std::string name = upper_case(camera_channel);
+  std::string name = upper_case(camera_channel);
   if (name.size() <= kLongest) return name;
   return fmt::format("{}_{:04X}", name.substr(0, kLongest - 5), short_number(camera_channel));
 }

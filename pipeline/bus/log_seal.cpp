@@ -24,6 +24,7 @@ constexpr std::size_t kBlockBytes = std::size_t{64} << 20U;
 
 void write_block(const std::vector<LogEvent>& block, LogWriter& out) {
   std::vector<std::uint32_t> checksums;
+  checksums.reserve(block.size());
   for (const LogEvent& event : block) checksums.push_back(checksum_of(event));
   const std::vector<std::uint8_t> seal = encode_seal(checksums);
   out.write(block.front().timestamp, kSealChannel, {seal.data(), seal.size()});
