@@ -58,7 +58,7 @@ std::vector<cv::Mat> vote_planes(const cv::Mat& normals, int threads) {
       if (std::isnan(normal[2])) continue;
       const Votes votes = votes_of(normal);
       for (std::size_t b = 0; b < kPlanes; ++b) {
-        planes[b].at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(votes[b] * kFull + 0.5F);
+        planes[b].at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(std::floor(votes[b] * kFull + 0.5F));
       }
     }
   });

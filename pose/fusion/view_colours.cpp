@@ -67,8 +67,7 @@ Lighting::Lighting(const std::vector<DepthView>& views, double tolerance_m, cons
   shades_.resize(static_cast<std::size_t>(lights));
   for (int light = 0; light < lights; ++light) take_out_shade(mesh, light);
   // Views of several lights agree on the paint only now.
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    ColourSample& sample = samples_[i];
+  for (ColourSample& sample : samples_) {
     if (light_[static_cast<std::size_t>(sample.view)] < 0) continue;
     const int vertex = vertices_[static_cast<std::size_t>(sample.vertex)];
     sample.level -= shades_[static_cast<std::size_t>(light_[static_cast<std::size_t>(sample.view)])](

@@ -16,6 +16,7 @@ Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
   Eigen::Vector3d out;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
+    values.reserve(offsets.size());
     for (const Eigen::Vector3d& offset : offsets) values.push_back(offset[axis]);
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());

@@ -51,7 +51,9 @@ double log_odds_of(double quality) {
 
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries) {
   TrackModels models;
-  for (auto& [name, mesh] : meshes) {
+  for (auto& named : meshes) {
+    const std::string& name = named.first;
+    Mesh& mesh = named.second;
     require(!mesh.triangles.empty(), "model {}: no triangles, expected a mesh", name);
     TrackModel model;
     const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);

@@ -75,7 +75,7 @@ TEST(SurfaceHonv, EveryNormalCountsAsOneAndMissingOnesAsNone) {
   for (int y = 0; y < frame.filled_depth.rows; ++y) {
     int sum = 0;
     for (const int value : at(planes, 77, y)) sum += value;
-    EXPECT_NEAR(sum, 255, HonvLayout::kPlanes / 2) << y;
+    EXPECT_NEAR(sum, 255, 0.5 * HonvLayout::kPlanes) << y;
   }
 }
 
