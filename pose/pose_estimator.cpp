@@ -105,16 +105,17 @@ PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings se
     : state_(std::make_unique<State>()) {
   struct Making {
     const std::string& name;
-    Mesh& mesh;
+    Mesh* mesh;
     ObjectModel& model;
   };
   std::vector<Making> makings;
-  for (auto& [name, mesh] : models) makings.push_back({name, mesh, state_->models[name]});
+  makings.reserve(models.size());
+  for (auto& named : models) makings.push_back({named.first, &named.second, state_->models[named.first]});
   // One model after another would leave threads idle at each one's end; a single one is made by all of them.
   const int threads_of_each = std::max(1, threads / std::max(1, static_cast<int>(makings.size())));
   parallel_for(threads, static_cast<int>(makings.size()), [&](int i) {
     Making& it = makings[static_cast<std::size_t>(i)];
-    it.model = make_object_model(it.name, std::move(it.mesh), settings.model, threads_of_each);
+    it.model = make_object_model(it.name, std::move(*it.mesh), settings.model, threads_of_each);
   });
   state_->settings = std::move(settings);
 }

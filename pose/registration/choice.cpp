@@ -96,7 +96,7 @@ RegistrationResult choose_pose(const SeenObject& seen, const std::vector<Registr
   const Choice choice(seen, votes, settings);
   const TurnSettings& turn = settings.turn;
   const RegistrationSettings& registration = settings.registration;
-  const RegistrationResult best = choice.best_of(registered);
+  RegistrationResult best = choice.best_of(registered);
   if (best.inliers == 0) return best;
   const RegistrationResult settled = register_finely(seen, best, registration);
   const RegistrationResult flipped = choice.best_flip(settled);
