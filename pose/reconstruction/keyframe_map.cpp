@@ -137,7 +137,7 @@ Alignment KeyframeMap::lay_on(const std::vector<int>& references, const FrameLev
   const LevelPoints points = points_of(references);
   if (!settings_.corners_hold) {
     const Holds plane{settings_.plane, {}};
-    const Alignment found = align_frame(points, levels, T_likely, plane, alignment);
+    Alignment found = align_frame(points, levels, T_likely, plane, alignment);
     if (is_good(found) || !limits.may_be_lost || most == 0) return found;
     return align_frame(points, levels, T_by_corners, plane, alignment);
   }

@@ -34,7 +34,7 @@ std::vector<Eigen::Vector3d> scattered_points(const RgbdFrame& frame, double far
   return points;
 }
 
-Plane towards_camera(Eigen::Vector3d normal, double offset) {
+Plane towards_camera(const Eigen::Vector3d& normal, double offset) {
   if (offset < 0.0) return {-normal, -offset};
   return {normal, offset};
 }
@@ -170,7 +170,7 @@ Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAx
   const cv::Point2d meant = meant_place(frame, settings);
   for (int y = 0; y < cells.rows; ++y) {
     for (int x = 0; x < cells.cols; ++x) {
-      const cv::Vec2i cell = cells.at<cv::Vec2i>(y, x);
+      const auto& cell = cells.at<cv::Vec2i>(y, x);
       if (cell[0] < 0) continue;
       const int label = labels.at<int>(cell[1], cell[0]);
       clusters.of_pixel.at<int>(y, x) = label;
