@@ -17,7 +17,7 @@ using namespace world;
 namespace {
 
 std::vector<SequencePlan> chosen_plans(const SequencesJob& job) {
-  const std::vector<SequencePlan> all = sequence_plans();
+  std::vector<SequencePlan> all = sequence_plans();
   if (job.names == std::vector<std::string>{"all"}) return all;
   std::vector<SequencePlan> chosen;
   for (const std::string& name : job.names) {
@@ -107,6 +107,7 @@ void render_sequences(const RenderOptions& options, const SequencesJob& job) {
     for (const Actor& actor : plan.actors) ids.insert(actor.object_id);
   }
   std::vector<TaughtObject> objects;
+  objects.reserve(ids.size());
   for (const int id : ids) objects.push_back(make_taught_object(id));
   for (const SequencePlan& plan : plans) fresh_scene(options, options.out / plan.name / "000001");  // each has this one
   write_models(options, objects);

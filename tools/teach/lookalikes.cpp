@@ -127,6 +127,7 @@ std::optional<Lookalike> compare(const Shape& one, const Shape& other) {
 
 std::vector<Lookalike> find_lookalikes(const std::vector<NamedMesh>& meshes) {
   std::vector<std::unique_ptr<Shape>> shapes;
+  shapes.reserve(meshes.size());
   for (const auto& [name, mesh] : meshes) shapes.push_back(std::make_unique<Shape>(*mesh));
   std::vector<Lookalike> pairs;
   for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -24,6 +24,7 @@ constexpr double kScoreStiffness = 5.0;  // a hundred examples of an object do n
 std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>& objects,
                                              const PracticeSettings& settings) {
   std::vector<world::PracticeObject> in_room;
+  in_room.reserve(objects.size());
   for (const PractisedObject& object : objects) in_room.push_back(object.in_room);
   const world::PracticeScenes scenes(std::move(in_room), settings.seed);
   constexpr int kEach = world::PracticeScenes::kFramesPerRoom;

@@ -145,6 +145,7 @@ void dump_views(const std::vector<TrainingView>& views, const fs::path& folder) 
 
 std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes) {
   std::vector<NamedModel> models;
+  models.reserve(meshes.size());
   for (const TaughtMesh& taught : meshes) models.push_back({taught.id, taught.name, taught.mesh, taught.symmetries});
   return models;
 }
@@ -299,6 +300,7 @@ void require_store(const fs::path& folder) {
 
 void name_lookalikes(const std::vector<NamedModel>& models) {
   std::vector<NamedMesh> named;
+  named.reserve(models.size());
   for (const NamedModel& model : models) named.emplace_back(model.name, &model.mesh);
   for (const Lookalike& pair : find_lookalikes(named)) log_warning("{}", describe(pair));
 }

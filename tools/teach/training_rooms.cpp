@@ -35,7 +35,7 @@ void remove_leftovers(const fs::path& cache, const std::string& prefix) {
 /// The folder of the rendered rooms; renders them beside it first where it is missing, so that it is always whole.
 fs::path rendered_rooms(const RoomSettings& settings) {
   const fs::path cache = settings.cache.empty() ? cache_folder("--cache FOLDER") : settings.cache;
-  const fs::path rooms = cache / fmt::format("rooms-{}-{}", kRoomsVersion, settings.count);
+  fs::path rooms = cache / fmt::format("rooms-{}-{}", kRoomsVersion, settings.count);
   if (fs::exists(rooms / "scene_gt_info.json")) return rooms;
   std::error_code error;
   fs::create_directories(cache, error);

@@ -48,7 +48,7 @@ void run(LcmBus& bus, const TrackOptions& options, const track::CurrentModels& m
 }
 
 void run_with_models(const TrackOptions& options) {
-  const auto models = std::make_shared<const tracks::TrackModels>(
+  auto models = std::make_shared<const tracks::TrackModels>(
       options.models.empty() ? tracks::TrackModels() : track::load_track_models(options.models, options.model_unit_m));
   if (models->empty()) log_warning("neither --objects nor --models: what is hidden or gone cannot be told");
   LcmBus bus(options.url, options.output_log);

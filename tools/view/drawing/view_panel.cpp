@@ -105,7 +105,7 @@ void draw_keys(cv::Mat image, const FrameViewSettings& settings, bool several_ca
 }  // namespace
 
 std::string camera_heading(const FrameId& frame, const std::vector<std::string>& cameras) {
-  const std::string time = fmt::format("frame {:.3f} s", static_cast<double>(frame.utime) * 1e-6);
+  std::string time = fmt::format("frame {:.3f} s", static_cast<double>(frame.utime) * 1e-6);
   if (frame.channel.empty()) return time;
   const auto found = std::find(cameras.begin(), cameras.end(), frame.channel);
   if (cameras.size() < 2 || found == cameras.end()) return frame.channel + ", " + time;
