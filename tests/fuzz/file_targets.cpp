@@ -153,7 +153,7 @@ std::vector<Bytes> scenes() {
 const std::vector<std::string> kStore = {"store.json", "models/models_info.json"};
 
 fs::path store_folder() {
-  const fs::path folder = scratch("store");
+  fs::path folder = scratch("store");
   if (fs::exists(folder)) return folder;
   fs::create_directories(folder);
   store::fill_store(folder, "brick");

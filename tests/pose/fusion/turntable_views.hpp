@@ -68,6 +68,7 @@ inline TrainingView turntable_view(const TurntableScene& scene, int index) {
 
 inline std::vector<TrainingView> turntable_views(const TurntableScene& scene) {
   std::vector<TrainingView> views;
+  views.reserve(static_cast<std::size_t>(scene.views));
   for (int i = 0; i < scene.views; ++i) views.push_back(turntable_view(scene, i));
   return views;
 }

@@ -19,6 +19,7 @@ TEST(PoseGraph, SpreadsTheGapOfALoop) {
   constexpr int kPoses = 24;
   std::vector<Eigen::Isometry3d> poses;
   std::vector<PoseEdge> edges;
+  poses.reserve(kPoses);
   for (int i = 0; i < kPoses; ++i) poses.push_back(on_circle(i, kPoses, 0.01));
   for (int i = 0; i + 1 < kPoses; ++i)
     edges.push_back({i, i + 1, poses[static_cast<std::size_t>(i) + 1] * poses[static_cast<std::size_t>(i)].inverse(),

@@ -248,7 +248,7 @@ WorldObjects world_with(TrackState state, std::int64_t utime, const std::string&
 }
 
 std::filesystem::path log_of_three_frames() {
-  const std::filesystem::path file = fresh_folder("export_objects") / "objects.lcmlog";
+  std::filesystem::path file = fresh_folder("export_objects") / "objects.lcmlog";
   LogWriter writer(file);
   for (const WorldObjects& world :
        {world_with(TrackState::kVisible, 1, "seen by LEFT"), world_with(TrackState::kVisible, 2, "seen by LEFT"),

@@ -23,7 +23,7 @@ HoughPanel panel_of(const std::string& title, cv::Point at, float value) {
 }
 
 int brightness(const cv::Mat& picture, int x, int y) {
-  const auto pixel = picture.at<cv::Vec3b>(y, x);
+  const auto& pixel = picture.at<cv::Vec3b>(y, x);
   return pixel[0] + pixel[1] + pixel[2];
 }
 
