@@ -165,7 +165,7 @@ Eigen::Isometry3d Sequence::T_camera_world(int camera, double seconds) const {
     return camera_at(path, seconds / plan_.seconds);
   }
   const std::array<double, 3> azimuths = {0.1, -1.2, 1.25};
-  const Eigen::Isometry3d T = look_from(azimuths.at(static_cast<std::size_t>(camera)), 0.62, camera == 0 ? 0.95 : 1.1);
+  Eigen::Isometry3d T = look_from(azimuths.at(static_cast<std::size_t>(camera)), 0.62, camera == 0 ? 0.95 : 1.1);
   if (plan_.cameras != CameraWork::kJerk) return T;
   return jerked(jerked(T, seconds, 3.0, 1.0), seconds, 5.5, -0.7);
 }
