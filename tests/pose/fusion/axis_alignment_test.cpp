@@ -21,6 +21,7 @@ double axis_error_deg(const DepthView& view, const Eigen::Isometry3d& truth) {
 
 std::vector<DepthView> make_views(const std::vector<TrainingView>& views) {
   std::vector<DepthView> out;
+  out.reserve(views.size());
   for (const TrainingView& view : views) out.push_back(make_depth_view(view));
   return out;
 }

@@ -47,8 +47,8 @@ TEST(Shade, LightIsPartedFromPaint) {
     colours.emplace_back(ball.paints[i] * light_on(ball.normals[i]));
   const Shade shade = fit_shade(colours, ball.normals);
   double darkest = 1e9, brightest = -1e9;
-  for (std::size_t i = 0; i < ball.normals.size(); ++i) {
-    const double rest = std::log(light_on(ball.normals[i])) - shade(ball.normals[i]);
+  for (const Eigen::Vector3d& normal : ball.normals) {
+    const double rest = std::log(light_on(normal)) - shade(normal);
     darkest = std::min(darkest, rest);
     brightest = std::max(brightest, rest);
   }
