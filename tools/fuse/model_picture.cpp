@@ -74,6 +74,7 @@ cv::Mat draw_model(const Mesh& mesh) {
   const Camera camera{kSize_px, kSize_px, focal, focal, middle, middle};
   constexpr double kSide = 25.0 * M_PI / 180.0;
   std::vector<cv::Mat> views;
+  views.reserve(6);  // from four sides, above and below
   for (int k = 0; k < 4; ++k) {
     views.push_back(draw_view(mesh, looking_at(centre, k * M_PI_2 - M_PI_2, kSide, distance), camera));
   }

@@ -83,10 +83,12 @@ std::vector<ExportedFrame> read_results(const std::filesystem::path& log_file, L
     try {
       if (event->channel == channel::kDetections) {
         Detections detections = detections_from_message(decode_message<detections_t>(bytes));
-        found[detections.frame].add(std::move(detections));
+        FrameResults& of_frame = found[detections.frame];
+        of_frame.add(std::move(detections));
       } else if (event->channel == channel::kPoses) {
         ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(bytes));
-        found[poses.frame].add(std::move(poses));
+        FrameResults& of_frame = found[poses.frame];
+        of_frame.add(std::move(poses));
       }
     } catch (const InputError& error) {
       losses.note_refused(error.what());

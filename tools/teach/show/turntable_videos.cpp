@@ -33,6 +33,7 @@ struct Video {
 /// Median overlap of the model's outline with the views' masks.
 double outline_overlap(const Mesh& mesh, const std::vector<TrainingView>& views) {
   std::vector<double> overlaps;
+  overlaps.reserve(views.size());
   for (const TrainingView& view : views) overlaps.push_back(reconstruction::outline_overlap(mesh, view));
   const auto middle = overlaps.begin() + static_cast<std::ptrdiff_t>(overlaps.size() / 2);
   std::nth_element(overlaps.begin(), middle, overlaps.end());
@@ -79,6 +80,7 @@ std::vector<Video> read_videos(const ShowOptions& options) {
                               parse_camera(options.camera.empty() ? kNominalCamera : options.camera)))
     by_video[view.object_frame].push_back(std::move(view));
   std::vector<Video> videos;
+  videos.reserve(by_video.size());
   for (auto& [name, views] : by_video) videos.push_back(make_video(name, views, options.threads));
   std::stable_sort(videos.begin(), videos.end(), [](const Video& a, const Video& b) { return a.overlap > b.overlap; });
   return videos;

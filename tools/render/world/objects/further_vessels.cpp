@@ -52,8 +52,7 @@ Mesh with_lip(Mesh vessel, double reach, double from_z, double to_z) {
 Mesh cap_mesh(double radius, double height, const cv::Scalar& colour, Random& random) {
   cv::Mat texture = plain({256, 64}, colour, 0.03, random);
   for (int x = 0; x < texture.cols; x += 8) cv::line(texture, {x, 0}, {x, texture.rows}, colour * 0.75, 2);
-  const Mesh cap = turned_mesh({{radius, 0.0}, {radius, 0.8 * height}, {0.9 * radius, height}}, texture);
-  return cap;
+  return turned_mesh({{radius, 0.0}, {radius, 0.8 * height}, {0.9 * radius, height}}, texture);
 }
 
 // Chequered cloth, closed round a lathe.
