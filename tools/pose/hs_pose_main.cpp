@@ -90,7 +90,7 @@ void run_with_models(PoseOptions options) {
   if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
   if (options.min_quality) publish_from(*options.min_quality, options.settings);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
-  const auto estimator = warmed_up(std::move(meshes), options.settings, {threads, made_up.get()});
+  auto estimator = warmed_up(std::move(meshes), options.settings, {threads, made_up.get()});
   LcmBus bus(options.url, options.output_log);
   run(bus, options, [&] { return estimator; });
 }
