@@ -205,9 +205,9 @@ PageServer::PageServer(const HttpAddress& address, PageBoard& board) : state_(st
   require(problem.empty(), "--http {}:{}: {}", address.host, address.port, problem);
   state_->set_limits();
   state_->add_pages();
-  if (address.port == 0) state_->address.port = state_->server.bind_to_any_port(address.host.c_str());
+  if (address.port == 0) state_->address.port = state_->server.bind_to_any_port(address.host);
   const bool bound =
-      address.port == 0 ? state_->address.port > 0 : state_->server.bind_to_port(address.host.c_str(), address.port);
+      address.port == 0 ? state_->address.port > 0 : state_->server.bind_to_port(address.host, address.port);
   require(bound, "--http {}:{}: cannot be listened at", address.host, address.port);
   const BlockStopSignals block;
   state_->thread = std::thread([state = state_.get()] {
