@@ -187,6 +187,15 @@ CommandOption CommandLine::add_flag(const std::string& names, bool& value, const
   return CommandOption(app_->add_flag(names, value, words));
 }
 
+void CommandLine::add_common_flag(const std::string& names, bool& value, const std::string& words) {
+  std::vector<CLI::App*> commands = {app_.get()};
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    commands[i]->add_flag(names, value, words);
+    const std::vector<CLI::App*> jobs = commands[i]->get_subcommands([](CLI::App*) { return true; });
+    commands.insert(commands.end(), jobs.begin(), jobs.end());
+  }
+}
+
 CommandOption CommandLine::add_clearing_flag(const std::string& names, bool& clears, const std::string& words) {
   return CommandOption(app_->add_flag_callback(
       names, [&clears] { clears = false; }, words));
@@ -209,7 +218,6 @@ std::string CommandLine::config_template() const {
 
 CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& words) {
   CLI::App* job = app_->add_subcommand(name, words);
-  job->fallthrough();
   job->footer(std::string());       // not that of the whole line
   return CommandLine({app_, job});  // lives as long as the whole line
 }

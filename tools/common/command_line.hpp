@@ -47,6 +47,8 @@ class CommandLine {
   template <typename T>
   CommandOption add_option(const std::string& names, T& value, const std::string& words = "");
   CommandOption add_flag(const std::string& names, bool& value, const std::string& words);
+  /// Of this command and of all that it has by now, before or behind their names.
+  void add_common_flag(const std::string& names, bool& value, const std::string& words);
   /// `clears` becomes false where the flag is given.
   CommandOption add_clearing_flag(const std::string& names, bool& clears, const std::string& words);
   CommandOption get_option(const std::string& name);

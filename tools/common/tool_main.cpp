@@ -12,7 +12,7 @@ namespace houghstream {
 
 int run_tool(CommandLine& line, int argc, char** argv, const std::function<void()>& body) {
   bool verbose = false;
-  line.add_flag("-v,--verbose", verbose, "log more");
+  line.add_common_flag("-v,--verbose", verbose, "log more");
   line.set_version(line.name() + " " + HOUGHSTREAM_VERSION);
   if (const std::optional<int> status = line.parse({argv + 1, argv + argc})) return *status;
   start_log(line.name(), verbose ? LogLevel::kDebug : LogLevel::kInfo);

@@ -148,7 +148,7 @@ TEST(CommandLine, OneOfItsCommandsIsGiven) {
   const CommandLine second = line.add_subcommand("second", "words");
   bool loud = false;
   first.add_option("--count", count);
-  line.add_flag("-v,--loud", loud, "words");
+  line.add_common_flag("-v,--loud", loud, "words");
   EXPECT_EQ(line.parse({"first", "--count", "2", "-v"}), std::nullopt);
   EXPECT_TRUE(loud) << "an option of the whole line, behind the command";
   EXPECT_TRUE(first.given());

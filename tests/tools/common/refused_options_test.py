@@ -11,7 +11,7 @@ import unittest
 EXECUTABLES = pathlib.Path(sys.argv[1]).resolve()
 # Nothing can be made there, whoever tries.
 NOWHERE = "/dev/null/nowhere"
-TRAIN = ("hs-train", "--views", f"bop:{NOWHERE}", "--background", f"bop:{NOWHERE}", "--out", f"{NOWHERE}/forest")
+TRAIN = ("hs-train", "--views", f"bop:{NOWHERE}", "--background", f"bop:{NOWHERE}", "--out", "/dev/null")
 EVALUATE = ("hs-evaluate", "--scene", NOWHERE)
 FILTER = ("hs-log", "filter", f"{NOWHERE}/in.log", f"{NOWHERE}/out.log")
 RENDER = ("hs-render", "training", "--out", NOWHERE)

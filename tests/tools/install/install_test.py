@@ -88,7 +88,7 @@ class Programs(unittest.TestCase):
     def test_they_have_manual_pages_with_the_options_of_their_jobs(self):
         pages = {page.name: gzip.decompress(page.read_bytes()).decode() for page in HOME.glob("share/man/man1/*.gz")}
         self.assertEqual(sorted(pages), sorted(f"{program.name}.1.gz" for program in HOME.glob("bin/*")))
-        for page, words in (("hs-log", r".SH HS\-LOG EXPORT BOP"), ("hs-log", r"\-\-from\-channel"), ("hs-teach", r"\-\-no\-teach"),
+        for page, words in (("hs-log", r'.SH "HS-LOG EXPORT BOP"'), ("hs-log", r"\-\-from\-channel"), ("hs-teach", r"\-\-no\-teach"),
                             ("hs-render", r"\-\-pitches"), ("hs-import", "hs-import boxes FRAMES SCENE"), ("hs-spy", r"\-\-heap"),
                             ("houghstream-demo", r"\-\-unplug"), ("hs-detect", ".SH EXAMPLES")):  # fmt: skip
             self.assertIn(words, pages[f"{page}.1.gz"], page)
