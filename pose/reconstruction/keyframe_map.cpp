@@ -85,10 +85,13 @@ LevelPoints KeyframeMap::points_of(const std::vector<int>& keyframes) const {
 
 const LevelPoints& KeyframeMap::local_map(const Eigen::Isometry3d& T_camera_world) {
   std::vector<int> references = references_for(T_camera_world);
-  if (references == local_references_) return local_points_;
-  local_references_ = std::move(references);
-  local_points_ = points_of(local_references_);
-  return local_points_;
+  if (references != local_.keyframes) local_ = part_of(std::move(references));
+  return local_.points;
+}
+
+MapPart KeyframeMap::part_of(std::vector<int> keyframes) const {
+  LevelPoints points = points_of(keyframes);
+  return {std::move(keyframes), std::move(points)};
 }
 
 PoseEdge KeyframeMap::edge_between(int from, int to, const Matrix6& information) const {
@@ -100,29 +103,29 @@ PoseEdge KeyframeMap::edge_between(int from, int to, const Matrix6& information)
 std::optional<LoopGap> KeyframeMap::add(Keyframe keyframe, const Alignment& alignment) {
   const int last = static_cast<int>(keyframes_.size());
   keyframes_.push_back(std::move(keyframe));
-  for (const int reference : local_references_)
+  for (const int reference : local_.keyframes)
     edges_.push_back(
-        edge_between(reference, last, alignment.information / static_cast<double>(local_references_.size())));
+        edge_between(reference, last, alignment.information / static_cast<double>(local_.keyframes.size())));
   steps_ = steps_from(last, last + 1, edges_);
   const std::optional<LoopGap> gap = close_loop(last);
   if (gap) correct_poses();
-  local_references_.clear();
+  local_.keyframes.clear();
   return gap;
 }
 
 /// Corners that contradict the likely pose are mistaken, wallpaper for instance, unless it may be far off and many
 /// agree.
-Alignment KeyframeMap::lay_on(const std::vector<int>& references, const FrameLevels& levels, const Landmarks& seen,
+Alignment KeyframeMap::lay_on(const MapPart& part, const FrameLevels& levels, const Landmarks& seen,
                               const Eigen::Isometry3d& T_likely, const LayLimits& limits) const {
   constexpr double kContradicts = 0.015;  // radians
   Holds holds{settings_.plane, {}};
   std::size_t most = 0;
   Eigen::Isometry3d T_by_corners = T_likely;
-  for (const int k : references) {
+  for (const int k : part.keyframes) {
     if (!settings_.corners_hold && !limits.may_be_lost) break;
     const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
     const std::optional<LandmarkMatch> match = match_landmarks(keyframe.landmarks, seen);
-    if (!match || match->inliers.size() < static_cast<std::size_t>(settings_.fewest_corners)) continue;
+    if (!match || match->inliers.size() < settings_.fewest_corners) continue;
     const Eigen::Isometry3d T_world_camera = keyframe.T_camera_world.inverse();
     for (const auto& [before, now] : match->inliers) holds.corners.push_back({T_world_camera * before, now});
     if (match->inliers.size() <= most) continue;
@@ -134,21 +137,20 @@ Alignment KeyframeMap::lay_on(const std::vector<int>& references, const FrameLev
   });
   AlignmentLimits alignment;
   alignment.coarsest = limits.coarsest;
-  const LevelPoints points = points_of(references);
   if (!settings_.corners_hold) {
     const Holds plane{settings_.plane, {}};
-    Alignment found = align_frame(points, levels, T_likely, plane, alignment);
+    Alignment found = align_frame(part.points, levels, T_likely, plane, alignment);
     if (is_good(found) || !limits.may_be_lost || most == 0) return found;
-    return align_frame(points, levels, T_by_corners, plane, alignment);
+    return align_frame(part.points, levels, T_by_corners, plane, alignment);
   }
   const bool contradicted = 2 * static_cast<std::size_t>(contradict) > holds.corners.size();
-  const bool jumps = contradicted && limits.may_be_lost && most >= static_cast<std::size_t>(settings_.sure_corners);
+  const bool jumps = contradicted && limits.may_be_lost && most >= settings_.sure_corners;
   if (contradicted && !jumps) holds.corners.clear();
-  return align_frame(points, levels, jumps ? T_by_corners : T_likely, holds, alignment);
+  return align_frame(part.points, levels, jumps ? T_by_corners : T_likely, holds, alignment);
 }
 
 Alignment KeyframeMap::held_by_corners(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const {
-  const Alignment held = lay_on(local_references_, levels, seen, laid.T_camera_world, {});
+  const Alignment held = lay_on(local_, levels, seen, laid.T_camera_world, {});
   return is_good(held) ? held : laid;
 }
 
@@ -166,7 +168,8 @@ std::optional<LoopGap> KeyframeMap::close_loop(int last) {
   if (candidates.size() > kMostTries) candidates.resize(kMostTries);
   for (const auto& [d, k] : candidates) {
     const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
-    const Alignment found = lay_on({k}, now.levels, now.landmarks, now.T_camera_world, {settings_.coarsest, true});
+    const Alignment found =
+        lay_on(part_of({k}), now.levels, now.landmarks, now.T_camera_world, {settings_.coarsest, true});
     const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
     if (!is_good(found) || gap.shift_m > kMostShift_m) continue;
     edges_.push_back({k, last, found.T_camera_world * old.T_camera_world.inverse(), found.information});
@@ -196,9 +199,10 @@ void KeyframeMap::refine(int rounds) {
       }
       std::sort(near.begin(), near.end());
       if (near.size() > kNeighbours) near.resize(kNeighbours);
+      const MapPart own = part_of({i});
       for (const auto& [d, j] : near) {
         const Keyframe& to = keyframes_[static_cast<std::size_t>(j)];
-        const Alignment laid = lay_on({i}, to.levels, to.landmarks, to.T_camera_world, {round == 0 ? 1 : 0, false});
+        const Alignment laid = lay_on(own, to.levels, to.landmarks, to.T_camera_world, {round == 0 ? 1 : 0, false});
         if (is_good(laid))
           found[static_cast<std::size_t>(i)].push_back(
               {i, j, laid.T_camera_world * from.T_camera_world.inverse(), laid.information});
@@ -211,7 +215,7 @@ void KeyframeMap::refine(int rounds) {
     optimise_poses(edges, poses);
     for (std::size_t k = 0; k < poses.size(); ++k) keyframes_[k].T_camera_world = poses[k];
   }
-  local_references_.clear();
+  local_.keyframes.clear();
 }
 
 }  // namespace houghstream::reconstruction

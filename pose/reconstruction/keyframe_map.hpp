@@ -32,13 +32,19 @@ struct MapSettings {
   double least_inlier_share = 0.75;
   double least_seen_share = 0.25;
   double most_light_rms = 0.62;
-  int coarsest = 2;          ///< level on which registration begins
-  bool corners_hold = true;  ///< those of surroundings; of a thing that turns, shine has some too
-  int fewest_corners = 12;   ///< in common with another frame, to hold a pose
-  int sure_corners = 30;     ///< in common with a keyframe, to say a pose of their own
+  int coarsest = 2;                 ///< level on which registration begins
+  bool corners_hold = true;         ///< those of surroundings; of a thing that turns, shine has some too
+  std::size_t fewest_corners = 12;  ///< in common with another frame, to hold a pose
+  std::size_t sure_corners = 30;    ///< in common with a keyframe, to say a pose of their own
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the object, world frame
   std::optional<PlaneKnown> plane;                   ///< where the camera stands still
   int threads = 1;
+};
+
+/// Some keyframes, and their points in the world frame.
+struct MapPart {
+  std::vector<int> keyframes;
+  LevelPoints points;
 };
 
 /// How a frame is laid on keyframes that it is not tied to yet.
@@ -84,7 +90,8 @@ class KeyframeMap {
 
  private:
   std::vector<int> references_for(const Eigen::Isometry3d& T_camera_world) const;
-  Alignment lay_on(const std::vector<int>& references, const FrameLevels& levels, const Landmarks& seen,
+  MapPart part_of(std::vector<int> keyframes) const;
+  Alignment lay_on(const MapPart& part, const FrameLevels& levels, const Landmarks& seen,
                    const Eigen::Isometry3d& T_likely, const LayLimits& limits) const;
   std::optional<LoopGap> close_loop(int last);
   void correct_poses();
@@ -94,8 +101,7 @@ class KeyframeMap {
   std::vector<Keyframe> keyframes_;
   std::vector<PoseEdge> edges_;
   std::vector<int> steps_;  ///< from the last keyframe
-  std::vector<int> local_references_;
-  LevelPoints local_points_;
+  MapPart local_;
 };
 
 }  // namespace houghstream::reconstruction

@@ -171,7 +171,7 @@ std::optional<Alignment> ObjectTracker::follow(const RgbdFrame& frame, const Fra
   const std::optional<LandmarkMatch> flow =
       motion_ == Motion::kObject ? std::nullopt : follow_corners(last_frame_, frame, {});
   corners_.clear();
-  if (flow && flow->inliers.size() >= static_cast<std::size_t>(map_.settings().fewest_corners)) {
+  if (flow && flow->inliers.size() >= map_.settings().fewest_corners) {
     for (const auto& [before, now] : flow->inliers) corners_.push_back({T_last_.inverse() * before, now});
   }
   const Eigen::Isometry3d T_likely = !corners_.empty() ? flow->T_b_a * T_last_ : goes_on ? T_goes_on : T_last_;
@@ -226,7 +226,7 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
     best = match;
     best_keyframe = k;
   }
-  if (!best || best->inliers.size() < static_cast<std::size_t>(map_.settings().sure_corners)) return std::nullopt;
+  if (!best || best->inliers.size() < map_.settings().sure_corners) return std::nullopt;
   const Eigen::Isometry3d T = best->T_b_a * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
   if (map_.difference(T, T_last_) > farthest) return std::nullopt;
   const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, {map_.settings().plane, {}}, limits);
@@ -275,7 +275,7 @@ bool ObjectTracker::camera_is_still(const RgbdFrame& frame, const FrameLevels& l
   cv::Mat away;
   cv::resize(away_from_object_, away, first_frame_.colour.size(), 0.0, 0.0, cv::INTER_NEAREST);
   const std::optional<LandmarkMatch> flow = follow_corners(first_frame_, frame, away);
-  if (flow && flow->inliers.size() >= static_cast<std::size_t>(settings_.map.fewest_corners)) {
+  if (flow && flow->inliers.size() >= settings_.map.fewest_corners) {
     const auto moved = std::count_if(flow->inliers.begin(), flow->inliers.end(), [&](const auto& pair) {
       return bearing_error({pair.first, pair.second}, Eigen::Isometry3d::Identity()) > kMoved;
     });

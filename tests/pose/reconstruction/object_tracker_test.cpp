@@ -150,7 +150,7 @@ void step_depth(RgbdFrame& frame) {
 }
 
 /// How far the tracker believes to have gone round when it has gone 70 degrees.
-double degrees_gone(int fewest_corners) {
+double degrees_gone(std::size_t fewest_corners) {
   const Mesh mesh = plain_tin_among_boxes();
   TrackerSettings settings;
   settings.map.fewest_corners = fewest_corners;
