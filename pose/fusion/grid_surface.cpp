@@ -6,6 +6,8 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "pipeline/geometry/mesh_part.hpp"
+
 namespace houghstream::fusion {
 namespace {
 
@@ -134,7 +136,7 @@ Mesh largest_part(const Mesh& mesh) {
   return out;
 }
 
-void take_out_unseen(double foot_z_m, Mesh& mesh, std::vector<bool>& seen) {
+Mesh without_unseen(const Mesh& mesh, const std::vector<bool>& seen, double foot_z_m) {
   constexpr double kLeast_m2 = 1e-4;
   Parts parts(mesh.vertices.size());
   std::vector<double> area(mesh.vertices.size(), 0.0);
@@ -153,24 +155,8 @@ void take_out_unseen(double foot_z_m, Mesh& mesh, std::vector<bool>& seen) {
     const Eigen::Vector3f& a = mesh.vertices[t[0]];
     area[parts.find(t[0])] += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
   }
-  Mesh left;
-  std::vector<bool> left_seen;
-  std::vector<std::int64_t> new_index(mesh.vertices.size(), -1);
-  for (const auto& t : mesh.triangles) {
-    if (is_guess(t) && area[parts.find(t[0])] > kLeast_m2) continue;
-    for (const std::uint32_t v : t) {
-      if (new_index[v] >= 0) continue;
-      new_index[v] = static_cast<std::int64_t>(left.vertices.size());
-      left.vertices.push_back(mesh.vertices[v]);
-      left.normals.push_back(mesh.normals[v]);
-      left.colours.push_back(mesh.colours[v]);
-      left_seen.push_back(seen[v]);
-    }
-    left.triangles.push_back({static_cast<std::uint32_t>(new_index[t[0]]), static_cast<std::uint32_t>(new_index[t[1]]),
-                              static_cast<std::uint32_t>(new_index[t[2]])});
-  }
-  mesh = std::move(left);
-  seen = std::move(left_seen);
+  return mesh_part(
+      mesh, [&](const std::array<std::uint32_t, 3>& t) { return !is_guess(t) || area[parts.find(t[0])] <= kLeast_m2; });
 }
 
 }  // namespace houghstream::fusion

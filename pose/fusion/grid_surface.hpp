@@ -16,9 +16,9 @@ Mesh extract_surface(const DistanceGrid& grid);
 /// triangles only.
 Mesh largest_part(const Mesh& mesh);
 
-/// Takes out of a closed surface the parts of more than a square centimetre that no view has seen, such as the bottom
-/// of a mug: where they lie is a guess. What is nowhere higher than `foot_z_m` stays: on it the object stands. `seen`:
-/// per vertex, of those that are left afterwards.
-void take_out_unseen(double foot_z_m, Mesh& mesh, std::vector<bool>& seen);
+/// A closed surface without the parts of more than a square centimetre that no view has seen, such as the bottom of a
+/// mug: where they lie is a guess. What is nowhere higher than `foot_z_m` stays: on it the object stands. `seen`: per
+/// vertex.
+Mesh without_unseen(const Mesh& mesh, const std::vector<bool>& seen, double foot_z_m);
 
 }  // namespace houghstream::fusion

@@ -86,8 +86,7 @@ TEST(GridSurface, WhatNobodySawIsTakenOutUnlessItIsSmallOrBelowTheFoot) {
     mesh.colours.assign(mesh.vertices.size(), cv::Vec3b(1, 2, 3));
     std::vector<bool> seen;
     for (const Eigen::Vector3f& vertex : mesh.vertices) seen.push_back(vertex.z() <= unseen_above);
-    take_out_unseen(foot, mesh, seen);
-    EXPECT_EQ(seen.size(), mesh.vertices.size());
+    mesh = without_unseen(mesh, seen, foot);
     EXPECT_EQ(mesh.colours.size(), mesh.vertices.size());
     EXPECT_EQ(mesh.normals.size(), mesh.vertices.size());
     for (const auto& t : mesh.triangles) EXPECT_LT(*std::max_element(t.begin(), t.end()), mesh.vertices.size());

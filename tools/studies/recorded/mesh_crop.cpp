@@ -2,47 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/geometry/mesh_part.hpp"
 
 namespace houghstream {
-namespace {
-
-constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
-
-template <typename Attribute>
-void keep(const std::vector<Attribute>& from, const std::vector<std::uint32_t>& new_index, std::size_t kept,
-          std::vector<Attribute>& to) {
-  if (from.empty()) return;
-  to.resize(kept);
-  for (std::size_t v = 0; v < from.size(); ++v) {
-    if (new_index[v] != kDropped) to[new_index[v]] = from[v];
-  }
-}
-
-}  // namespace
 
 Mesh crop_below(const Mesh& mesh, const Eigen::Hyperplane<float, 3>& plane) {
-  const auto is_kept = [&](std::uint32_t vertex) { return plane.signedDistance(mesh.vertices[vertex]) >= 0.0F; };
-  Mesh out;
-  std::vector<std::uint32_t> new_index(mesh.vertices.size(), kDropped);
-  std::uint32_t kept = 0;
-  for (auto triangle : mesh.triangles) {
-    if (!std::all_of(triangle.begin(), triangle.end(), is_kept)) continue;
-    for (std::uint32_t& vertex : triangle) {
-      if (new_index[vertex] == kDropped) new_index[vertex] = kept++;
-      vertex = new_index[vertex];
-    }
-    out.triangles.push_back(triangle);
-  }
-  keep(mesh.vertices, new_index, kept, out.vertices);
-  keep(mesh.normals, new_index, kept, out.normals);
-  keep(mesh.colours, new_index, kept, out.colours);
-  keep(mesh.uvs, new_index, kept, out.uvs);
-  out.texture = mesh.texture;
-  return out;
+  const auto is_above = [&](std::uint32_t vertex) { return plane.signedDistance(mesh.vertices[vertex]) >= 0.0F; };
+  return mesh_part(mesh, [&](const std::array<std::uint32_t, 3>& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(), is_above);
+  });
 }
 
 Mesh welded(const Mesh& mesh) {

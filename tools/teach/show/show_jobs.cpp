@@ -253,9 +253,8 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
     }
   }
   shown.views.insert(shown.views.begin(), std::move(model.views));
-  shown.mesh = std::move(model.mesh);
   shown.seen_surface = share_of_seen(model.seen);
-  fusion::take_out_unseen(making_of(options).foot_m, shown.mesh, model.seen);
+  shown.mesh = fusion::without_unseen(model.mesh, model.seen, making_of(options).foot_m);
   shown.agreement_m = model.agreement_m;
   shown.seen_through = model.seen_through;
   shown.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
