@@ -145,6 +145,7 @@ CommandOption& CommandOption::one_of(const std::vector<int>& values) {
 
 CommandOption& CommandOption::transform(const std::map<std::string, double>& values) {
   std::vector<std::string> names;
+  names.reserve(values.size());
   for (const auto& entry : values) names.push_back(entry.first);
   const std::string expected = fmt::format("one of {}", fmt::join(names, ", "));
   const auto replace = [values, expected](std::string& word) {

@@ -59,6 +59,7 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
   require(right > 0 && right < static_cast<int>(examples.size()), "{} poses, {} of them right, expected both kinds",
           examples.size(), right);
   std::vector<QualityExample> judged;
+  judged.reserve(examples.size());
   for (const Example& example : examples) judged.push_back({example.terms, example.is_right});
   QualitySettings nothing;
   nothing.bias = 0.0;
@@ -68,6 +69,7 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
 
 std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples) {
   std::vector<CheckedPose> checked;
+  checked.reserve(examples.size());
   for (const Example& example : examples) {
     checked.push_back({pose_quality(example.terms, settings), example.is_right});
   }

@@ -55,6 +55,7 @@ std::vector<EvaluatedFrame> detect_in_scene(const LinemodDetector& detector, con
     fmt::print("{}: cut, {} of {} frames in {} s\n", scene.folder().string(), visited.size(), chosen.size(),
                options.seconds);
   std::vector<EvaluatedFrame> frames;
+  frames.reserve(visited.size());
   for (const std::size_t i : visited) frames.push_back(std::move(chosen[i]));
   return frames;
 }

@@ -100,8 +100,9 @@ terms::Group study(const StudyOptions& options, const SceneGroup& scenes, const 
 void run(const StudyOptions& options) {
   if (options.search.threshold)
     fail("--threshold {}: every candidate is looked at, expected --score or --false-score", *options.search.threshold);
-  std::vector<terms::Group> groups;
   const std::vector<SceneGroup> wanted = parse_groups(options);
+  std::vector<terms::Group> groups;
+  groups.reserve(wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i)
     groups.push_back(study(options, wanted[i], options.forests[options.forests.size() == 1 ? 0 : i]));
   fmt::print("{}", terms::table(groups, options.rules));

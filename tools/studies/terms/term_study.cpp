@@ -75,6 +75,7 @@ Detections numbered_detections(const std::vector<Candidate>& candidates, const S
 
 std::vector<double> values_of(const std::vector<Sample>& samples, const std::function<float(const Sample&)>& value) {
   std::vector<double> values;
+  values.reserve(samples.size());
   for (const Sample& sample : samples) values.push_back(static_cast<double>(value(sample)));
   return values;
 }

@@ -53,6 +53,7 @@ void write_sequence_log(const SequenceFile& sequence, const std::filesystem::pat
 void join_logs(const std::filesystem::path& frames, const std::vector<std::filesystem::path>& results,
                const std::filesystem::path& out) {
   std::vector<std::map<FrameId, std::vector<LogEvent>>> found;
+  found.reserve(results.size());
   for (const std::filesystem::path& log : results) found.push_back(results_of(log));
   LogReader reader(frames);
   LogWriter writer(out);
