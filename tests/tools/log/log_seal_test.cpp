@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 class SealLog : public testing::Test {
  protected:
   /// Frames with JPEG and zlib, and small messages: more than a block.
-  SealLog() : folder_(fresh_folder("seal_log")), original_(folder_ / "original"), sealed_(folder_ / "sealed") {
-    TestLog log(original_);
+  SealLog() : folder(fresh_folder("seal_log")), original(folder / "original"), sealed(folder / "sealed") {
+    TestLog log(original);
     for (int i = 0; i < 20; ++i) log.add("OPENNI_FRAME", to_message(numbered_frame(i), {}, i));
     for (std::size_t i = 0; i < kSealedBlock; ++i) log.add_bytes("SMALL", {static_cast<std::uint8_t>(i), 2, 3});
     log.close();
-    seal_log(original_, sealed_);
+    seal_log(original, sealed);
   }
 
   /// Events of a log that can be read, and what is said of the rest.
@@ -35,14 +35,14 @@ class SealLog : public testing::Test {
     return {count, losses.line()};
   }
 
-  fs::path folder_;
-  fs::path original_;
-  fs::path sealed_;
+  fs::path folder;
+  fs::path original;
+  fs::path sealed;
 };
 
 TEST_F(SealLog, KeepsEveryEvent) {
-  LogReader before(original_);
-  LogReader after(sealed_);
+  LogReader before(original);
+  LogReader after(sealed);
   while (const std::optional<LogEvent> event = before.next()) {
     const std::optional<LogEvent> same = after.next();
     ASSERT_TRUE(same.has_value());
@@ -54,14 +54,14 @@ TEST_F(SealLog, KeepsEveryEvent) {
 }
 
 TEST_F(SealLog, EveryFlippedBitIsFound) {
-  const std::string whole = read_file(sealed_, "a log");
-  const int events = read(sealed_).first;
+  const std::string whole = read_file(sealed, "a log");
+  const int events = read(sealed).first;
   std::mt19937 random(3);
   for (int i = 0; i < 60; ++i) {
     std::string bytes = whole;
     bytes[random() % bytes.size()] ^= static_cast<char>(1U << random() % 8);
-    write_whole_file(folder_ / "damaged", bytes);
-    const auto [kept, words] = read(folder_ / "damaged");
+    write_whole_file(folder / "damaged", bytes);
+    const auto [kept, words] = read(folder / "damaged");
     // An event's number in its header is nobody's business: LCM counts anew.
     if (words.empty()) {
       EXPECT_EQ(kept, events);
@@ -72,26 +72,26 @@ TEST_F(SealLog, EveryFlippedBitIsFound) {
   }
   std::string jpeg = whole;
   jpeg[whole.find("\xFF\xDA") + 40] ^= 4;
-  write_whole_file(folder_ / "damaged", jpeg);
-  const auto [kept, words] = read(folder_ / "damaged");
+  write_whole_file(folder / "damaged", jpeg);
+  const auto [kept, words] = read(folder / "damaged");
   EXPECT_EQ(kept, events - 1);
   EXPECT_NE(words.find("checksum"), std::string::npos) << words;
 }
 
 TEST_F(SealLog, MissingEventsAreFound) {
-  const std::string whole = read_file(sealed_, "a log");
-  write_whole_file(folder_ / "cut", whole.substr(0, whole.size() - (28 + 5 + 3)));  // the last event
-  LogReader log(folder_ / "cut");
+  const std::string whole = read_file(sealed, "a log");
+  write_whole_file(folder / "cut", whole.substr(0, whole.size() - (28 + 5 + 3)));  // the last event
+  LogReader log(folder / "cut");
   EXPECT_THROW(while (log.next()){}, InputError);
-  EXPECT_NE(read(folder_ / "cut").second.find("1 sealed event"), std::string::npos) << read(folder_ / "cut").second;
+  EXPECT_NE(read(folder / "cut").second.find("1 sealed event"), std::string::npos) << read(folder / "cut").second;
 }
 
 TEST_F(SealLog, WhatIsDamagedIsNotSealed) {
-  const std::string whole = read_file(original_, "a log");
-  write_whole_file(folder_ / "cut", whole.substr(0, whole.size() - 2));
-  EXPECT_THROW(seal_log(folder_ / "cut", folder_ / "out"), InputError);
-  EXPECT_FALSE(fs::exists(folder_ / "out"));
-  EXPECT_THROW(seal_log(original_, original_), InputError);
+  const std::string whole = read_file(original, "a log");
+  write_whole_file(folder / "cut", whole.substr(0, whole.size() - 2));
+  EXPECT_THROW(seal_log(folder / "cut", folder / "out"), InputError);
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  EXPECT_THROW(seal_log(original, original), InputError);
 }
 
 }  // namespace
