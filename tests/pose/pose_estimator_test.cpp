@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -28,7 +29,7 @@ struct StandingScene {
 };
 
 PoseEstimator estimator_for(const std::string& name, const Mesh& mesh, PoseSettings settings = {}) {
-  return PoseEstimator({{name, mesh}}, settings);
+  return PoseEstimator({{name, mesh}}, std::move(settings));
 }
 
 Detections only(const Detection& detection) {

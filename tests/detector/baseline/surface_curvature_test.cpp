@@ -13,6 +13,7 @@ constexpr int kFlat = 128;
 
 Values curvature_at_centre(const std::vector<cv::Mat>& planes) {
   Values values;
+  values.reserve(planes.size());
   for (const cv::Mat& plane : planes) values.push_back(plane.at<std::uint8_t>(30, 30));
   return values;
 }

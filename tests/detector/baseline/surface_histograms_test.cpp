@@ -14,6 +14,7 @@ using Family = std::vector<cv::Mat> (*)(const WorkingFrame&, const PointHistogra
 
 Values at(const std::vector<cv::Mat>& planes, int x, int y) {
   Values values;
+  values.reserve(planes.size());
   for (const cv::Mat& plane : planes) values.push_back(plane.at<std::uint8_t>(y, x));
   return values;
 }

@@ -12,6 +12,7 @@ constexpr double kDegree = M_PI / 180.0;
 
 Values at(const std::vector<cv::Mat>& planes, int x, int y) {
   Values values;
+  values.reserve(planes.size());
   for (const cv::Mat& plane : planes) values.push_back(plane.at<std::uint8_t>(y, x));
   return values;
 }

@@ -41,6 +41,7 @@ TEST(Candidates, ExcludedViewsAreNotCompared) {
   RgbdFrame frame = toy::room(77);
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   std::vector<std::uint32_t> all;
+  all.reserve(toy::forest().views.size());
   for (std::uint32_t v = 0; v < toy::forest().views.size(); ++v) all.push_back(v);
   const std::vector<Candidate> found = candidates(frame, {}, all);
   ASSERT_FALSE(found.empty());

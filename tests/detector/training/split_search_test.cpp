@@ -61,6 +61,7 @@ TEST(SplitSearch, WhereAllValuesAreEqualThereIsNoTest) {
 TEST(SplitSearch, BothSidesKeepEnoughSamples) {
   const TrainingSet set = toy::planted_set();
   std::vector<std::uint32_t> few;
+  few.reserve(59);
   for (std::uint32_t i = 0; i < 9; ++i) few.push_back(i);     // background
   for (std::uint32_t i = 50; i < 60; ++i) few.push_back(i);   // object
   EXPECT_FALSE(search(set, few, Objective::kClass, 1));       // 19 samples: no two sides of 10

@@ -26,6 +26,7 @@ TEST(WeightedMedian, IsThatOfTheSortedValues) {
   Random random(2);
   for (int count = 0; count < 200; ++count) {
     Values values;
+    values.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       values.emplace_back(static_cast<float>(random.below(50)), static_cast<float>(random.between(1, 9)));
     }

@@ -43,6 +43,7 @@ struct Ball {
 TEST(Shade, LightIsPartedFromPaint) {
   const Ball ball;
   std::vector<Eigen::Vector3d> colours;
+  colours.reserve(ball.normals.size());
   for (std::size_t i = 0; i < ball.normals.size(); ++i)
     colours.emplace_back(ball.paints[i] * light_on(ball.normals[i]));
   const Shade shade = fit_shade(colours, ball.normals);

@@ -55,6 +55,7 @@ TEST(RotationClusters, HeaviestIsAlsoTurnedByQuartersAboutTheObjectsAxis) {
 TEST(RotationClusters, NumberIsCappedEvenWithANarrowRadius) {
   Random random(4);
   std::vector<RotationVote> votes;
+  votes.reserve(64);
   for (int i = 0; i < 64; ++i) {
     votes.push_back({rotation_of(perturbed(standing(0, 0, 1), 180.0 * random.uniform(), 0.0, random)), 1.0F});
   }

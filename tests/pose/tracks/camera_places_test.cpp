@@ -15,7 +15,7 @@ Eigen::Isometry3d at(double x, double turn_rad = 0.0) {
 }
 
 std::filesystem::path written(const std::string& name, const std::string& text) {
-  const std::filesystem::path file = fresh_folder("camera_places") / name;
+  std::filesystem::path file = fresh_folder("camera_places") / name;
   std::ofstream(file) << text;
   return file;
 }

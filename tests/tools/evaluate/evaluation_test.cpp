@@ -179,6 +179,7 @@ TEST(EvaluatedFrames, DetectorsOfDifferentObjectsAreJoined) {
 
 TEST(EvaluatedFrames, EveryNthBeginsWithTheFirst) {
   std::vector<EvaluatedFrame> frames;
+  frames.reserve(7);
   for (std::int64_t utime = 0; utime < 7; ++utime) frames.push_back(frame({object("mug", kLeft)}, {}, utime));
   const auto chosen = [&](int every) {
     std::vector<std::int64_t> utimes;

@@ -19,6 +19,7 @@ TEST(ReliabilityPicture, BarsAreAsHighAsWhatIsTrue) {
   EXPECT_EQ(coloured_pixels(empty), 0);
   const auto pixels = [&](double share) {
     std::vector<Statement> statements;
+    statements.reserve(20);
     for (int i = 0; i < 20; ++i) statements.push_back({0.95, i < 20 * share});
     const cv::Mat picture = reliability_picture(nothing, calibrate(statements, 20));
     const int half = picture.cols / 2;

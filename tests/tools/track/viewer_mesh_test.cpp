@@ -22,7 +22,7 @@ Mesh red_tetrahedron() {
 }
 
 fs::path empty_folder(const std::string& name) {
-  const fs::path folder = fs::temp_directory_path() / ("houghstream_viewer_mesh_" + name);
+  fs::path folder = fs::temp_directory_path() / ("houghstream_viewer_mesh_" + name);
   fs::remove_all(folder);
   return folder;
 }

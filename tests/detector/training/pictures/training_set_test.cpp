@@ -29,6 +29,7 @@ TrainingSet teach(const std::vector<TrainingView>& views, float distance, int th
   profile.training.max_distance = distance;
   profile.training.threads = threads;
   std::vector<const TrainingView*> pointers;
+  pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
   return make_training_set(pointers, profile);
 }
@@ -125,6 +126,7 @@ TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
   Profile profile = toy::quick_profile();
   profile.training.views_per_picture = 2;
   std::vector<const TrainingView*> pointers;
+  pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
   const TrainingSet set = make_training_set(pointers, profile);
   EXPECT_EQ(set.views.size(), teach(views, 0.8F).views.size());

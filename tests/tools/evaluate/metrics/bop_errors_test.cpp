@@ -51,6 +51,7 @@ TEST(BopErrors, InTheImageADistanceIsSmallerTheFartherItIs) {
 TEST(BopErrors, TheBestOfTheEquivalentPosesCounts) {
   const auto vertices = square().vertices;
   std::vector<Eigen::Isometry3d> quarters;
+  quarters.reserve(4);
   for (int i = 0; i < 4; ++i) quarters.emplace_back(Eigen::AngleAxisd(i * M_PI / 2, Eigen::Vector3d::UnitZ()));
   const Eigen::Isometry3d turned = at(0.01, 0, 1) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
   EXPECT_NEAR(mssd_error(vertices, kNoSymmetry, turned, at(0, 0, 1)), 0.21, 2e-3) << "a corner goes to the next, 0.2 m";

@@ -24,6 +24,7 @@ TEST(Calibration, TheErrorIsTheBinsDifferencesWeightedByTheirCounts) {
 
 TEST(Calibration, WhatHoldsHasNoError) {
   std::vector<Statement> statements;
+  statements.reserve(100);
   for (int i = 0; i < 100; ++i) statements.push_back({0.75, i < 75});
   EXPECT_NEAR(calibrate(statements, 75).ece, 0.0, 1e-12);
 }

@@ -28,6 +28,7 @@ OrderedJson measured(const SequenceFile& sequence, const std::vector<PublishedFr
 TEST(TrackMetrics, WhatIsPublishedAsItIsIsPerfect) {
   const SequenceFile sequence = two_cans(100);
   std::vector<PublishedFrame> published;
+  published.reserve(100);
   for (std::size_t i = 0; i < 100; ++i) published.push_back({i, {{7, "can", at(0.0)}, {8, "can", at(1.0)}}});
   const OrderedJson json = measured(sequence, published);
   EXPECT_EQ(json["recall"], 1.0);

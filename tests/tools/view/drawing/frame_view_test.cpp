@@ -22,8 +22,8 @@ ViewedFrame small_frame() {
 TEST(FrameView, DepthIsWarmNearColdFarAndBlackWhereMissing) {
   const cv::Mat depth = (cv::Mat_<float>(1, 3) << 0.6F, 3.2F, kNoValue);
   const cv::Mat image = colour_depth(depth, 0.4F, 3.5F);
-  const auto near = image.at<cv::Vec3b>(0, 0);
-  const auto far = image.at<cv::Vec3b>(0, 1);
+  const auto& near = image.at<cv::Vec3b>(0, 0);
+  const auto& far = image.at<cv::Vec3b>(0, 1);
   EXPECT_GT(near[2], near[0]);  // more red than blue
   EXPECT_GT(far[0], far[2]);
   EXPECT_EQ(image.at<cv::Vec3b>(0, 2), cv::Vec3b(0, 0, 0));
