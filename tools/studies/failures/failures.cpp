@@ -42,14 +42,16 @@ std::vector<Failure> false_ones(const std::vector<EvaluatedFrame>& frames, const
 }
 
 std::vector<Failure> missed_ones(const std::vector<EvaluatedFrame>& frames, const ClassResult& result,
-                                 const DetectionRules& rules, float least) {
+                                 const FailureRules& rules) {
   std::vector<Failure> out;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     for (std::size_t o = 0; o < frames[f].objects.size(); ++o) {
       const NamedObject& object = frames[f].objects[o];
-      if (object.class_name != result.class_name || object.truth.visible_fraction < rules.min_visible) continue;
+      if (object.class_name != result.class_name || object.truth.visible_fraction < rules.detection.min_visible)
+        continue;
       const auto finds = [&](const JudgedDetection& judged) {
-        return judged.verdict == Verdict::kTrue && judged.score >= least && judged.frame == f && judged.object == o;
+        return judged.verdict == Verdict::kTrue && judged.score >= rules.operating_score && judged.frame == f &&
+               judged.object == o;
       };
       if (std::any_of(result.judged.begin(), result.judged.end(), finds)) continue;
       const cv::Rect2f box(object.truth.box_visible_px);
@@ -62,20 +64,19 @@ std::vector<Failure> missed_ones(const std::vector<EvaluatedFrame>& frames, cons
 }  // namespace
 
 std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& classes,
-                                     const DetectionRules& rules, float operating_score, std::size_t count,
-                                     std::size_t apart) {
+                                     const FailureRules& rules) {
   std::vector<std::vector<Failure>> groups;
   for (const std::string& name : classes) {
-    const ClassResult result = evaluate_class(frames, name, rules);
-    groups.push_back(thinned(false_ones(frames, result, operating_score), apart));
-    groups.push_back(thinned(missed_ones(frames, result, rules, operating_score), apart));
+    const ClassResult result = evaluate_class(frames, name, rules.detection);
+    groups.push_back(thinned(false_ones(frames, result, rules.operating_score), rules.apart));
+    groups.push_back(thinned(missed_ones(frames, result, rules), rules.apart));
   }
   std::vector<Failure> chosen;
   std::size_t longest = 0;
   for (const auto& group : groups) longest = std::max(longest, group.size());
   for (std::size_t rank = 0; rank < longest; ++rank) {
     for (const auto& group : groups) {
-      if (rank < group.size() && chosen.size() < count) chosen.push_back(group[rank]);
+      if (rank < group.size() && chosen.size() < rules.count) chosen.push_back(group[rank]);
     }
   }
   return chosen;

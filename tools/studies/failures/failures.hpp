@@ -18,12 +18,17 @@ struct Failure {
   double weight = 0.0;    ///< score of the detection, or how much of the object is visible; 0 to 1
 };
 
-/// Failures of the listed classes from the operating score on, the gravest of each class and kind first, in turn over
-/// classes and kinds; at most `count`. Failures of one class and kind are at least `apart` frames from each other, as
-/// neighbouring frames fail alike.
+/// What is a failure, and how many of them are shown.
+struct FailureRules {
+  DetectionRules detection;
+  float operating_score = 0.0F;  ///< from which a detection counts
+  std::size_t count = 0;         ///< at most so many
+  std::size_t apart = 0;         ///< frames between two of one class and kind, as neighbouring frames fail alike
+};
+
+/// Failures of the listed classes, the gravest of each class and kind first, in turn over classes and kinds.
 std::vector<Failure> choose_failures(const std::vector<EvaluatedFrame>& frames, const std::vector<std::string>& classes,
-                                     const DetectionRules& rules, float operating_score, std::size_t count,
-                                     std::size_t apart);
+                                     const FailureRules& rules);
 
 /// A part of the frame, four wide and three high where the frame lets it, with the box in its middle.
 cv::Rect surroundings(const cv::Rect2f& box, const cv::Size& frame);

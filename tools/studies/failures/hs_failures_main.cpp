@@ -40,8 +40,9 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
   for (const ObjectClass& known : detector.forest().classes) classes.push_back(known.name);
   constexpr std::size_t kPartsOfTheWay = 6;
   const std::vector<Failure> chosen =
-      choose_failures(frames, classes, DetectionRules{}, *options.operating_score,
-                      static_cast<std::size_t>(options.count), frames.size() / kPartsOfTheWay);
+      choose_failures(frames, classes,
+                      {DetectionRules{}, *options.operating_score, static_cast<std::size_t>(options.count),
+                       frames.size() / kPartsOfTheWay});
   std::vector<cv::Mat> tiles;
   for (const Failure& failure : chosen) {
     const RgbdFrame frame = scene.read_frame(failure.frame * static_cast<std::size_t>(options.every));

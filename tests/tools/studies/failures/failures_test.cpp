@@ -35,7 +35,7 @@ std::vector<EvaluatedFrame> twelve_frames() {
 }
 
 TEST(Failures, TheGravestOfEachKindComeFirstAndApart) {
-  const std::vector<Failure> chosen = choose_failures(twelve_frames(), {"mug"}, {}, 0.5F, 4, 3);
+  const std::vector<Failure> chosen = choose_failures(twelve_frames(), {"mug"}, {{}, 0.5F, 4, 3});
   ASSERT_EQ(chosen.size(), 4U);
   EXPECT_EQ(chosen[0].kind, Failure::Kind::kFalse);
   EXPECT_EQ(chosen[0].frame, 11U);
@@ -47,7 +47,7 @@ TEST(Failures, TheGravestOfEachKindComeFirstAndApart) {
 }
 
 TEST(Failures, BelowTheOperatingScoreNothingIsFalseAndMoreIsMissed) {
-  const std::vector<Failure> chosen = choose_failures(twelve_frames(), {"mug"}, {}, 0.95F, 100, 1);
+  const std::vector<Failure> chosen = choose_failures(twelve_frames(), {"mug"}, {{}, 0.95F, 100, 1});
   EXPECT_EQ(chosen.size(), 12U);
   for (const Failure& failure : chosen) EXPECT_EQ(failure.kind, Failure::Kind::kMissed);
 }
@@ -56,7 +56,7 @@ TEST(Failures, HardlyVisibleObjectsAreNotMissed) {
   std::vector<EvaluatedFrame> frames(1);
   frames[0].objects = {object("mug", 0.05)};
   frames[0].detections.emplace();
-  EXPECT_TRUE(choose_failures(frames, {"mug"}, {}, 0.5F, 4, 1).empty());
+  EXPECT_TRUE(choose_failures(frames, {"mug"}, {{}, 0.5F, 4, 1}).empty());
 }
 
 TEST(Failures, APictureHasTheBoxInItEvenAtTheFramesEdge) {

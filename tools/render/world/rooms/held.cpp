@@ -57,8 +57,15 @@ double side_of(const std::vector<Eigen::Vector3d>& points, double sign, const Ei
   return farthest;
 }
 
-Mesh finger(const std::vector<Eigen::Vector3d>& points, double sign, double palm, double along, const Grip& grip,
+/// Where a finger lies, in the grip's axes.
+struct FingerPlace {
+  double sign;   ///< of its side: 1 for a finger, -1 for the thumb
+  double along;  ///< from finger to finger
+};
+
+Mesh finger(const std::vector<Eigen::Vector3d>& points, const FingerPlace& place, double palm, const Grip& grip,
             const cv::Mat& skin) {
+  const auto [sign, along] = place;
   const double tip = palm - grip.reach_m;
   const double near_side = side_of(points, sign, {palm - 0.5 * grip.reach_m, palm + 1.0}, along) + kFingerRadiusM;
   const double far_side = side_of(points, sign, {tip, palm - 0.3 * grip.reach_m}, along) + kFingerRadiusM;
@@ -82,9 +89,9 @@ ThingPtr make_hand(const std::vector<Eigen::Vector3d>& points, const Grip& grip,
   std::vector<Part> parts;
   parts.reserve(8);
   for (int i = 0; i < 4; ++i) {
-    parts.push_back(at(finger(points, 1.0, palm, (i - 1.5) * kFingerStepM, grip, skin), origin));
+    parts.push_back(at(finger(points, {1.0, (i - 1.5) * kFingerStepM}, palm, grip, skin), origin));
   }
-  parts.push_back(at(finger(points, -1.0, palm, 0.5 * kFingerStepM, grip, skin), origin));
+  parts.push_back(at(finger(points, {-1.0, 0.5 * kFingerStepM}, palm, grip, skin), origin));
   const double middle = palm + kPalmRadiusM;
   parts.push_back(at(tapered_tube({{middle, 0, -0.042}, {middle, 0, -0.03}, {middle, 0, 0.03}, {middle, 0, 0.042}},
                                   {0.6 * kPalmRadiusM, kPalmRadiusM, kPalmRadiusM, 0.6 * kPalmRadiusM}, skin),
