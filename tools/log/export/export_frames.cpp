@@ -1,4 +1,4 @@
-#include "tools/log/export_frames.hpp"
+#include "tools/log/export/export_frames.hpp"
 
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/frame_folder.hpp"
