@@ -7,10 +7,9 @@
 
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
-#include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "tools/common/search_options.hpp"
+#include "tools/common/searched_objects.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/bop_results.hpp"
@@ -28,11 +27,9 @@ struct EvaluateOptions {
   std::string targets;
   std::string log;
   std::string channel = ".*";
-  std::string objects;
+  SearchedObjects known;
   std::optional<float> operating_score;
   PoseSettings pose;  // by which poses are published
-  std::string forest;
-  std::string models;
   std::string latency;
   std::string out;
   std::vector<std::string> classes;
@@ -83,7 +80,7 @@ NamedSide truth_side(const EvaluateOptions& options, const std::vector<OpenScene
 NamedSide listed_side(const EvaluateOptions& options, const std::optional<Forest>& forest, const NamedSide& truth) {
   if (!options.classes.empty()) return {"--classes", {options.classes.begin(), options.classes.end()}};
   if (!forest) return truth;
-  NamedSide side{"the forest " + options.forest, {}};
+  NamedSide side{"the forest " + options.known.forest, {}};
   for (const ObjectClass& known : forest->classes) side.names.insert(known.name);
   return side;
 }
@@ -95,7 +92,7 @@ std::vector<std::string> listed_classes(const EvaluateOptions& options, const st
   const NamedSide listed = listed_side(options, forest, truth);
   if (!truth.names.empty()) require_shared_name(listed, truth);
   if (!meshes.empty() && !listed.names.empty()) {
-    NamedSide models{"the models " + options.models, {}};
+    NamedSide models{"the models " + options.known.models, {}};
     for (const auto& [name, mesh] : meshes) models.names.insert(name);
     require_shared_name(listed, models);
   }
@@ -113,7 +110,7 @@ Models make_models(const EvaluateOptions& options, const std::vector<std::string
                    const std::map<std::string, Mesh>& meshes) {
   Models models;
   if (meshes.empty()) return models;
-  for (auto& [name, model] : make_bop_models(meshes, read_bop_models(options.models))) {
+  for (auto& [name, model] : make_bop_models(meshes, read_bop_models(options.known.models))) {
     models.scored[name] = make_pose_model(model.mesh, model.symmetries.size() > 1);
     if (std::find(classes.begin(), classes.end(), name) != classes.end()) models.bop[name] = model;
   }
@@ -218,12 +215,12 @@ void check_place(const EvaluateOptions& options) {
   if (options.out.empty()) return;
   require_writable_folder(options.out);
   for (const std::string& scene : options.scenes) require_other_file(options.out, scene);
-  for (const std::string& input : {options.models, options.objects}) require_other_file(options.out, input);
+  for (const std::string& input : {options.known.models, options.known.store}) require_other_file(options.out, input);
 }
 
 void run(EvaluateOptions options) {
   check_place(options);
-  require(!options.log.empty() || !options.forest.empty(),
+  require(!options.log.empty() || !options.known.forest.empty(),
           "neither --log nor --forest nor --objects, expected results to evaluate");
   require(options.log.empty() || options.scenes.size() == 1, "--log with {} scenes, expected the one that it is of",
           options.scenes.size());
@@ -231,9 +228,9 @@ void run(EvaluateOptions options) {
   if (!options.latency.empty()) latencies = read_latencies(options.latency);
   std::vector<OpenScene> scenes = open_scenes(options);
   std::optional<Forest> forest;
-  if (!options.forest.empty()) forest = load_forest(options.forest);
+  if (!options.known.forest.empty()) forest = load_forest(options.known.forest);
   const std::map<std::string, Mesh> meshes =
-      options.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.models);
+      options.known.models.empty() ? std::map<std::string, Mesh>() : load_class_models(options.known.models);
   const NamedSide truth = truth_side(options, scenes);
   const std::vector<std::string> classes = listed_classes(options, forest, truth, meshes);
   if (!options.log.empty()) add_log(options, !forest, truth, scenes.front());
@@ -258,9 +255,9 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
   add_frame_channels_option(app, options.channel)
       .description(
           "with --log: results of frames on these channels, a regular expression for the whole name; one camera's");
-  app.add_option("--forest", options.forest, "searched where no --log is given; names the classes");
-  app.add_option("--objects", options.objects, "store of hs-teach, for --forest and --models");
-  app.add_option("--models", options.models, "models/ of the scene: poses are measured too");
+  app.add_option("--forest", options.known.forest, "searched where no --log is given; names the classes");
+  app.add_option("--objects", options.known.store, "store of hs-teach, for --forest and --models");
+  app.add_option("--models", options.known.models, "models/ of the scene: poses are measured too");
   app.add_option("--classes", options.classes, "measured; default: the forest's, else the truth's").delimiter(',');
   app.add_option("--latency", options.latency, "hs-observe's CSV");
   app.add_option(
@@ -297,17 +294,10 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 
 /// A store's forest and models, where one is named, and what hs-detect publishes unless told otherwise.
 static EvaluateOptions with_store(EvaluateOptions options) {
-  const float published = options.objects.empty() ? EvidenceSettings{}.threshold : kStoreThreshold;
-  options.rules.operating_score = options.operating_score.value_or(published);
+  options.rules.operating_score = options.operating_score.value_or(reported_from(options.known));
   if (options.min_quality) publish_from(*options.min_quality, options.pose);
-  if (options.objects.empty()) return options;
-  if (!options.search.threshold) options.search.threshold = kStoreThreshold;
-  require(options.forest.empty() && options.models.empty(),
-          "expected either --objects STORE or --forest FILE and --models FOLDER");
-  const store::ObjectStore objects = store::read_store(options.objects);
-  options.forest = objects.forest_file().string();
-  options.models = objects.models_folder().string();
-  take_from_store(objects, options.min_quality, options.pose);
+  if (const std::optional<store::ObjectStore> objects = take_store(options.known, options.search))
+    take_from_store(*objects, options.min_quality, options.pose);
   return options;
 }
 

@@ -6,9 +6,8 @@
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
 #include "drivers/files/image_file.hpp"
-#include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tools/common/search_options.hpp"
+#include "tools/common/searched_objects.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/studies/failures/failures.hpp"
 
@@ -17,8 +16,7 @@ namespace {
 using namespace houghstream;
 
 struct FailureOptions {
-  std::string objects;  ///< a store, instead of the forest
-  std::string forest;
+  SearchedObjects known;  ///< models are not looked at
   std::vector<std::string> scenes;
   std::string out;
   std::optional<float> operating_score;  ///< default: what hs-detect publishes
@@ -52,7 +50,7 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
 }
 
 void run(const FailureOptions& options) {
-  Forest forest = load_forest(options.forest);
+  Forest forest = load_forest(options.known.forest);
   const DetectionSettings settings = options.search.settings_for(forest);
   const Detector detector(std::move(forest), settings, options.search.engine());
   std::vector<cv::Mat> tiles;
@@ -65,12 +63,10 @@ void run(const FailureOptions& options) {
 
 /// The store's forest, where one is named, and what hs-detect publishes unless told otherwise.
 FailureOptions with_store(FailureOptions options) {
-  require(options.objects.empty() == !options.forest.empty(), "expected either --objects STORE or --forest FILE");
-  const float published = options.objects.empty() ? EvidenceSettings{}.threshold : kStoreThreshold;
-  if (!options.operating_score) options.operating_score = published;
-  if (options.objects.empty()) return options;
-  if (!options.search.threshold) options.search.threshold = kStoreThreshold;
-  options.forest = store::read_store(options.objects).forest_file().string();
+  require(options.known.store.empty() == !options.known.forest.empty(),
+          "expected either --objects STORE or --forest FILE");
+  options.operating_score = options.operating_score.value_or(reported_from(options.known));
+  take_store(options.known, options.search);
   return options;
 }
 
@@ -80,8 +76,8 @@ int main(int argc, char** argv) {
   CommandLine app("Shows the gravest failures of a forest in scenes: false detections and missed objects",
                   "hs-failures");
   FailureOptions options;
-  app.add_option("--objects", options.objects, "object store of hs-teach, instead of --forest");
-  app.add_option("--forest", options.forest, "forest file");
+  app.add_option("--objects", options.known.store, "object store of hs-teach, instead of --forest");
+  app.add_option("--forest", options.known.forest, "forest file");
   app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
   app.add_option("--out", options.out, "picture to write, PNG").required();
   app.add_option("--count", options.count, "failures of each scene").range(1, 100).capture_default_str();

@@ -3,6 +3,7 @@
 
 #include <opencv2/core/utility.hpp>
 #include <set>
+#include <utility>
 
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
@@ -10,9 +11,10 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/baseline/register_pcl.hpp"
-#include "tools/common/search_options.hpp"
+#include "tools/common/searched_objects.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/evaluate/evaluated_frame.hpp"
 #include "tools/studies/pose/bench_report.hpp"
 
 namespace {
@@ -20,10 +22,8 @@ namespace {
 using namespace houghstream;
 
 struct BenchOptions {
-  std::string objects;  ///< a store, instead of forest and models
-  std::string forest;
+  SearchedObjects known;
   std::vector<std::string> scenes;
-  std::string models;
   std::filesystem::path out;
   int every = 1;
   int rivals_every = 10;
@@ -49,14 +49,10 @@ BenchedMakers make_makers(const std::map<std::string, Mesh>& meshes, const Bench
 }
 
 std::filesystem::path models_of(const BopScene& scene, const BenchOptions& options) {
-  if (!options.models.empty()) return options.models;
+  if (!options.known.models.empty()) return options.known.models;
   const std::optional<std::filesystem::path> found = find_bop_models(scene.folder());
   require(found.has_value(), "{}: no folder models/ in it or above, expected one or --models", scene.folder().string());
   return *found;
-}
-
-std::string name_of(const std::string& scene_folder) {
-  return std::filesystem::absolute(std::filesystem::path(scene_folder) / "").parent_path().filename().string();
 }
 
 DetectedScene detect_scene(const std::string& name, const BopScene& scene, const Detector& detector, int every) {
@@ -72,7 +68,7 @@ void run(const BenchOptions& options) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   // A thread's CPU time is all of a pose's only where OpenCV starts no threads of its own.
   cv::setNumThreads(1);
-  Forest forest = load_forest(options.forest);
+  Forest forest = load_forest(options.known.forest);
   std::set<std::string> classes;
   for (const ObjectClass& known : forest.classes) classes.insert(known.name);
   const DetectionSettings settings = options.search.settings_for(forest);
@@ -84,7 +80,8 @@ void run(const BenchOptions& options) {
   SceneModels models;
   BenchedMakers makers;
   for (const std::string& folder : options.scenes) {
-    const auto [entry, is_new] = scenes.emplace(name_of(folder), BopScene(folder));
+    BopScene opened(folder);
+    const auto [entry, is_new] = scenes.emplace(scene_name(opened), std::move(opened));
     require(is_new, "{}: a second scene of this name", folder);
     const auto& [name, scene] = *entry;
     if (const std::filesystem::path wanted = models_of(scene, options); wanted != models_folder) {
@@ -103,13 +100,10 @@ void run(const BenchOptions& options) {
 
 /// The store's forest, models, and what its objects' poses are judged by, where one is named.
 BenchOptions with_store(BenchOptions options) {
-  require(options.objects.empty() == !options.forest.empty() && (options.objects.empty() || options.models.empty()),
+  require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE and --models FOLDER");
-  if (options.objects.empty()) return options;
-  const store::ObjectStore objects = store::read_store(options.objects);
-  options.forest = objects.forest_file().string();
-  options.models = objects.models_folder().string();
-  take_from_store(objects, std::nullopt, options.pose);
+  if (const std::optional<store::ObjectStore> objects = take_store(options.known, options.search))
+    take_from_store(*objects, std::nullopt, options.pose);
   return options;
 }
 
@@ -120,10 +114,10 @@ int main(int argc, char** argv) {
                   "hs-bench-pose");
   BenchOptions options;
   options.search.threshold = PoseSettings{}.min_score;
-  app.add_option("--objects", options.objects, "object store of hs-teach, instead of --forest and --models");
-  app.add_option("--forest", options.forest, "forest file");
+  app.add_option("--objects", options.known.store, "object store of hs-teach, instead of --forest and --models");
+  app.add_option("--forest", options.known.forest, "forest file");
   app.add_option("--scene", options.scenes, "BOP scene folder with the truth; may be given several times").required();
-  app.add_option("--models", options.models, "models/ of a BOP dataset; default: that of each scene");
+  app.add_option("--models", options.known.models, "models/ of a BOP dataset; default: that of each scene");
   app.add_option("--out", options.out, "folder for results.json, poses.csv and worst_N.png").required();
   app.add_option("--every", options.every, "look at every Nth frame only").range(1, 100000).capture_default_str();
   app.add_option("--rivals-every", options.rivals_every, "of those, the rivals look at every Mth; they are slow")

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <set>
 
 #include "detector/forest/forest_file.hpp"
@@ -9,6 +8,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/evaluate/evaluated_frame.hpp"
 #include "tools/studies/quality/quality_fit.hpp"
 #include "tools/teach/quality_examples.hpp"
 
@@ -24,10 +24,6 @@ struct LearnOptions {
   int every = 1;
   SearchOptions search;
 };
-
-std::string name_of(const std::string& scene_folder) {
-  return std::filesystem::absolute(std::filesystem::path(scene_folder) / "").parent_path().filename().string();
-}
 
 /// Those of the classes that the forest knows: others are never detected.
 std::map<std::string, Mesh> models_of(const LearnOptions& options, const Forest& forest) {
@@ -51,9 +47,10 @@ std::vector<quality::Example> gather(const LearnOptions& options) {
   std::vector<quality::Example> examples;
   std::set<std::string> names;
   for (const std::string& folder : options.scenes) {
-    const std::string name = name_of(folder);
+    const BopScene scene(folder);
+    const std::string name = scene_name(scene);
     require(names.insert(name).second, "{}: a second scene of this name", folder);
-    const quality::FoundPoses found = finder.find(name, BopScene(folder), detector, options.every);
+    const quality::FoundPoses found = finder.find(name, scene, detector, options.every);
     const std::vector<quality::Example> here = quality::judge_examples(found, judged_by);
     log_info("{}: {} frames, {} poses", name, found.frames.size(), here.size());
     examples.insert(examples.end(), here.begin(), here.end());
