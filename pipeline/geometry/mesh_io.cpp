@@ -13,6 +13,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/image_decoding.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/mesh_paint.hpp"
 #include "pipeline/geometry/mesh_structure.hpp"
@@ -86,8 +87,7 @@ void append_triangles(const aiMesh& part, std::uint32_t first_vertex, const std:
 cv::Mat decode_texture(const aiTexture& texture, const std::string& where) {
   cv::Mat picture;
   if (texture.mHeight == 0) {  // a picture file of mWidth bytes
-    const cv::Mat bytes(1, static_cast<int>(texture.mWidth), CV_8UC1, texture.pcData);
-    picture = cv::imdecode(bytes, cv::IMREAD_COLOR);
+    picture = decode_image(reinterpret_cast<const std::uint8_t*>(texture.pcData), texture.mWidth, cv::IMREAD_COLOR);
   } else {
     const cv::Mat bgra(static_cast<int>(texture.mHeight), static_cast<int>(texture.mWidth), CV_8UC4, texture.pcData);
     cv::cvtColor(bgra, picture, cv::COLOR_BGRA2BGR);

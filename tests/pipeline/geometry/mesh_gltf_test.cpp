@@ -109,13 +109,19 @@ TEST(MeshGltf, ATextureThatIsNoPictureIsRefused) {
     std::ifstream in(file, std::ios::binary);
     bytes.assign(std::istreambuf_iterator<char>(in), {});
   }
-  bytes.replace(bytes.find("\x89PNG"), 4, "none");
-  std::ofstream(file, std::ios::binary) << bytes;
-  try {
-    load_mesh(file, 1.0);
-    FAIL() << "expected a refusal";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("part.glb/*0: cannot be decoded"), std::string::npos) << error.what();
+  const std::size_t png = bytes.find("\x89PNG");
+  std::string other = bytes;
+  other.replace(png, 4, "none");
+  std::string huge = bytes;
+  huge[png + 17] = '\xFF';  // the width's second byte
+  for (const std::string& spoilt : {other, huge}) {
+    std::ofstream(file, std::ios::binary) << spoilt;
+    try {
+      load_mesh(file, 1.0);
+      FAIL() << "expected a refusal";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("part.glb/*0: cannot be decoded"), std::string::npos) << error.what();
+    }
   }
 }
 
