@@ -8,8 +8,8 @@ import re
 import subprocess
 import sys
 
-ON_THE_ROBOT = ("hs-capture", "hs-detect", "hs-pose", "hs-view", "hs-stream", "hs-log", "hs-doctor")
-TEACHING = ("hs-train", "hs-evaluate", "hs-fuse")
+ON_THE_ROBOT = ("hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-view", "hs-stream", "hs-log", "hs-doctor")
+TEACHING = ("hs-train", "hs-evaluate", "hs-fuse", "hs-import", "hs-observe")
 RENDERING = ("hs-teach",)  # which holds the rendered world, and no other study
 STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl|reference_engine"
                      r"|make_named_scene|light_world")
