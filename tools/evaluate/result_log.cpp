@@ -38,6 +38,7 @@ PublishedResults read_result_log(const std::filesystem::path& log_file, const st
           channel::kDetections, frame_channels);
   std::set<std::string> found;
   for (const Detections& detections : results.detections) found.insert(detections.frame.channel);
+  for (const ObjectPoses& poses : results.poses) found.insert(poses.frame.channel);
   require(found.size() == 1, "{}: results of {} cameras, {}, expected one; choose with --channel", log_file.string(),
           found.size(), fmt::join(found, ", "));
   return results;

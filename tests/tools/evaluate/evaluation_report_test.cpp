@@ -206,6 +206,20 @@ TEST(ResultLog, OneOfSeveralCamerasIsChosenOrTheLogIsRefused) {
   EXPECT_EQ(results.poses.size(), 1U);
 }
 
+TEST(ResultLog, PosesOfAnotherCameraThanTheDetectionsAreNotTakenForItsOwn) {
+  const fs::path file = fresh_folder("result_log_followed") / "results.lcmlog";
+  LogWriter log(file);
+  Detections detections = *two_frames()[0].detections;
+  detections.frame.channel = "LEFT";
+  append(log, channel::kDetections, to_message(detections));
+  ObjectPoses followed = *two_frames()[0].poses;
+  followed.frame.channel = "RIGHT";
+  append(log, channel::kPoses, to_message(followed));
+  log.close();
+  EXPECT_THROW(read_result_log(file), InputError);
+  EXPECT_TRUE(read_result_log(file, "LEFT").poses.empty());
+}
+
 TEST(ResultLog, BadLogsAreRefused) {
   const fs::path folder = fresh_folder("result_log_bad");
   EXPECT_THROW(read_result_log(folder / "none.lcmlog"), InputError);
