@@ -45,7 +45,7 @@ struct Learnt {
   int right = 0;
   QualitySettings settings;
   std::vector<CheckedPose> checked;  ///< each by a fit that has not seen its scene
-  Published in_use;                  ///< by the numbers that hs-pose uses today, from their `least` on
+  Published in_use;                  ///< by the numbers that hs-pose uses, from their `least` on
 };
 
 /// Of so many at least learn_quality() needs poses.

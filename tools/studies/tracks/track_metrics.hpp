@@ -39,11 +39,9 @@ struct TrackMetricsSettings {
 ///   "error"            of matched objects that stand, and that move: medians and 95 % points, mm and degrees
 ///   "jitter"           of those that stand: RMS from the mean over each 5 s, median and worst of these; mm and degrees
 ///   "seconds_to_find"  from when half of an object was seen first, or came back, to when it is published; each, null
-///   where
-///                      it never was
+///                      where it never was
 ///   "seconds_to_gone"  from when one has been taken away to when its number is not published any more; each, null
-///   where
-///                      it still was when the object came back, or in the end
+///                      where it still was when the object came back, or in the end
 ///   "hidden_kept"      share of the frames in which a true object that was found stands where no camera sees it, and
 ///                      in which it is published
 ///   "wrong"            classes of what was published and is not so, with how often
