@@ -11,6 +11,7 @@ import sys
 ON_THE_ROBOT = ("hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-view", "hs-stream", "hs-log", "hs-doctor")
 TEACHING = ("hs-train", "hs-evaluate", "hs-fuse", "hs-import", "hs-observe")
 RENDERING = ("hs-teach",)  # which holds the rendered world, and no other study
+COMPARING = ("hs-study-evaluate",)  # whose names are found, else none would be found anywhere
 STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl|reference_engine"
                      r"|make_named_scene|light_world")
 WORLD = re.compile(r"houghstream::(\w+::)*world::|make_named_scene|light_world")
@@ -21,8 +22,12 @@ def output_of(*command):
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
 
+def studies_in(program):
+    return sorted({m.group() for m in map(STUDIES.search, output_of("nm", "-C", str(program)).split("\n")) if m})
+
+
 def faults_of(program):
-    names = sorted({m.group() for m in map(STUDIES.search, output_of("nm", "-C", str(program)).split("\n")) if m})
+    names = studies_in(program)
     if program.name in RENDERING:
         names = [name for name in names if not WORLD.fullmatch(name)]
     libraries = sorted(set(PCL.findall(output_of("ldd", str(program)))))
@@ -32,7 +37,9 @@ def faults_of(program):
 def main():
     if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "hs-detect").is_file():
         sys.exit("usage: product_contents.py BIN (the folder that holds hs-detect)")
-    faults = [fault for name in (*ON_THE_ROBOT, *TEACHING, *RENDERING) for fault in faults_of(pathlib.Path(sys.argv[1], name))]
+    folder = pathlib.Path(sys.argv[1])
+    faults = [fault for name in (*ON_THE_ROBOT, *TEACHING, *RENDERING) for fault in faults_of(folder / name)]
+    faults += [f"{name}: no name of a study found, expected some" for name in COMPARING if not studies_in(folder / name)]
     print("\n".join(faults) if faults else "the product holds no study")
     sys.exit(1 if faults else 0)
 
