@@ -145,12 +145,17 @@ void add_plane(const PlaneKnown& plane, const Eigen::Isometry3d& T, Sums& sums) 
   sums.add(row, plane.normal.dot(T.translation()) + plane.offset, 1.0 / (plane.sigma_m * plane.sigma_m));
 }
 
+/// bearing_error() of a corner whose point lies at p, which is before the camera.
+double bearing_error_at(const Eigen::Vector3d& p, const SeenCorner& corner) {
+  return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
+}
+
 /// A corner's bearing hardly depends on its depth, so what is far away says which way the camera looks.
 void add_corner(const SeenCorner& corner, const Eigen::Isometry3d& T, Sums& sums) {
   constexpr double kSigma = 0.003;  // of a bearing: one to two pixels
   const Eigen::Vector3d p = T * corner.in_world;
   if (!(p.z() > 0.1)) return;
-  const double weight = tukey(bearing_error(corner, T) / (2.0 * kSigma)) / (kSigma * kSigma);
+  const double weight = tukey(bearing_error_at(p, corner) / (2.0 * kSigma)) / (kSigma * kSigma);
   if (weight <= 0.0) return;
   for (const int axis : {0, 1}) {
     Eigen::Vector3d slope = Eigen::Vector3d::Unit(axis) / p.z();
@@ -191,8 +196,7 @@ Vector6 motion_of(const Eigen::Isometry3d& motion) {
 
 double bearing_error(const SeenCorner& corner, const Eigen::Isometry3d& T_camera_world) {
   const Eigen::Vector3d p = T_camera_world * corner.in_world;
-  if (!(p.z() > 0.0)) return std::numeric_limits<double>::infinity();
-  return (p.head<2>() / p.z() - corner.in_camera.head<2>() / corner.in_camera.z()).norm();
+  return p.z() > 0.0 ? bearing_error_at(p, corner) : std::numeric_limits<double>::infinity();
 }
 
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
