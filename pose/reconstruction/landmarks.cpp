@@ -45,12 +45,26 @@ Eigen::Isometry3d motion_between(const Pairs& pairs) {
   return T;
 }
 
+bool fits(const Pairs::value_type& pair, const Eigen::Isometry3d& T) {
+  return (T * pair.first - pair.second).norm() < limit_at(pair.second.z());
+}
+
 Pairs agreeing(const Pairs& pairs, const Eigen::Isometry3d& T) {
   Pairs inliers;
   for (const auto& pair : pairs) {
-    if ((T * pair.first - pair.second).norm() < limit_at(pair.second.z())) inliers.push_back(pair);
+    if (fits(pair, T)) inliers.push_back(pair);
   }
   return inliers;
+}
+
+/// How many pairs fit a motion; given up with 0 as soon as they cannot be more than `most`.
+std::size_t count_fitting(const Pairs& pairs, const Eigen::Isometry3d& T, std::size_t most) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (count + (pairs.size() - i) <= most) return 0;
+    count += fits(pairs[i], T) ? 1 : 0;
+  }
+  return count;
 }
 
 std::optional<LandmarkMatch> most_agree_on(const Pairs& pairs) {
@@ -58,16 +72,20 @@ std::optional<LandmarkMatch> most_agree_on(const Pairs& pairs) {
   constexpr std::size_t kFewest = 8;
   if (pairs.size() < kFewest) return std::nullopt;
   Random random(1);
-  Pairs best;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    Pairs three;
-    for (int i = 0; i < 3; ++i)
-      three.push_back(pairs[static_cast<std::size_t>(random.below(static_cast<int>(pairs.size())))]);
+  Pairs three(3);
+  std::size_t most = 0;
+  Eigen::Isometry3d T_most = Eigen::Isometry3d::Identity();
+  for (int trial = 0; trial < kTrials && most < pairs.size(); ++trial) {
+    for (auto& one : three) one = pairs[static_cast<std::size_t>(random.below(static_cast<int>(pairs.size())))];
     if ((three[0].first - three[1].first).norm() < 0.02 || (three[0].first - three[2].first).norm() < 0.02) continue;
-    Pairs inliers = agreeing(pairs, motion_between(three));
-    if (inliers.size() > best.size()) best = std::move(inliers);
+    const Eigen::Isometry3d T = motion_between(three);
+    const std::size_t count = count_fitting(pairs, T, most);
+    if (count <= most) continue;
+    most = count;
+    T_most = T;
   }
-  if (best.size() < kFewest) return std::nullopt;
+  if (most < kFewest) return std::nullopt;
+  Pairs best = agreeing(pairs, T_most);
   LandmarkMatch match;
   for (int again = 0; again < 2; ++again) {
     match.T_b_a = motion_between(best);
