@@ -14,6 +14,9 @@ namespace {
 
 using Pairs = decltype(LandmarkMatch::inliers);
 
+const cv::Size kFlowWindow(21, 21);  // pixels
+constexpr int kFlowLevels = 3;
+
 double limit_at(double z) {
   return 0.006 + 3.0 * depth_sigma(z);
 }
@@ -134,31 +137,38 @@ std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks
   return most_agree_on(like_pairs(a, b));
 }
 
-std::optional<LandmarkMatch> follow_corners(const RgbdFrame& a, const RgbdFrame& b, const cv::Mat& mask) {
+FlowFrame make_flow_frame(const RgbdFrame& frame) {
+  FlowFrame made{frame, grey_of(frame), {}};
+  cv::buildOpticalFlowPyramid(made.grey, made.pyramid, kFlowWindow, kFlowLevels);
+  return made;
+}
+
+std::vector<cv::Point2f> corners_to_follow(const FlowFrame& frame, const cv::Mat& mask) {
   constexpr int kMost = 300;
   constexpr double kLeastQuality = 0.01;  // of the best corner's
   constexpr double kApart_px = 9.0;
-  constexpr float kReturns_px = 0.5F;
-  const cv::Size window(21, 21);
-  constexpr int kLevels = 3;
-  const cv::Mat grey_a = grey_of(a);
-  const cv::Mat grey_b = grey_of(b);
   std::vector<cv::Point2f> corners;
-  cv::goodFeaturesToTrack(grey_a, corners, kMost, kLeastQuality, kApart_px, mask);
+  cv::goodFeaturesToTrack(frame.grey, corners, kMost, kLeastQuality, kApart_px, mask);
+  return corners;
+}
+
+std::optional<LandmarkMatch> follow_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
+                                            const FlowFrame& b) {
+  constexpr float kReturns_px = 0.5F;
   if (corners.empty()) return std::nullopt;
   std::vector<cv::Point2f> there;
   std::vector<cv::Point2f> back;
   std::vector<std::uint8_t> went;
   std::vector<std::uint8_t> came_back;
   std::vector<float> errors;
-  cv::calcOpticalFlowPyrLK(grey_a, grey_b, corners, there, went, errors, window, kLevels);
-  cv::calcOpticalFlowPyrLK(grey_b, grey_a, there, back, came_back, errors, window, kLevels);
+  cv::calcOpticalFlowPyrLK(a.pyramid, b.pyramid, corners, there, went, errors, kFlowWindow, kFlowLevels);
+  cv::calcOpticalFlowPyrLK(b.pyramid, a.pyramid, there, back, came_back, errors, kFlowWindow, kFlowLevels);
   Pairs pairs;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const cv::Point2f off = back[i] - corners[i];
     if (went[i] == 0 || came_back[i] == 0 || std::hypot(off.x, off.y) > kReturns_px) continue;
-    const std::optional<Eigen::Vector3d> from = surface_at(a, corners[i]);
-    const std::optional<Eigen::Vector3d> to = surface_at(b, there[i]);
+    const std::optional<Eigen::Vector3d> from = surface_at(a.frame, corners[i]);
+    const std::optional<Eigen::Vector3d> to = surface_at(b.frame, there[i]);
     if (from && to) pairs.emplace_back(*from, *to);
   }
   return most_agree_on(pairs);

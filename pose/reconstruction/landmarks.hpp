@@ -29,8 +29,21 @@ struct LandmarkMatch {
 /// same result.
 std::optional<LandmarkMatch> match_landmarks(const Landmarks& a, const Landmarks& b);
 
-/// Corners of one picture followed into the next, in which they are nearly where they were (Lucas & Kanade 1981; Shi &
-/// Tomasi 1994), there and back. `mask`: where in `a`, as for find_landmarks.
-std::optional<LandmarkMatch> follow_corners(const RgbdFrame& a, const RgbdFrame& b, const cv::Mat& mask);
+/// A frame from which corners are followed, or into which: its brightness, which is made once for both.
+struct FlowFrame {
+  RgbdFrame frame;
+  cv::Mat grey;                  ///< CV_8UC1
+  std::vector<cv::Mat> pyramid;  ///< of it, with slopes, as OpenCV's optical flow takes it
+};
+
+FlowFrame make_flow_frame(const RgbdFrame& frame);
+
+/// Corners that can be followed from a frame (Shi & Tomasi 1994), pixels. `mask`: as for find_landmarks.
+std::vector<cv::Point2f> corners_to_follow(const FlowFrame& frame, const cv::Mat& mask);
+
+/// Corners of one frame followed into the next, in which they are nearly where they were (Lucas & Kanade 1981), there
+/// and back.
+std::optional<LandmarkMatch> follow_corners(const FlowFrame& a, const std::vector<cv::Point2f>& corners,
+                                            const FlowFrame& b);
 
 }  // namespace houghstream::reconstruction

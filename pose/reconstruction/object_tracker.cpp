@@ -79,20 +79,23 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
     choose(frame);
   } else {
     FrameLevels levels = make_levels(frame, levels_);
+    FlowFrame now;
+    if (motion_ != Motion::kObject) now = make_flow_frame(frame);
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
     if (motion_ == Motion::kObject) mark_what_stays(levels);
-    if (state_.state == TrackState::kTracking) found = follow(frame, levels);
+    if (state_.state == TrackState::kTracking) found = follow(now, levels);
     if (found && motion_ == Motion::kUnknown) {
-      see_what_moves(frame, levels, found->T_camera_world);
+      see_what_moves(now, levels, found->T_camera_world);
       if (motion_ == Motion::kObject) {  // of the object only, from here on
         levels = make_levels(frame, levels_);
-        found = follow(frame, levels);
+        found = follow(now, levels);
       }
     }
     if (!found) found = find_again(frame, levels, false);
     if (found) {
       accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
+      last_flow_ = std::move(now);
     } else {
       note_lost(levels);
       if (unplaced_.size() < kMostUnplaced) unplaced_.emplace_back(static_cast<int>(take_.frames.size()) - 1, frame);
@@ -123,6 +126,10 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   cv::dilate(on_it, about_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
   cv::dilate(on_it, away_from_object_, cv::getStructuringElement(cv::MORPH_ELLIPSE, {41, 41}));
   away_from_object_ = away_from_object_ == 0;
+  cv::Mat away;
+  cv::resize(away_from_object_, away, frame.colour.size(), 0.0, 0.0, cv::INTER_NEAREST);
+  first_flow_ = last_flow_ = make_flow_frame(frame);
+  first_corners_ = corners_to_follow(first_flow_, away);
   first_rest_ = choose_points(levels, away_from_object_, {});
   const Eigen::Isometry3f T_world_camera = chosen_.T_camera_stand.inverse().cast<float>();
   for (std::vector<SurfacePoint>& level : first_rest_) {
@@ -159,7 +166,7 @@ Alignment ObjectTracker::lay_on_map(const FrameLevels& levels, const Eigen::Isom
 }
 
 /// From the frame before, whose corners say how the camera moved, or as it went on until then.
-std::optional<Alignment> ObjectTracker::follow(const RgbdFrame& frame, const FrameLevels& levels) {
+std::optional<Alignment> ObjectTracker::follow(const FlowFrame& now, const FrameLevels& levels) {
   constexpr double kMostTurn = 0.15;     // radians a frame, from rest
   constexpr double kMostEver = 0.4;      // radians a frame
   constexpr double kMostShift_m = 0.02;  // a frame, of an object that turns where it stands
@@ -169,10 +176,10 @@ std::optional<Alignment> ObjectTracker::follow(const RgbdFrame& frame, const Fra
   const bool goes_on = agreement_of(look_at(points, levels, T_goes_on, map_.settings().coarsest)) >
                        agreement_of(look_at(points, levels, T_last_, map_.settings().coarsest));
   const std::optional<LandmarkMatch> flow =
-      motion_ == Motion::kObject ? std::nullopt : follow_corners(last_frame_, frame, {});
+      motion_ == Motion::kObject ? std::nullopt : follow_corners(last_flow_, corners_to_follow(last_flow_, {}), now);
   corners_.clear();
   if (flow && flow->inliers.size() >= map_.settings().fewest_corners) {
-    for (const auto& [before, now] : flow->inliers) corners_.push_back({T_last_.inverse() * before, now});
+    for (const auto& [before, after] : flow->inliers) corners_.push_back({T_last_.inverse() * before, after});
   }
   const Eigen::Isometry3d T_likely = !corners_.empty() ? flow->T_b_a * T_last_ : goes_on ? T_goes_on : T_last_;
   const int coarsest = map_.settings().coarsest;
@@ -239,7 +246,6 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
   state_.state = TrackState::kTracking;
   T_before_ = was_lost ? alignment.T_camera_world : T_last_;
   T_last_ = alignment.T_camera_world;
-  last_frame_ = frame;
   FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
   const bool fit = !track.left_out;
   const int nearest = map_.nearest(T_last_);
@@ -268,13 +274,11 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
 
 /// Whether the corners of the surroundings are where they were at first; where there are few, whether the surroundings
 /// look as they did then rather than as a moved camera would see them.
-bool ObjectTracker::camera_is_still(const RgbdFrame& frame, const FrameLevels& levels,
+bool ObjectTracker::camera_is_still(const FlowFrame& now, const FrameLevels& levels,
                                     const Eigen::Isometry3d& T_moved) const {
   constexpr double kMoved = 0.003;  // radians, of half of the corners
   constexpr double kBetter = 0.01;  // of light
-  cv::Mat away;
-  cv::resize(away_from_object_, away, first_frame_.colour.size(), 0.0, 0.0, cv::INTER_NEAREST);
-  const std::optional<LandmarkMatch> flow = follow_corners(first_frame_, frame, away);
+  const std::optional<LandmarkMatch> flow = follow_corners(first_flow_, first_corners_, now);
   if (flow && flow->inliers.size() >= settings_.map.fewest_corners) {
     const auto moved = std::count_if(flow->inliers.begin(), flow->inliers.end(), [&](const auto& pair) {
       return bearing_error({pair.first, pair.second}, Eigen::Isometry3d::Identity()) > kMoved;
@@ -287,11 +291,10 @@ bool ObjectTracker::camera_is_still(const RgbdFrame& frame, const FrameLevels& l
 }
 
 /// While nothing is decided.
-void ObjectTracker::see_what_moves(const RgbdFrame& frame, const FrameLevels& levels,
-                                   Eigen::Isometry3d& T_camera_world) {
+void ObjectTracker::see_what_moves(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world) {
   constexpr int kSure = 3;
   constexpr double kLess = 0.2;  // share of edges
-  const bool is_still = camera_is_still(frame, levels, T_camera_world);
+  const bool is_still = camera_is_still(now, levels, T_camera_world);
   const double around = unchanged_share(levels.levels[0].light, first_light_, away_from_object_);
   const double on_it = unchanged_share(levels.levels[0].light, first_light_, about_object_);
   camera_moves_ = is_still ? 0 : camera_moves_ + 1;

@@ -90,14 +90,14 @@ class ObjectTracker {
   void require_same_size(const RgbdFrame& frame);
   void choose(const RgbdFrame& frame);
   Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest);
-  std::optional<Alignment> follow(const RgbdFrame& frame, const FrameLevels& levels);
+  std::optional<Alignment> follow(const FlowFrame& now, const FrameLevels& levels);
   std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere);
   void place_the_lost();
   void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
   bool is_fit_for_model(const PictureQuality& quality);
-  bool camera_is_still(const RgbdFrame& frame, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
-  void see_what_moves(const RgbdFrame& frame, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
+  bool camera_is_still(const FlowFrame& now, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
+  void see_what_moves(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
   void mark_what_stays(FrameLevels& levels);
   void remove_seen_through(const FrameLevel& level, cv::Mat& mask) const;
   void follow_object_only();
@@ -117,8 +117,10 @@ class ObjectTracker {
   LevelPoints first_rest_;                                 ///< points away from the object, world frame
   cv::Size size_;                                          ///< of all frames, pixels
   RgbdFrame first_frame_;
-  RgbdFrame last_frame_;             ///< that T_last_ is of
-  std::vector<SeenCorner> corners_;  ///< of it, as the present frame shows them
+  FlowFrame first_flow_;
+  std::vector<cv::Point2f> first_corners_;  ///< of it, away from the object
+  FlowFrame last_flow_;                     ///< of the frame that T_last_ is of, while the object is not seen to turn
+  std::vector<SeenCorner> corners_;         ///< of it, as the present frame shows them
   int first_number_ = 0;
   std::deque<std::vector<cv::Mat>> lights_;  ///< of the last frames, by level, while the object turns
   int object_moves_ = 0;                     ///< frames in which it did, one after the other
