@@ -113,24 +113,31 @@ std::optional<LoopGap> KeyframeMap::add(Keyframe keyframe, const Alignment& alig
   return gap;
 }
 
+/// Those of the keyframes that have enough corners in common with a frame.
+std::vector<SeenAgain> KeyframeMap::find_again(const std::vector<int>& keyframes, const Landmarks& seen) const {
+  std::vector<SeenAgain> again;
+  for (const int k : keyframes) {
+    std::optional<LandmarkMatch> match = match_landmarks(keyframes_[static_cast<std::size_t>(k)].landmarks, seen);
+    if (match && match->inliers.size() >= settings_.fewest_corners) again.push_back({k, std::move(*match)});
+  }
+  return again;
+}
+
 /// Corners that contradict the likely pose are mistaken, wallpaper for instance, unless it may be far off and many
 /// agree.
-Alignment KeyframeMap::lay_on(const MapPart& part, const FrameLevels& levels, const Landmarks& seen,
+Alignment KeyframeMap::lay_on(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
                               const Eigen::Isometry3d& T_likely, const LayLimits& limits) const {
   constexpr double kContradicts = 0.015;  // radians
   Holds holds{settings_.plane, {}};
   std::size_t most = 0;
   Eigen::Isometry3d T_by_corners = T_likely;
-  for (const int k : part.keyframes) {
-    if (!settings_.corners_hold && !limits.may_be_lost) break;
+  for (const auto& [k, match] : again) {
     const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(k)];
-    const std::optional<LandmarkMatch> match = match_landmarks(keyframe.landmarks, seen);
-    if (!match || match->inliers.size() < settings_.fewest_corners) continue;
     const Eigen::Isometry3d T_world_camera = keyframe.T_camera_world.inverse();
-    for (const auto& [before, now] : match->inliers) holds.corners.push_back({T_world_camera * before, now});
-    if (match->inliers.size() <= most) continue;
-    most = match->inliers.size();
-    T_by_corners = match->T_b_a * keyframe.T_camera_world;
+    for (const auto& [before, now] : match.inliers) holds.corners.push_back({T_world_camera * before, now});
+    if (match.inliers.size() <= most) continue;
+    most = match.inliers.size();
+    T_by_corners = match.T_b_a * keyframe.T_camera_world;
   }
   const auto contradict = std::count_if(holds.corners.begin(), holds.corners.end(), [&](const SeenCorner& corner) {
     return bearing_error(corner, T_likely) > kContradicts;
@@ -150,7 +157,9 @@ Alignment KeyframeMap::lay_on(const MapPart& part, const FrameLevels& levels, co
 }
 
 Alignment KeyframeMap::held_by_corners(const FrameLevels& levels, const Landmarks& seen, const Alignment& laid) const {
-  const Alignment held = lay_on(local_, levels, seen, laid.T_camera_world, {});
+  std::vector<SeenAgain> again;
+  if (settings_.corners_hold) again = find_again(local_.keyframes, seen);
+  const Alignment held = lay_on(local_, levels, again, laid.T_camera_world, {});
   return is_good(held) ? held : laid;
 }
 
@@ -168,8 +177,8 @@ std::optional<LoopGap> KeyframeMap::close_loop(int last) {
   if (candidates.size() > kMostTries) candidates.resize(kMostTries);
   for (const auto& [d, k] : candidates) {
     const Keyframe& old = keyframes_[static_cast<std::size_t>(k)];
-    const Alignment found =
-        lay_on(part_of({k}), now.levels, now.landmarks, now.T_camera_world, {settings_.coarsest, true});
+    const std::vector<SeenAgain> again = find_again({k}, now.landmarks);
+    const Alignment found = lay_on(part_of({k}), now.levels, again, now.T_camera_world, {settings_.coarsest, true});
     const LoopGap gap = gap_between(now.T_camera_world, found.T_camera_world);
     if (!is_good(found) || gap.shift_m > kMostShift_m) continue;
     edges_.push_back({k, last, found.T_camera_world * old.T_camera_world.inverse(), found.information});
@@ -185,28 +194,39 @@ void KeyframeMap::correct_poses() {
   steps_ = steps_from(static_cast<int>(keyframes_.size()) - 1, static_cast<int>(keyframes_.size()), edges_);
 }
 
-void KeyframeMap::refine(int rounds) {
+/// What the neighbours of a keyframe say of it. `again`: by neighbour, how its corners were found there; asked for in
+/// each round, and the same in all of them.
+std::vector<PoseEdge> KeyframeMap::edges_from(int from, int coarsest,
+                                              std::map<int, std::vector<SeenAgain>>& again) const {
   constexpr std::size_t kNeighbours = 8;
+  const Keyframe& one = keyframes_[static_cast<std::size_t>(from)];
+  std::vector<std::pair<double, int>> near;
+  for (int j = 0; j < static_cast<int>(keyframes_.size()); ++j) {
+    const double d = difference(one.T_camera_world, keyframes_[static_cast<std::size_t>(j)].T_camera_world);
+    if (j != from && d < 1.5 * settings_.alike) near.emplace_back(d, j);
+  }
+  std::sort(near.begin(), near.end());
+  if (near.size() > kNeighbours) near.resize(kNeighbours);
+  const MapPart own = part_of({from});
+  std::vector<PoseEdge> edges;
+  for (const auto& [d, j] : near) {
+    const Keyframe& to = keyframes_[static_cast<std::size_t>(j)];
+    const auto [corners, is_new] = again.try_emplace(j);
+    if (is_new && settings_.corners_hold) corners->second = find_again(own.keyframes, to.landmarks);
+    const Alignment laid = lay_on(own, to.levels, corners->second, to.T_camera_world, {coarsest, false});
+    if (is_good(laid)) edges.push_back({from, j, laid.T_camera_world * one.T_camera_world.inverse(), laid.information});
+  }
+  return edges;
+}
+
+void KeyframeMap::refine(int rounds) {
   const int n = static_cast<int>(keyframes_.size());
+  std::vector<std::map<int, std::vector<SeenAgain>>> again(static_cast<std::size_t>(n));
   for (int round = 0; round < rounds; ++round) {
     std::vector<std::vector<PoseEdge>> found(static_cast<std::size_t>(n));
     parallel_for(settings_.threads, n, [&](int i) {
-      const Keyframe& from = keyframes_[static_cast<std::size_t>(i)];
-      std::vector<std::pair<double, int>> near;
-      for (int j = 0; j < n; ++j) {
-        const double d = difference(from.T_camera_world, keyframes_[static_cast<std::size_t>(j)].T_camera_world);
-        if (j != i && d < 1.5 * settings_.alike) near.emplace_back(d, j);
-      }
-      std::sort(near.begin(), near.end());
-      if (near.size() > kNeighbours) near.resize(kNeighbours);
-      const MapPart own = part_of({i});
-      for (const auto& [d, j] : near) {
-        const Keyframe& to = keyframes_[static_cast<std::size_t>(j)];
-        const Alignment laid = lay_on(own, to.levels, to.landmarks, to.T_camera_world, {round == 0 ? 1 : 0, false});
-        if (is_good(laid))
-          found[static_cast<std::size_t>(i)].push_back(
-              {i, j, laid.T_camera_world * from.T_camera_world.inverse(), laid.information});
-      }
+      const auto at = static_cast<std::size_t>(i);
+      found[at] = edges_from(i, round == 0 ? 1 : 0, again[at]);
     });
     std::vector<PoseEdge> edges = edges_;
     for (PoseEdge& edge : edges) edge.information *= 0.05;  // keep together what has no other tie

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "pose/reconstruction/landmarks.hpp"
@@ -47,6 +48,12 @@ struct MapPart {
   LevelPoints points;
 };
 
+/// A keyframe whose corners a frame shows again.
+struct SeenAgain {
+  int keyframe = 0;
+  LandmarkMatch match;  ///< from the keyframe's camera to the frame's
+};
+
 /// How a frame is laid on keyframes that it is not tied to yet.
 struct LayLimits {
   int coarsest = 0;          ///< level to begin on
@@ -91,8 +98,10 @@ class KeyframeMap {
  private:
   std::vector<int> references_for(const Eigen::Isometry3d& T_camera_world) const;
   MapPart part_of(std::vector<int> keyframes) const;
-  Alignment lay_on(const MapPart& part, const FrameLevels& levels, const Landmarks& seen,
+  std::vector<SeenAgain> find_again(const std::vector<int>& keyframes, const Landmarks& seen) const;
+  Alignment lay_on(const MapPart& part, const FrameLevels& levels, const std::vector<SeenAgain>& again,
                    const Eigen::Isometry3d& T_likely, const LayLimits& limits) const;
+  std::vector<PoseEdge> edges_from(int from, int coarsest, std::map<int, std::vector<SeenAgain>>& again) const;
   std::optional<LoopGap> close_loop(int last);
   void correct_poses();
   PoseEdge edge_between(int from, int to, const Matrix6& information) const;
