@@ -92,13 +92,15 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
         found = follow(now, levels);
       }
     }
-    if (!found) found = find_again(frame, levels, false);
+    KnownCorners corners;
+    if (!found) found = find_again(frame, levels, false, corners);
     if (found) {
       accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
       last_flow_ = std::move(now);
     } else {
       note_lost(levels);
-      if (unplaced_.size() < kMostUnplaced) unplaced_.emplace_back(static_cast<int>(take_.frames.size()) - 1, frame);
+      if (unplaced_.size() < kMostUnplaced)
+        unplaced_.push_back({static_cast<int>(take_.frames.size()) - 1, frame, std::move(corners)});
     }
   }
   describe();
@@ -200,7 +202,19 @@ std::optional<Alignment> ObjectTracker::follow(const FlowFrame& now, const Frame
   return best;
 }
 
-std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere) {
+/// How a keyframe's corners lie on those of the frame.
+const KnownCorners::Place& ObjectTracker::place_by_corners(int keyframe, KnownCorners& corners) const {
+  const auto [known, is_new] = corners.by_keyframe.try_emplace(keyframe);
+  KnownCorners::Place& place = known->second;
+  if (!is_new) return place;
+  const Landmarks& of_keyframe = map_.keyframes()[static_cast<std::size_t>(keyframe)].landmarks;
+  if (const std::optional<LandmarkMatch> match = match_landmarks(of_keyframe, *corners.seen))
+    place = {match->inliers.size(), match->T_b_a};
+  return place;
+}
+
+std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+                                                   KnownCorners& corners) {
   constexpr std::size_t kTriedByPose = 4;
   constexpr double kSure = 0.85;  // share of inliers: a plane and a pattern on it may agree with a wrong pose by half
   const std::size_t tried_by_landmarks = everywhere ? map_.keyframes().size() : 12;
@@ -221,20 +235,21 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
                     {map_.settings().plane, {}}, limits);
     if (map_.is_good(found) && found.inlier_share > kSure) return found;
   }
-  const Landmarks seen = find_landmarks(frame, landmark_mask(frame, T_last_));
-  std::optional<LandmarkMatch> best;
+  if (motion_ == Motion::kObject) corners = {};  // they are of where the object is believed to be
+  if (!corners.seen) corners.seen = find_landmarks(frame, landmark_mask(frame, T_last_));
+  KnownCorners::Place best;
   int best_keyframe = -1;
   for (std::size_t i = 0; i < std::min(tried_by_landmarks, by_distance.size()); ++i) {
     // The nearest half, and the others in turn.
     const std::size_t at = i < tried_by_landmarks / 2 ? i : next_to_try_++ % by_distance.size();
     const int k = by_distance[at].second;
-    const auto match = match_landmarks(keyframes[static_cast<std::size_t>(k)].landmarks, seen);
-    if (!match || (best && best->inliers.size() >= match->inliers.size())) continue;
-    best = match;
+    const KnownCorners::Place& place = place_by_corners(k, corners);
+    if (place.corners <= best.corners) continue;
+    best = place;
     best_keyframe = k;
   }
-  if (!best || best->inliers.size() < map_.settings().sure_corners) return std::nullopt;
-  const Eigen::Isometry3d T = best->T_b_a * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
+  if (best_keyframe < 0 || best.corners < map_.settings().sure_corners) return std::nullopt;
+  const Eigen::Isometry3d T = best.T_frame_keyframe * keyframes[static_cast<std::size_t>(best_keyframe)].T_camera_world;
   if (map_.difference(T, T_last_) > farthest) return std::nullopt;
   const Alignment found = align_frame(map_.points_of({best_keyframe}), levels, T, {map_.settings().plane, {}}, limits);
   if (map_.is_good(found) && found.inlier_share > kSure) return found;
@@ -486,13 +501,13 @@ void ObjectTracker::place_the_lost() {
   for (bool any = true; any;) {
     any = false;
     for (auto at = unplaced_.begin(); at != unplaced_.end();) {
-      FrameLevels levels = make_levels(at->second, levels_);
-      const std::optional<Alignment> found = find_again(at->second, levels, true);
+      FrameLevels levels = make_levels(at->frame, levels_);
+      const std::optional<Alignment> found = find_again(at->frame, levels, true, at->corners);
       if (!found) {
         ++at;
         continue;
       }
-      accept(at->first, at->second, std::move(levels), *found);
+      accept(at->number, at->frame, std::move(levels), *found);
       at = unplaced_.erase(at);
       any = true;
     }

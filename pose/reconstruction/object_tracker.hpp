@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +71,23 @@ struct Take {
   Eigen::Isometry3d pose_of(const FrameTrack& frame) const;
 };
 
+/// Corners of a frame that is looked for again and again, and what those of each keyframe say of it: found once.
+struct KnownCorners {
+  struct Place {
+    std::size_t corners = 0;  ///< that agree; 0 = it says nothing
+    Eigen::Isometry3d T_frame_keyframe = Eigen::Isometry3d::Identity();
+  };
+  std::optional<Landmarks> seen;
+  std::map<int, Place> by_keyframe;
+};
+
+/// A frame that could not be placed when it came.
+struct LostFrame {
+  int number = 0;  ///< in its take
+  RgbdFrame frame;
+  KnownCorners corners;
+};
+
 /// Follows an object on a table through the frames of a take, in which the camera is carried about it, or the object
 /// turns before a camera that stands still. Each frame is laid on a map of the nearest keyframes (align_frame); table
 /// points are held to one plane; when the way closes, the gap is spread over it. What is lost is looked for by
@@ -91,7 +109,9 @@ class ObjectTracker {
   void choose(const RgbdFrame& frame);
   Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest);
   std::optional<Alignment> follow(const FlowFrame& now, const FrameLevels& levels);
-  std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere);
+  std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+                                      KnownCorners& corners);
+  const KnownCorners::Place& place_by_corners(int keyframe, KnownCorners& corners) const;
   void place_the_lost();
   void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
   void note_lost(const FrameLevels& levels);
@@ -127,7 +147,7 @@ class ObjectTracker {
   int camera_moves_ = 0;
   Eigen::Isometry3d T_last_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_before_ = Eigen::Isometry3d::Identity();
-  std::vector<std::pair<int, RgbdFrame>> unplaced_;  ///< lost frames, with their numbers
+  std::vector<LostFrame> unplaced_;
   std::deque<double> sharpness_;
   Take take_;
   std::vector<bool> round_;  ///< each ten degrees of the turn
