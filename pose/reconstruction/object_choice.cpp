@@ -390,6 +390,12 @@ Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
   return first;
 }
 
+std::string describe_choice(const ChosenObject& object) {
+  const cv::Point middle = (object.box_px.tl() + object.box_px.br()) / 2;
+  return fmt::format("meant is what stands at {},{} in the picture, {:.0f} cm across and {:.0f} cm high", middle.x,
+                     middle.y, 2e2 * object.radius_m, 1e2 * object.height_m);
+}
+
 std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,
                                  const Eigen::Isometry3d& T_camera_box) {
   std::vector<cv::Point2f> corners;

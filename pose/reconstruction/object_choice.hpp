@@ -65,4 +65,7 @@ std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& c
 /// together. Planes are tried in their order until one carries something.
 Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings);
 
+/// In words, so that a person sees what is meant: where it is in the picture, and how large.
+std::string describe_choice(const ChosenObject& object);
+
 }  // namespace houghstream::reconstruction

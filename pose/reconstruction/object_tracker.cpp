@@ -483,6 +483,7 @@ void ObjectTracker::note_lost(const FrameLevels& levels) {
 }
 
 void ObjectTracker::describe() {
+  constexpr int kTold = 45;  // frames for which the choice is said, so that a person can read it
   state_.keyframes = static_cast<int>(map_.keyframes().size());
   state_.T_camera_object.reset();
   state_.box_px = {};
@@ -494,6 +495,8 @@ void ObjectTracker::describe() {
   state_.T_camera_object = T_last_;
   state_.box_px = box_of(chosen_, first_frame_.camera, T_last_);
   state_.message = describe_seen(state_.seen, chosen_.T_camera_stand.inverse().translation());
+  if (state_.frames - first_number_ <= kTold)
+    state_.message = describe_choice(chosen_) + "; move the camera once around it, or turn it";
 }
 
 /// What was lost when it came may be found now that more of the surroundings is known.

@@ -59,6 +59,19 @@ TEST(ObjectTracker, ClosesATurnAndMakesAModel) {
   EXPECT_LT(model.agreement_m, 0.001);
 }
 
+TEST(ObjectTracker, FirstSaysWhatItTakesForTheObject) {
+  RgbdFrame frame = photograph(table_with({}), true_pose(0), ShownScene().camera, 1);
+  ObjectTracker tracker{TrackerSettings()};
+  const std::string choice = tracker.process(frame).message;
+  EXPECT_EQ(choice.find("meant is what stands at "), 0U) << choice;
+  EXPECT_NE(choice.find(" cm across and 16 cm high"), std::string::npos) << choice;
+  for (int i = 1; i < 46; ++i) {
+    frame.id.utime += 33000;
+    tracker.process(frame);
+  }
+  EXPECT_EQ(tracker.state().message.find("seen from "), 0U) << "when it could be read: " << tracker.state().message;
+}
+
 TEST(ObjectTracker, SaysWhereItWasLostAndGoesOn) {
   const Take take = go_round(table_with({}), 0, 40, {20, 21});
   ASSERT_EQ(take.lost.size(), 1U);

@@ -69,11 +69,13 @@ class Telling {
   void tell() {
     constexpr std::int64_t kApart_us = 1'000'000;  // of the take's time
     const std::string line = fmt::format("{}: {}", name_of(now_.state), now_.message);
-    const bool soon = printed_us_ != 0 && std::abs(now_.frame.utime - printed_us_) < kApart_us;
+    const bool is_choice = printed_state_ == ShowState::kChoosing && now_.state != ShowState::kChoosing;
+    const bool soon = printed_us_ != 0 && !is_choice && std::abs(now_.frame.utime - printed_us_) < kApart_us;
     if (line != printed_ && !soon) {
       fmt::print(stderr, "hs-teach: {}\n", line);
       printed_ = line;
       printed_us_ = now_.frame.utime;
+      printed_state_ = now_.state;
     }
     if (observer_ != nullptr) observer_->progress(now_);
   }
@@ -81,6 +83,7 @@ class Telling {
   ShowObserver* observer_;
   ShowProgress now_;
   std::string printed_;
+  ShowState printed_state_ = ShowState::kChoosing;
   std::int64_t printed_us_ = 0;
 };
 

@@ -176,8 +176,22 @@ cv::Mat outline_picture(const Mesh& mesh, const TrainingView& view) {
   return picture;
 }
 
+/// What was taken for the object in a take's first frame; that of turntable videos is given by their masks.
+void write_choices(const Shown& shown, const fs::path& folder) {
+  for (std::size_t t = 0; t < shown.takes.size(); ++t) {
+    const Take& take = shown.takes[t];
+    if (take.chosen.mask.empty()) continue;
+    cv::Mat picture = take.keyframes.front().frame.colour.clone();
+    std::vector<std::vector<cv::Point>> outlines;
+    cv::findContours(take.chosen.mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+    cv::drawContours(picture, outlines, -1, {0, 255, 0}, 2);
+    write_png(picture, folder / (t == 0 ? "chosen.png" : "chosen_2.png"));
+  }
+}
+
 void write_pictures(const Shown& shown, const std::vector<TrainingView>& views, const fs::path& folder) {
   constexpr std::size_t kOutlines = 12;
+  write_choices(shown, folder);
   fs::create_directories(folder / "outlines");
   const std::size_t step = std::max<std::size_t>(1, views.size() / kOutlines);
   for (std::size_t i = 0; i < views.size(); i += step)
@@ -216,7 +230,8 @@ const char* what_moved(Motion motion) {
 std::string describe_take(const Take& take) {
   if (take.motion == Motion::kTurntable)
     return fmt::format("  {} pictures with masks; {}\n", take.keyframes.size(), what_moved(take.motion));
-  std::string text = fmt::format(
+  std::string text = fmt::format("  {}\n", reconstruction::describe_choice(take.chosen));
+  text += fmt::format(
       "  {} frames in {:.1f} s, {} tracked, {} keyframes, {} blurred, {} badly exposed; {}; tracked at {:.0f} Hz\n",
       take.frames.size(), second_of(take, static_cast<int>(take.frames.size()) - 1), tracked_frames(take),
       take.keyframes.size(), take.blurred, take.badly_exposed, what_moved(take.motion), take.tracking_hz);
@@ -237,6 +252,10 @@ void write_page(const Shown& shown, const Verdict& verdict, const fs::path& fold
   std::ofstream out(folder / "report.html");
   out << fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
                      shown.name, verdict.good ? "good" : "poor", describe(shown, verdict));
+  for (const char* name : {"chosen.png", "chosen_2.png"}) {
+    if (fs::exists(folder / name))
+      out << fmt::format("<p>Taken for the object in the first frame:</p>\n<img src=\"{}\" width=\"50%\">\n", name);
+  }
   out << "<p>Some keyframes, and the model in its colours and as shape:</p>\n<img src=\"contact_sheet.jpg\" "
          "width=\"100%\">\n"
       << "<p>The model's outline (green) and the mask (orange) over keyframes:</p>\n";

@@ -46,8 +46,8 @@ std::string describe(const Shown& shown, const Verdict& verdict);
 void require_keepable(const std::filesystem::path& folder);
 
 /// What was asked to be kept, in a folder that appears as a whole: model.ply, views/ (BOP: the keyframes with poses and
-/// masks), contact_sheet.jpg, outlines/, camera_poses.csv, report.json and report.html. One of an earlier time is
-/// replaced, anything else is not. Throws InputError where it cannot be written.
+/// masks), contact_sheet.jpg, chosen.png, outlines/, camera_poses.csv, report.json and report.html. One of an earlier
+/// time is replaced, anything else is not. Throws InputError where it cannot be written.
 void keep_shown(const Shown& shown, const Verdict& verdict, const std::filesystem::path& folder);
 
 }  // namespace houghstream::teach

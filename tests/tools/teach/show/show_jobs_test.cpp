@@ -58,7 +58,7 @@ TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
   EXPECT_EQ(show_object(options, take_of(40, 90.0), {}, &heard), 3);
   EXPECT_EQ(heard.states.back(), ShowState::kFailed);
   for (const char* file : {"model.ply", "camera_poses.csv", "report.json", "report.html", "contact_sheet.jpg",
-                           "views/000001/scene_gt.json", "views/models/models_info.json"})
+                           "chosen.png", "views/000001/scene_gt.json", "views/models/models_info.json"})
     EXPECT_TRUE(fs::exists(folder / file)) << file;
   std::ifstream in(folder / "report.json");
   const std::string text((std::istreambuf_iterator<char>(in)), {});
