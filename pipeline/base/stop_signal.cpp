@@ -43,6 +43,11 @@ bool stop_requested() {
   return stop;
 }
 
+void release_stop_signals() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
 BlockStopSignals::BlockStopSignals() {
   sigset_t signals;
   sigemptyset(&signals);

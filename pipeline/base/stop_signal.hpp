@@ -12,6 +12,9 @@ void catch_stop_signals();
 /// Whether one of them has come since.
 bool stop_requested();
 
+/// From now on they end the program again, as before catch_stop_signals().
+void release_stop_signals();
+
 /// While it lives, threads started by this one never receive SIGINT or SIGTERM: a library's thread is not
 /// interrupted in its system calls.
 class BlockStopSignals {

@@ -37,6 +37,19 @@ TEST(StopSignal, ASecondOneLaterEndsAProgramThatHangs) {
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
 }
 
+TEST(StopSignal, ReleasedTheyEndTheProgramAgain) {
+  const pid_t child = fork();
+  if (child == 0) {
+    catch_stop_signals();
+    release_stop_signals();
+    std::raise(SIGINT);
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+}
+
 bool takes(int number) {
   sigset_t blocked;
   pthread_sigmask(SIG_SETMASK, nullptr, &blocked);

@@ -14,6 +14,7 @@
 #include "pose/reconstruction/object_tracker.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 #include "tools/teach/mesh_checks.hpp"
+#include "tools/teach/show/camera_take.hpp"
 #include "tools/teach/show/show_report.hpp"
 #include "tools/teach/show/show_sources.hpp"
 #include "tools/teach/show/turntable_videos.hpp"
@@ -116,14 +117,17 @@ void check_show_options(const ShowOptions& options) {
           options.name, options.out.string());
 }
 
-void check_shown_frame(const RgbdFrame& frame) {
+/// What a first frame lacks, in words; empty where it lacks nothing.
+std::string lack_of(const RgbdFrame& frame) {
   const std::string name = fmt::format("frame {}", to_string(frame.id));
   check_frame(frame, name);
   cv::Scalar mean, deviation;
   cv::meanStdDev(frame.colour, mean, deviation);
-  require(deviation[0] + deviation[1] + deviation[2] > 0.0, "{}: no colour, expected a picture", name);
-  require(cv::countNonZero(frame.depth == frame.depth) > 0, "{}: no depth at all, expected depth registered to colour",
-          name);
+  if (!(deviation[0] + deviation[1] + deviation[2] > 0.0))
+    return fmt::format("{}: no colour, expected a picture", name);
+  if (cv::countNonZero(frame.depth == frame.depth) == 0)
+    return fmt::format("{}: no depth at all, expected depth registered to colour", name);
+  return {};
 }
 
 reconstruction::ModelMaking making_of(const ShowOptions& options) {
@@ -146,15 +150,26 @@ struct ModelledTake {
 
 Take follow(const TakeSource& source, const ShowOptions& options, Telling& telling) {
   constexpr std::size_t kFewest = 20;
+  constexpr int kAwake = 90;   // frames after which a camera has found its exposure
+  constexpr int kAimed = 300;  // and in which somebody has pointed it at the object
+  const bool live = is_live(source.name);
   reconstruction::TrackerSettings settings;
+  if (live) settings.most_frames_to_choose = kAimed;
   settings.choice.box_px = source.box;
   settings.choice.seed = options.seed;
   settings.map.threads = options.threads;
   ObjectTracker tracker(settings);
-  bool is_first = true;
+  int blank = 0;
   while (const std::optional<RgbdFrame> frame = source.frames()) {
-    if (is_first) check_shown_frame(*frame);
-    is_first = false;
+    if (tracker.state().frames == 0) {
+      reconstruction::TrackerState waiting;
+      waiting.message = lack_of(*frame);
+      if (!waiting.message.empty()) {
+        require(live && ++blank < kAwake, "{}", waiting.message);
+        telling.frame(frame->id, waiting);
+        continue;
+      }
+    }
     telling.frame(frame->id, tracker.process(*frame));
   }
   telling.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
@@ -321,7 +336,10 @@ int show_sources(const ShowOptions& options, ShowObserver* observer) {
   if (is_turntable_videos(options.source))
     return told(options, observer, [&](Telling&) { return show_turntable(options); });
   const ShownFrames second = options.second.empty() ? ShownFrames() : open_shown(options.second, options);
-  return show_object(options, open_shown(options.source, options), second, observer);
+  if (!is_live(options.source)) return show_object(options, open_shown(options.source, options), second, observer);
+  CameraTake take(open_shown(options.source, options), observer);
+  return show_object(
+      options, [&take] { return take.next(); }, second, &take);
 }
 
 }  // namespace houghstream::teach

@@ -66,6 +66,7 @@ ShownFrames open_shown(const std::string& source, const ShowOptions& options) {
     listener.stop_requested = [] { return stop_requested(); };
     catch_stop_signals();
     const auto live = std::make_shared<LiveFrames>(capture::open_source(camera, listener), options.longest_s);
+    log_info("ready: frames from {}; Ctrl-C ends the take", source);
     return [live] { return live->next(); };
   }
   for (const char* kind : {"bop:", "uw:", "tum:"}) {

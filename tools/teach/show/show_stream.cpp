@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <csignal>
 #include <filesystem>
 
 #include "pipeline/base/log_line.hpp"
@@ -29,6 +28,7 @@ class TakeObserver : public ShowObserver {
 
   void progress(const ShowProgress& now) override {
     publisher_.progress(now);
+    if (now.state == ShowState::kChoosing) take_.skip_to_newest();  // until something is chosen, only now counts
     if (now.state == ShowState::kTracking && enough_(now)) take_.end();
   }
 
@@ -41,8 +41,7 @@ class TakeObserver : public ShowObserver {
 /// From here on a stop signal ends the program.
 void end_take(const StreamTake& take) {
   if (take.passed_over() > 0) log_warning("{} frames came too fast and were passed over", take.passed_over());
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  release_stop_signals();
   let_others_first();
 }
 

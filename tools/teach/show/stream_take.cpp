@@ -62,6 +62,11 @@ void StreamTake::end() {
   changed_.notify_all();
 }
 
+void StreamTake::skip_to_newest() {
+  const std::lock_guard lock(mutex_);
+  while (waiting_.size() > 1) waiting_.pop_front();
+}
+
 StreamTake::Clock::time_point StreamTake::deadline() const {
   if (!first_) return begin_ + settings_.patience;
   return std::min(*first_ + settings_.longest, last_ + settings_.silence);

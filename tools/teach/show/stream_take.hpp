@@ -44,6 +44,9 @@ class StreamTake {
   /// The take is long enough. May be called from any thread.
   void end();
 
+  /// Of the frames that wait, only the newest is taken.
+  void skip_to_newest();
+
   /// Frames that came too fast: of those that wait the oldest goes.
   std::int64_t passed_over() const { return passed_over_; }
 

@@ -91,6 +91,35 @@ TEST(ShowJobs, BadInputIsOneLine) {
             std::string::npos);
 }
 
+/// Before the take some frames without anything, and more of a table on which nothing stands yet.
+ShownFrames take_after_a_while(int blank, int empty) {
+  test_scene::ShownScene table;
+  table.box.setZero();
+  const RgbdFrame of_table = test_scene::photograph(test_scene::table_with(table),
+                                                    test_scene::camera_at(0.0, 0.55, 0.65), table.camera, 1000000);
+  const auto i = std::make_shared<int>(0);
+  return [=, frames = take_of(40, 90.0)]() -> std::optional<RgbdFrame> {
+    if (*i == blank + empty) return frames();
+    RgbdFrame frame = of_table;
+    if (*i < blank) {
+      frame.colour = cv::Mat::zeros(frame.colour.size(), CV_8UC3);
+      frame.depth = cv::Mat(frame.depth.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
+    }
+    frame.id.utime = 1000 * ++*i;
+    return frame;
+  };
+}
+
+TEST(ShowJobs, ACameraMayWakeAndBePointedAtTheObject) {
+  ShowOptions options = options_for("box");
+  EXPECT_NE(line_of(options, take_after_a_while(3, 0)).find("a take: frame 1000: no colour"), std::string::npos);
+  EXPECT_NE(line_of(options, take_after_a_while(0, 60)).find("a take: nothing with depth stands near"),
+            std::string::npos);
+  options.source = "openni2";
+  EXPECT_EQ(line_of(options, take_after_a_while(3, 60)), "");
+  EXPECT_NE(line_of(options, take_after_a_while(100, 0)).find("openni2: frame 90000: no colour"), std::string::npos);
+}
+
 TEST(ShowJobs, ErrorsOfTheSecondTakeNameIt) {
   EXPECT_EQ(line_of(options_for("box"), take_of(40, 90.0), take_of(5, 10.0)),
             "the second take: 5 frames, expected at least 20, of a whole turn");

@@ -61,6 +61,19 @@ TEST(StreamTake, ItEndsWhenAskedAndAfterItsLongestTime) {
   EXPECT_FALSE(ended.next().has_value()) << "what waits is left";
 }
 
+TEST(StreamTake, WhatIsOldIsSkippedWhereOnlyNowCounts) {
+  LcmBus bus("memq://");
+  StreamTake take(bus, quick());
+  for (std::int64_t i = 1; i <= 20; ++i) send(bus, i);
+  EXPECT_EQ(take.next()->id.utime, 1);
+  std::this_thread::sleep_for(milliseconds(200));
+  take.skip_to_newest();
+  EXPECT_EQ(take.next()->id.utime, 20);
+  take.skip_to_newest();
+  EXPECT_FALSE(take.next().has_value());
+  EXPECT_EQ(take.passed_over(), 0) << "nobody was too slow";
+}
+
 TEST(StreamTake, WhatComesTooFastGoesWithACount) {
   LcmBus bus("memq://");
   StreamTake take(bus, quick());
