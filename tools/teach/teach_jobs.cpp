@@ -1,6 +1,7 @@
 #include "tools/teach/teach_jobs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -211,8 +212,20 @@ void name_lookalikes(const std::vector<NamedModel>& models) {
 
 }  // namespace
 
+void warn_of_replaced(const fs::path& folder) {
+  std::vector<std::string> names;
+  try {
+    for (const StoredObject& object : store::read_store(folder).objects) names.push_back(object.name);
+  } catch (const InputError&) {
+    return;  // none, or a torn one, of which nothing could be kept
+  }
+  log_warning("{}: knows {}, and will not when this is done; --add keeps what a store knows", folder.string(),
+              fmt::join(names, ", "));
+}
+
 void teach_meshes(const TeachOptions& options) {
   const Progress progress;
+  if (!options.add && options.shown.empty()) warn_of_replaced(options.out);  // hs-teach show has said it
   world::parse_mesh_attitudes(options.attitudes);
   if (options.rooms.camera) parse_camera(*options.rooms.camera);
   store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on

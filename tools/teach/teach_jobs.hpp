@@ -34,6 +34,9 @@ struct TeachOptions {
   int threads = 2;
 };
 
+/// Warns of a store that is there and will know none of its objects any more, where a teaching does not add to it.
+void warn_of_replaced(const std::filesystem::path& folder);
+
 /// Teaches objects from their meshes. Says on standard error what is done, and at the end which objects can hardly be
 /// told apart. The store that was there stays whole until the new one is. Throws InputError for what cannot be taught.
 void teach_meshes(const TeachOptions& options);

@@ -8,6 +8,7 @@
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "tests/drivers/store/small_store.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 #include "tools/common/stored_quality.hpp"
@@ -145,6 +146,21 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   expect_named(options.out, "bracket");
   EXPECT_EQ(read_text(before.forest_file()), forest) << "byte for byte";
   EXPECT_EQ(std::distance(fs::directory_iterator(options.out.parent_path()), {}), 3) << "nothing is left beside it";
+}
+
+TEST(TeachJobs, WhatAStoreKnowsIsNotReplacedWithoutAWord) {
+  start_log("teach_tests", LogLevel::kInfo);
+  const auto said_of = [](const fs::path& store) {
+    testing::internal::CaptureStderr();
+    warn_of_replaced(store);
+    return testing::internal::GetCapturedStderr();
+  };
+  const fs::path store = store::whole_store("teach_replaced");
+  const std::string said = said_of(store);
+  EXPECT_NE(said.find(store.string() + ": knows mug, brick, and will not when this is done; --add keeps"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said_of(store / "nowhere"), "");
 }
 
 TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
