@@ -132,6 +132,7 @@ struct Clusters {
 
 cv::Point2d meant_place(const RgbdFrame& frame, const ChoiceSettings& settings) {
   if (settings.box_px) return (settings.box_px->tl() + settings.box_px->br()) * 0.5;
+  if (settings.at_px) return *settings.at_px;
   return {0.5 * frame.depth.cols, 0.5 * frame.depth.rows};
 }
 
@@ -299,18 +300,22 @@ std::optional<Plane> carried_by(const RgbdFrame& frame, const ChosenObject& obje
   return refine_plane(frame, elsewhere, plane, object.T_camera_stand.translation(), 0.5);
 }
 
+std::string nothing_there(const ChoiceSettings& settings) {
+  if (settings.box_px) return "nothing with depth stands in the box, expected an object on the table there";
+  if (settings.at_px)
+    return fmt::format("nothing with depth stands near {},{}, expected an object on the table there", settings.at_px->x,
+                       settings.at_px->y);
+  return "nothing with depth stands near the picture's middle, expected an object there (or --box; what is transparent "
+         "has no depth)";
+}
+
 /// What stands on this plane and is meant.
 Choice choose_on(const RgbdFrame& frame, const Plane& plane, const ChoiceSettings& settings) {
   const cv::Point2d meant = meant_place(frame, settings);
   const PlaneAxes axes(plane, frame.camera.backproject(meant.x, meant.y, 1.0));
   const Clusters clusters = find_clusters(frame, plane, axes, settings);
   const int chosen = meant_cluster(clusters, frame, settings);
-  if (chosen == 0) {
-    return {{},
-            settings.box_px ? "nothing with depth stands in the box, expected an object on the table there"
-                            : "nothing with depth stands near the picture's middle, expected an object there (or "
-                              "--box; what is transparent has no depth)"};
-  }
+  if (chosen == 0) return {{}, nothing_there(settings)};
   ChosenObject object = make_object(frame, plane, axes, clusters, chosen);
   object.boxed = settings.box_px.has_value();
   if (const std::optional<Plane> carrier = carried_by(frame, object)) {
@@ -379,6 +384,10 @@ Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings) {
   const cv::Rect whole({0, 0}, frame.depth.size());
   if (settings.box_px && (*settings.box_px & whole) != *settings.box_px)
     return {{}, fmt::format("the box lies not within the picture, which has {}x{} pixels", whole.width, whole.height)};
+  if (settings.at_px && !whole.contains(*settings.at_px))
+    return {{},
+            fmt::format("{},{} lies not within the picture, which has {}x{} pixels", settings.at_px->x,
+                        settings.at_px->y, whole.width, whole.height)};
   const std::vector<Plane> planes = find_planes(frame, settings);
   if (planes.empty()) return {{}, "no table or other level surface is seen, expected one on which the object stands"};
   Choice first;

@@ -37,11 +37,12 @@ struct Choice {
 };
 
 struct ChoiceSettings {
-  std::optional<cv::Rect> box_px;  ///< about the object; none: what is nearest to the image's middle
+  std::optional<cv::Rect> box_px;  ///< about the object; none: what is nearest to at_px
+  std::optional<cv::Point> at_px;  ///< on the object or nearly so; none: the image's middle
   double smallest_m = 0.012;       ///< sides of an object
   double largest_m = 0.6;
   double farthest_m = 2.0;       ///< from the camera
-  double farthest_share = 0.25;  ///< of the image's width: how far from its middle, without a box
+  double farthest_share = 0.25;  ///< of the image's width: how far from its middle or from at_px, without a box
   std::uint64_t seed = 1;
 };
 
@@ -61,8 +62,8 @@ Plane refine_plane(const RgbdFrame& frame, const cv::Mat& mask, const Plane& pla
 std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,
                                  const Eigen::Isometry3d& T_camera_box);
 
-/// What stands on the dominant plane nearest to the image's middle, or in the box: points above the plane that hang
-/// together. Planes are tried in their order until one carries something.
+/// What stands on the dominant plane nearest to the image's middle or to a place there, or in the box: points above the
+/// plane that hang together. Planes are tried in their order until one carries something.
 Choice choose_object(const RgbdFrame& frame, const ChoiceSettings& settings);
 
 /// In words, so that a person sees what is meant: where it is in the picture, and how large.

@@ -76,9 +76,18 @@ cv::Rect parse_box(const std::string& text) {
   return box;
 }
 
+cv::Point parse_place(const std::string& text) {
+  cv::Point place;
+  char rest = 0;
+  const int read = std::sscanf(text.c_str(), "%d,%d%c", &place.x, &place.y, &rest);
+  require(read == 2 && place.x >= 0 && place.y >= 0, "--at '{}', expected X,Y in pixels of the first frame", text);
+  return place;
+}
+
 /// What is not of ShowOptions, or in other words there.
 struct ShowWords {
   std::string box;
+  std::string at;
   std::string lcm_url;
   bool from_stream = false;
 };
@@ -96,6 +105,7 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
   show.add_flag("--add", options.add, "the object joins those of the store");
   show.add_option("--box", words.box,
                   "X,Y,W,H about the object in the first frame; default: what stands nearest the middle");
+  show.add_option("--at", words.at, "X,Y on the object in the first frame, instead of the middle");
   show.add_option("--keep", options.keep, "folder for model, views, pictures and report");
   show.add_flag("--go-on", options.go_on, "teaches a poor model too");
   show.add_clearing_flag("--no-teach", options.teach, "makes the model only");
@@ -115,6 +125,8 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
 
 int run_show(ShowOptions options, const ShowWords& words) {
   if (!words.box.empty()) options.box = parse_box(words.box);
+  if (!words.at.empty()) options.at = parse_place(words.at);
+  require(!options.box || !options.at, "expected either --box or --at");
   require(options.source.empty() == words.from_stream, "expected either --source SOURCE or --from-stream");
   require(!words.from_stream || options.second.empty(), "--second goes with --source, not with --from-stream");
   return words.from_stream ? show_from_stream(options, words.lcm_url) : show_sources(options, nullptr);

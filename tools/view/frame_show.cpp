@@ -1,9 +1,11 @@
 #include "tools/view/frame_show.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
@@ -113,15 +115,20 @@ std::shared_ptr<const ClassModels> FrameShow::models() const {
 }
 
 void FrameShow::teach() {
+  if (!store_) log_warning("key t teaches into an object store, expected --objects STORE");
   if (!store_ || !viewed_) return;
   std::vector<std::string> known;
   for (const KnownObject& object : store_->known().objects) known.push_back(object.name);
   order_.name = free_name(known);
-  order_.joins_others = !known.empty();
+  // One that was made a moment ago may not be loaded yet.
+  order_.joins_others = !known.empty() || std::filesystem::exists(std::filesystem::path(order_.store) / "store.json");
   order_.channel = viewed_->frame.id.channel;
-  const cv::Rect box = picture_settings_.box & cv::Rect({}, viewed_->frame.colour.size());
+  const cv::Rect picture({}, viewed_->frame.colour.size());
+  const cv::Rect box = picture_settings_.box & picture;
   order_.box = box.empty() ? std::nullopt : std::optional<cv::Rect>(box);
+  order_.at = picture_settings_.at && picture.contains(*picture_settings_.at) ? picture_settings_.at : std::nullopt;
   picture_settings_.box = {};
+  picture_settings_.at.reset();
   starter_.press(order_);
 }
 

@@ -25,6 +25,8 @@ std::vector<std::string> teaching_command(const TeachingOrder& order) {
   if (order.box) {
     words.insert(words.end(), {"--box", fmt::format("{},{},{},{}", order.box->x, order.box->y, order.box->width,
                                                     order.box->height)});
+  } else if (order.at) {
+    words.insert(words.end(), {"--at", fmt::format("{},{}", order.at->x, order.at->y)});
   }
   return words;
 }

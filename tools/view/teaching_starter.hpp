@@ -19,7 +19,8 @@ struct TeachingOrder {
   std::string name;                   ///< that it gets
   std::string channel;                ///< of the frames
   std::string lcm_url;                ///< "" = LCM's default
-  std::optional<cv::Rect> box;        ///< about the object, pixels; none = what stands nearest to the middle
+  std::optional<cv::Rect> box;        ///< about the object, pixels; none = what stands nearest
+  std::optional<cv::Point> at;        ///< to this pixel, or to the middle
 };
 
 /// hs-teach with its words.

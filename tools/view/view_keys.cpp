@@ -26,4 +26,11 @@ KeyAction apply_key(int key, FrameViewSettings& settings) {
   return KeyAction::kRedraw;
 }
 
+void apply_mark(const cv::Rect& dragged, FrameViewSettings& settings) {
+  constexpr int kClick_px = 4;
+  const bool is_click = dragged.width < kClick_px && dragged.height < kClick_px;
+  settings.box = is_click ? cv::Rect() : dragged;
+  settings.at = is_click ? std::optional<cv::Point>(dragged.tl()) : std::nullopt;
+}
+
 }  // namespace houghstream::view

@@ -18,4 +18,8 @@ enum class KeyAction {
 /// camera, t teaches.
 KeyAction apply_key(int key, FrameViewSettings& settings);
 
+/// What the mouse marks, pressed at one corner of `dragged` and by now at another: a box, or a place, where it hardly
+/// moved.
+void apply_mark(const cv::Rect& dragged, FrameViewSettings& settings);
+
 }  // namespace houghstream::view

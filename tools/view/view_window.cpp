@@ -78,7 +78,7 @@ KeyAction ViewWindow::handle_keys(FrameViewSettings& settings) {
   if (key == 's') save();
   KeyAction action = apply_key(key, settings);
   if (dragged_) {
-    settings.box = *dragged_;
+    apply_mark(*dragged_, settings);
     dragged_.reset();
     if (action == KeyAction::kNone) action = KeyAction::kRedraw;
   }

@@ -16,7 +16,7 @@ class ViewWindow {
 
   void show(const cv::Mat& picture, const FrameId& id);
 
-  /// Lets the window live for a moment and acts on keys and on the mouse, which draws a box; a click removes it.
+  /// Lets the window live for a moment and acts on keys and on the mouse, which marks a box or a place (apply_mark).
   KeyAction handle_keys(FrameViewSettings& settings);
 
  private:

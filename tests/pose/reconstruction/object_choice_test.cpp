@@ -24,6 +24,30 @@ TEST(ObjectChoice, FindsWhatStandsInTheMiddle) {
   EXPECT_LT((choice.object->T_camera_stand.translation() - T.translation()).norm(), 0.03);
 }
 
+TEST(ObjectChoice, TakesWhatStandsNearestToAPlaceThatIsPointedAt) {
+  const Eigen::Vector3f beside(-0.05F, 0.24F, 0.0F);
+  const Eigen::Isometry3d T = test_scene::camera_at(0.4, 0.6, 0.7);
+  Mesh mesh = table_with({});
+  const std::size_t first = mesh.vertices.size();
+  test_scene::add_box({0.05, 0.05, 0.06}, 0.0, mesh);
+  for (std::size_t i = first; i < mesh.vertices.size(); ++i) mesh.vertices[i] += beside;
+  const RgbdFrame frame = photograph(mesh, T, ShownScene().camera, 1);
+  const Choice in_the_middle = choose_object(frame, {});
+  ASSERT_TRUE(in_the_middle.object) << in_the_middle.reason;
+  EXPECT_NEAR(in_the_middle.object->height_m, 0.16, 0.005);
+  ChoiceSettings pointing;
+  const Eigen::Vector2d px = frame.camera.project(T * Eigen::Vector3d(-0.05, 0.24, 0.05));
+  pointing.at_px = cv::Point(cvRound(px.x()), cvRound(px.y()));
+  const Choice there = choose_object(frame, pointing);
+  ASSERT_TRUE(there.object) << there.reason;
+  EXPECT_NEAR(there.object->height_m, 0.06, 0.005);
+  pointing.at_px = cv::Point(5, 5);
+  EXPECT_EQ(choose_object(frame, pointing).reason,
+            "nothing with depth stands near 5,5, expected an object on the table there");
+  pointing.at_px = cv::Point(400, 5);
+  EXPECT_EQ(choose_object(frame, pointing).reason, "400,5 lies not within the picture, which has 320x240 pixels");
+}
+
 TEST(ObjectChoice, TakesNoTurntableForTheObject) {
   ShownScene scene;
   scene.box = {0.06, 0.06, 0.10};

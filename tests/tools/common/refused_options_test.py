@@ -15,6 +15,7 @@ TRAIN = ("hs-train", "--views", f"bop:{NOWHERE}", "--background", f"bop:{NOWHERE
 EVALUATE = ("hs-evaluate", "--scene", NOWHERE)
 FILTER = ("hs-log", "filter", f"{NOWHERE}/in.log", f"{NOWHERE}/out.log")
 RENDER = ("hs-render", "training", "--out", NOWHERE)
+SHOW = ("hs-teach", "show", "--source", NOWHERE, "--name", "mug", "--no-teach")
 MESH = ("hs-teach", "mesh", f"{NOWHERE}.ply", "--out", NOWHERE)
 
 # Program and command, option, values that it refuses.
@@ -41,6 +42,8 @@ REFUSED = (
     (("hs-stream",), "--every", ("nan",)),
     (MESH, "--camera", ("bogus",)),
     (MESH, "--seed", ("-1",)),
+    (SHOW, "--at", ("1", "1,2,3")),
+    (SHOW, "--box", ("1,2,3", "1,2,0,5")),
     (("hs-track",), "--wait", ("nan",)),
     (TRAIN, "--camera", ("1",)),
     (TRAIN, "--image-scale", ("nan",)),

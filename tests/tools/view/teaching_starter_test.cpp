@@ -14,7 +14,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 TEST(TeachingStarter, TheCommandNamesStreamStoreAndObject) {
-  TeachingOrder order{"/bin", "my.store", true, "object_3", "LEFT", "", std::nullopt};
+  TeachingOrder order{"/bin", "my.store", true, "object_3", "LEFT", "", std::nullopt, std::nullopt};
   EXPECT_EQ(teaching_command(order), (Words{"/bin/hs-teach", "show", "--from-stream", "--name", "object_3", "--out",
                                             "my.store", "--channel", "LEFT", "--add"}));
   order.lcm_url = "udpm://x";
@@ -24,6 +24,10 @@ TEST(TeachingStarter, TheCommandNamesStreamStoreAndObject) {
   const Words first = teaching_command(order);
   EXPECT_EQ(std::count(first.begin(), first.end(), "--add"), 0) << "the first object makes the store";
   EXPECT_EQ(Words(words.end() - 4, words.end()), (Words{"--lcm-url", "udpm://x", "--box", "1,2,30,40"}));
+  order.box.reset();
+  order.at = cv::Point(7, 8);
+  const Words clicked = teaching_command(order);
+  EXPECT_EQ(Words(clicked.end() - 2, clicked.end()), (Words{"--at", "7,8"}));
 }
 
 TEST(TeachingStarter, ANameThatNobodyHas) {
@@ -45,7 +49,7 @@ TEST(TeachingStarter, TheKeyStartsItAndEndsItsTakeOnce) {
              "while :; do sleep 0.05; done\n");
   std::filesystem::permissions(folder / "hs-teach", std::filesystem::perms::owner_all);
   const std::filesystem::path said = folder / "said";
-  const TeachingOrder order{folder, said.string(), true, "object_1", "LEFT", "", std::nullopt};
+  const TeachingOrder order{folder, said.string(), true, "object_1", "LEFT", "", std::nullopt, std::nullopt};
   TeachingStarter starter;
   EXPECT_FALSE(starter.runs());
   starter.press(order);
@@ -59,7 +63,7 @@ TEST(TeachingStarter, TheKeyStartsItAndEndsItsTakeOnce) {
   starter.press(order);
   ASSERT_TRUE(comes_true([&] { return read_text(said) == "start\ntake\ntaught\nstart\n"; })) << "the next one";
   TeachingStarter without;
-  without.press({folder / "nowhere", "", false, "", "", "", std::nullopt});
+  without.press({folder / "nowhere", "", false, "", "", "", std::nullopt, std::nullopt});
   EXPECT_FALSE(without.runs());
 }
 

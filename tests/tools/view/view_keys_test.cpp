@@ -23,6 +23,19 @@ TEST(ViewKeys, EachKeyDoesWhatTheWindowSays) {
   EXPECT_EQ(apply_key('x', settings), KeyAction::kNone);
 }
 
+TEST(ViewKeys, TheMouseMarksABoxOrByAClickAPlace) {
+  FrameViewSettings settings;
+  apply_mark({10, 20, 0, 0}, settings);
+  EXPECT_EQ(settings.at, cv::Point(10, 20));
+  EXPECT_TRUE(settings.box.empty());
+  apply_mark({10, 20, 50, 60}, settings);
+  EXPECT_FALSE(settings.at.has_value());
+  EXPECT_EQ(settings.box, cv::Rect(10, 20, 50, 60));
+  apply_mark({30, 30, 3, 3}, settings);
+  EXPECT_EQ(settings.at, cv::Point(30, 30)) << "no hand is quite still";
+  EXPECT_TRUE(settings.box.empty());
+}
+
 TEST(ViewKeys, TheThresholdStaysBetweenZeroAndOne) {
   FrameViewSettings settings;
   settings.min_score = 0.5F;

@@ -141,6 +141,7 @@ struct TakeSource {
   std::string name;             ///< for messages
   const ShownFrames& frames;    ///< of it
   std::optional<cv::Rect> box;  ///< of the object in the first frame; none: it is chosen
+  std::optional<cv::Point> at;  ///< by this place, or by the middle
 };
 
 struct ModelledTake {
@@ -154,8 +155,9 @@ Take follow(const TakeSource& source, const ShowOptions& options, Telling& telli
   constexpr int kAimed = 300;  // and in which somebody has pointed it at the object
   const bool live = is_live(source.name);
   reconstruction::TrackerSettings settings;
-  if (live) settings.most_frames_to_choose = kAimed;
+  if (live && !source.at) settings.most_frames_to_choose = kAimed;
   settings.choice.box_px = source.box;
+  settings.choice.at_px = source.at;
   settings.choice.seed = options.seed;
   settings.map.threads = options.threads;
   ObjectTracker tracker(settings);
@@ -257,12 +259,12 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
   const auto begin = std::chrono::steady_clock::now();
   Shown shown;
   shown.name = options.name;
-  ModelledTake first = follow_and_model({options.source, frames, options.box}, options, telling);
+  ModelledTake first = follow_and_model({options.source, frames, options.box, options.at}, options, telling);
   ShownModel& model = first.model;
   shown.takes.push_back(std::move(first.take));
   if (second) {
     const std::string name = options.second.empty() ? "the second take" : options.second;
-    ModelledTake other = follow_and_model({name, second, std::nullopt}, options, telling);
+    ModelledTake other = follow_and_model({name, second, std::nullopt, std::nullopt}, options, telling);
     telling.step(ShowState::kFusing, 0.4, "the second take is laid on the first");
     shown.second_fits = merge_takes(shown.takes.front(), model, other.take, other.model, making_of(options));
     if (shown.second_fits) {

@@ -19,7 +19,8 @@ struct ShowOptions {
   std::string name;             ///< of the object
   std::filesystem::path out;    ///< the store
   bool add = false;             ///< to the store that is there
-  std::optional<cv::Rect> box;  ///< of the object in the first frame, pixels; none = nearest to the middle
+  std::optional<cv::Rect> box;  ///< of the object in the first frame, pixels; none = nearest to `at`
+  std::optional<cv::Point> at;  ///< a place on it there; none = the middle
   std::filesystem::path keep;   ///< where model, views, pictures and report go; empty = nowhere
   bool go_on = false;           ///< teaches a poor model too
   bool teach = true;            ///< false: the model only, the store is left alone

@@ -49,6 +49,7 @@ cv::Mat draw_over_colour(const ViewedFrame& viewed, const ClassModels& models, c
                          const StreamView& stream) {
   cv::Mat picture = draw_overlay(viewed.frame, viewed.detections, viewed.poses, models);
   if (!settings.box.empty()) cv::rectangle(picture, settings.box, {255, 255, 255}, 1, cv::LINE_AA);
+  if (settings.at) cv::drawMarker(picture, *settings.at, {255, 255, 255}, cv::MARKER_CROSS, 15, 1, cv::LINE_AA);
   if (stream.state.teaching) draw_teaching(picture, *stream.state.teaching, viewed.frame);
   if (stream.state.world) draw_tracks(picture, *stream.state.world, viewed.frame);
   return picture;

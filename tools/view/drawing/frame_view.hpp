@@ -21,16 +21,17 @@ struct ViewedFrame {
 
 /// What the picture shows beside the overlay.
 struct FrameViewSettings {
-  float min_score = 0.0F;   ///< weaker detections and their poses are not drawn; 0: all that were sent
-  bool show_depth = true;   ///< depth, colour-mapped, to the right
-  bool show_world = false;  ///< there the world from above instead, where hs-track tells of it
-  bool show_3d = false;     ///< there the measured points, seen from elsewhere, instead (turned_view.hpp)
-  float depth_near = 0.4F;  ///< metres, red end of the colour map
-  float depth_far = 3.5F;   ///< metres, blue end; beyond it stays blue
-  bool show_keys = false;   ///< a line that names the window's keys
-  bool paused = false;      ///< said in that line
-  bool can_teach = false;   ///< that line names the key for it
-  cv::Rect box;             ///< that was drawn with the mouse, pixels of the colour image; empty = none
+  float min_score = 0.0F;       ///< weaker detections and their poses are not drawn; 0: all that were sent
+  bool show_depth = true;       ///< depth, colour-mapped, to the right
+  bool show_world = false;      ///< there the world from above instead, where hs-track tells of it
+  bool show_3d = false;         ///< there the measured points, seen from elsewhere, instead (turned_view.hpp)
+  float depth_near = 0.4F;      ///< metres, red end of the colour map
+  float depth_far = 3.5F;       ///< metres, blue end; beyond it stays blue
+  bool show_keys = false;       ///< a line that names the window's keys
+  bool paused = false;          ///< said in that line
+  bool can_teach = false;       ///< that line names the key for it
+  cv::Rect box;                 ///< that was drawn with the mouse, pixels of the colour image; empty = none
+  std::optional<cv::Point> at;  ///< or where it has clicked
 };
 
 /// What the panel below the pictures shows of the stream as a whole.

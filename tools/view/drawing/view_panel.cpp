@@ -97,7 +97,7 @@ void draw_keys(cv::Mat image, const FrameViewSettings& settings, bool several_ca
   draw_text(image,
             fmt::format("q end   space pause   d depth   3 3-D   w world   s save   + - score from {:.2f}{}{}",
                         settings.min_score, several_cameras ? "   c camera" : "",
-                        settings.can_teach ? "   t teach (mouse: a box)" : ""),
+                        settings.can_teach ? "   t teach (mouse: click or box)" : ""),
             {kMargin, baseline}, 0.45);
   if (settings.paused) draw_text(image, "paused", {std::max(image.cols - 70, 0), baseline}, 0.5, kWarning);
 }
