@@ -304,7 +304,9 @@ int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
   fmt::print("{}", describe(shown, verdict));
   if (!options.keep.empty()) keep_shown(shown, verdict, options.keep);
   if (!verdict.good && !options.go_on) {
-    telling.step(ShowState::kFailed, 1.0, fmt::format("poor: {}", verdict.reasons.front()));
+    telling.step(ShowState::kFailed, 1.0,
+                 fmt::format("poor: {}{}", verdict.reasons.front(),
+                             options.teach ? "; not taught (--go-on teaches it all the same)" : ""));
     return kPoor;
   }
   if (options.teach) teach_shown(options, shown, telling);

@@ -54,6 +54,14 @@ std::string span_text(const Take& take, const LostSpan& span) {
                      span.why);
 }
 
+/// Why it was seen from few sides, where that was not for want of frames.
+std::string unused_frames(const Take& take) {
+  constexpr double kMany = 0.3;
+  if (take.blurred + take.badly_exposed <= kMany * static_cast<double>(take.frames.size())) return {};
+  return fmt::format("; of {} frames {} were blurred and {} too dark or burnt out, which count for nothing",
+                     take.frames.size(), take.blurred, take.badly_exposed);
+}
+
 /// What speaks against a take.
 void judge_take(const Take& take, std::vector<std::string>& reasons) {
   constexpr int kNearlyRound = 300;
@@ -66,7 +74,8 @@ void judge_take(const Take& take, std::vector<std::string>& reasons) {
         "neither the camera nor the object was seen to move, expected a turn about it (a plain round "
         "object that turns by itself looks as if it stood still)");
   if (take.degrees_round < kNearlyRound)
-    reasons.push_back(fmt::format("too short: seen from {} degrees of the turn, expected all 360", take.degrees_round));
+    reasons.push_back(fmt::format("too short: seen from {} degrees of the turn, expected all 360{}", take.degrees_round,
+                                  unused_frames(take)));
   else if (take.degrees_round >= kRound && !take.gap)
     reasons.emplace_back(
         "it came round, and did not find its beginning again: nothing tells how it turned, or the way was lost");

@@ -60,6 +60,21 @@ TEST(Verdict, EachTakeIsJudged) {
                                       "the second take: only 5 keyframes show it"}));
 }
 
+TEST(Verdict, ATakeInTheDarkIsNotCalledShortWithoutSayingWhy) {
+  Shown shown = good_turntable();
+  shown.outline_overlap.reset();
+  shown.takes = {closed_turn()};
+  shown.takes[0].frames.resize(100);
+  shown.takes[0].degrees_round = 50;
+  shown.takes[0].blurred = 4;
+  shown.takes[0].badly_exposed = 80;
+  EXPECT_EQ(
+      judge(shown).reasons,
+      (std::vector<std::string>{
+          "too short: seen from 50 degrees of the turn, expected all 360; of 100 frames 4 were blurred and 80 too "
+          "dark or burnt out, which count for nothing"}));
+}
+
 TEST(Verdict, OfATurntableNothingIsSaidThatOnlyTrackingKnows) {
   Shown shown = good_turntable();
   shown.mesh = tetrahedron(0.1F);
