@@ -12,6 +12,7 @@
 
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 
 namespace houghstream::store {
 namespace {
@@ -102,6 +103,11 @@ void bring_back_old(const fs::path& store) {
           error.message());
 }
 
+void require_replaceable(const fs::path& store) {
+  require(may_be_replaced(store),
+          "{}: holds no store.json of an object store, expected one, or nothing yet: not replaced", store.string());
+}
+
 /// Both folders change places at once (Linux 3.15); false where the file system cannot.
 bool exchange(const fs::path& one, const fs::path& other) {
   return syscall(SYS_renameat2, AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
@@ -117,9 +123,14 @@ void bring_back_store(const fs::path& store) {
   bring_back_old(place);
 }
 
+void require_place_for_store(const fs::path& store) {
+  const fs::path place = place_of_store(store);
+  require_replaceable(place);
+  require_writable_folder(place.parent_path());
+}
+
 StoreBuild::StoreBuild(const fs::path& store) : store_(place_of_store(store)) {
-  require(may_be_replaced(store_),
-          "{}: holds no store.json of an object store, expected one, or nothing yet: not replaced", store_.string());
+  require_replaceable(store_);
   std::error_code error;
   fs::create_directories(store_.parent_path(), error);
   require(!error, "{}: cannot make this folder: {}", store_.parent_path().string(), error.message());

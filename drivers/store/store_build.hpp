@@ -28,6 +28,10 @@ class StoreBuild {
   int lock_ = -1;
 };
 
+/// Throws InputError where no store could be put: a folder of something else, a link to nothing, a place that takes no
+/// files. Asked before the work whose result is to go there; makes nothing, whoever works on the store.
+void require_place_for_store(const std::filesystem::path& store);
+
 /// On a file system that cannot exchange folders, a teaching that is interrupted in the wrong moment leaves no STORE,
 /// but the old one beside it: this one is put back into its place. Else nothing is done. For those who read a store
 /// before they change it. Throws InputError where another teaching works on it, or it cannot be moved.

@@ -187,6 +187,9 @@ TEST(StoreBuild, OneAtATimeAndNothingElseIsReplaced) {
   write_text(other / "holiday.jpg", "");
   expect_says(error_of([&] { StoreBuild build(other); }), {other.string(), "not replaced"});
   EXPECT_TRUE(fs::exists(other / "holiday.jpg"));
+  EXPECT_NO_THROW(require_place_for_store(folder)) << "whoever works on it";
+  expect_says(error_of([&] { require_place_for_store(other); }), {other.string(), "not replaced"});
+  expect_says(error_of([&] { require_place_for_store("/dev/null/store"); }), {"/dev/null", "cannot be a folder"});
 }
 
 TEST(StoreBuild, AStoreJsonOfAnybodyElseMakesNoStore) {

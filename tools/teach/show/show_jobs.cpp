@@ -107,6 +107,7 @@ void check_show_options(const ShowOptions& options) {
   if (!options.keep.empty()) require_keepable(options.keep);
   if (!options.teach) return;
   require(!options.out.empty(), "--out is missing, expected the store to teach into, or --no-teach");
+  store::require_place_for_store(options.out);
   if (!options.add) return;
   store::bring_back_store(options.out);
   const store::ObjectStore known = store::read_store(options.out);

@@ -14,6 +14,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 #include "tools/fuse/model_picture.hpp"
 #include "tools/teach/contact_sheet.hpp"
@@ -334,6 +335,7 @@ void require_keepable(const fs::path& folder) {
   const bool is_earlier = fs::exists(whole / "report.json") && fs::exists(whole / "camera_poses.csv");
   require(!fs::exists(whole) || (fs::is_directory(whole) && (fs::is_empty(whole) || is_earlier)),
           "{}: holds something else, expected a new folder or one of an earlier showing", folder.string());
+  require_writable_folder(whole.parent_path());
 }
 
 void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
@@ -349,8 +351,10 @@ void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& fold
     write_poses(shown, partial / "camera_poses.csv");
     write_json(report_json(shown, verdict), partial / "report.json");
     write_page(shown, verdict, partial);
-    fs::remove_all(whole);
+    const fs::path before = whole.parent_path() / fmt::format(".{}.before-{}", whole.filename().string(), getpid());
+    if (fs::exists(whole)) fs::rename(whole, before);
     fs::rename(partial, whole);
+    fs::remove_all(before);
   } catch (const std::exception& error) {
     std::error_code ignored;
     fs::remove_all(partial, ignored);

@@ -42,7 +42,7 @@ double second_of(const reconstruction::Take& take, int frame);
 std::string describe(const Shown& shown, const Verdict& verdict);
 
 /// Throws InputError where a folder holds something else than what was kept of an earlier showing, and would not be
-/// replaced.
+/// replaced, or could not be written.
 void require_keepable(const std::filesystem::path& folder);
 
 /// What was asked to be kept, in a folder that appears as a whole: model.ply, views/ (BOP: the keyframes with poses and

@@ -154,6 +154,16 @@ TEST(ShowJobs, AFolderThatHoldsSomethingElseIsRefusedBeforeTheTake) {
   EXPECT_EQ(line_of(options, frames).find(folder.string() + ": holds something else, expected a new folder"), 0U);
   EXPECT_EQ(taken, 0);
   EXPECT_TRUE(fs::exists(folder / "report.json"));
+  options.keep.clear();
+  options.teach = true;
+  options.out = folder;
+  EXPECT_EQ(line_of(options, frames).find(folder.string() + ": holds no store.json of an object store"), 0U);
+  options.out = "/dev/null/my.store";
+  EXPECT_EQ(line_of(options, frames).find("/dev/null: cannot be a folder to write to"), 0U);
+  options.teach = false;
+  options.keep = "/dev/null/kept";
+  EXPECT_EQ(line_of(options, frames).find("/dev/null: cannot be a folder to write to"), 0U);
+  EXPECT_EQ(taken, 0);
   fs::remove_all(folder);
 }
 
