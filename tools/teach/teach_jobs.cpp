@@ -257,8 +257,9 @@ void teach_meshes(const TeachOptions& options) {
   PracticeSettings practice = options.practice;
   practice.seed = options.seed;
   practice.threads = options.threads;
+  progress(fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt", practice.rooms));
   practise_all(models, new_ids, practice, forest, made);
-  progress(fmt::format("scores and qualities learnt in {} rooms", options.practice.rooms));
+  progress("scores and qualities learnt");
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
   write_store(made, models, forest);
   build.publish();
@@ -296,10 +297,11 @@ void practise_store(const fs::path& folder, const PracticeSettings& settings, co
   std::vector<NamedModel> models;
   keep(old, "", made, models);
   Forest forest = *old.forest;
+  progress(fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt", settings.rooms));
   practise_all(models, ids, settings, forest, made);
   write_store(made, models, forest);
   build.publish();
-  progress(fmt::format("scores and qualities learnt in {} rooms", settings.rooms));
+  progress("scores and qualities learnt");
 }
 
 }  // namespace houghstream::teach

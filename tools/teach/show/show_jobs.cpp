@@ -318,10 +318,10 @@ int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
 
 /// Says why where it fails.
 int told(const ShowOptions& options, ShowObserver* observer, const std::function<Shown(Telling&)>& show) {
-  check_show_options(options);
-  if (options.teach && !options.add) warn_of_replaced(options.out);
   Telling telling(options, observer);
   try {
+    check_show_options(options);
+    if (options.teach && !options.add) warn_of_replaced(options.out);
     return conclude(options, show(telling), telling);
   } catch (const std::exception& error) {
     telling.fail(error.what());

@@ -160,6 +160,9 @@ TEST(ShowJobs, AFolderThatHoldsSomethingElseIsRefusedBeforeTheTake) {
   EXPECT_EQ(line_of(options, frames).find(folder.string() + ": holds no store.json of an object store"), 0U);
   options.out = "/dev/null/my.store";
   EXPECT_EQ(line_of(options, frames).find("/dev/null: cannot be a folder to write to"), 0U);
+  Heard heard;
+  EXPECT_THROW(show_object(options, frames, {}, &heard), InputError);
+  EXPECT_EQ(heard.states, std::vector<ShowState>{ShowState::kFailed}) << "hs-view says it too";
   options.teach = false;
   options.keep = "/dev/null/kept";
   EXPECT_EQ(line_of(options, frames).find("/dev/null: cannot be a folder to write to"), 0U);
