@@ -1,12 +1,87 @@
 #include "pipeline/base/image_decoding.hpp"
 
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
+#include <vector>
 
 namespace houghstream {
+namespace {
+
+constexpr std::uint64_t kMostPixels = 64'000'000;
+constexpr int kMostScans = 64;
+constexpr std::array<std::uint8_t, 8> kPngStart = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+constexpr std::size_t kPngHeader = 24;  // up to the height
+
+std::uint64_t big_endian(const std::uint8_t* bytes, std::size_t size) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < size; ++i) value = value << 8U | bytes[i];
+  return value;
+}
+
+bool is_jpeg(const std::uint8_t* bytes, std::size_t size) {
+  return size >= 2 && bytes[0] == 0xFF && bytes[1] == 0xD8;
+}
+
+/// Calls `visit` with each marker of a JPEG and where the bytes behind it begin.
+template <typename Visit>
+void walk_jpeg(const std::uint8_t* jpeg, std::size_t size, const Visit& visit) {
+  std::size_t at = 2;  // behind the start of the image
+  while (at + 4 <= size) {
+    const std::uint8_t marker = jpeg[at + 1];
+    const bool is_data = jpeg[at] != 0xFF || marker == 0;
+    if (is_data || marker == 0xFF) {  // of a scan, or bytes that fill up
+      ++at;
+      continue;
+    }
+    constexpr std::uint8_t kEnd = 0xD9;
+    if (marker == kEnd) return;
+    constexpr std::uint8_t kTemporary = 0x01;
+    const bool is_alone = marker == kTemporary || (marker >= 0xD0 && marker <= 0xD7);  // without a length
+    visit(marker, at + 2);
+    at += is_alone ? 2 : 2 + static_cast<std::size_t>(big_endian(jpeg + at + 2, 2));
+  }
+}
+
+/// Of its largest frame; 0 where it has none.
+std::uint64_t jpeg_pixels(const std::uint8_t* jpeg, std::size_t size) {
+  std::uint64_t most = 0;
+  walk_jpeg(jpeg, size, [&](std::uint8_t marker, std::size_t at) {
+    const bool is_frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (is_frame && at + 7 <= size) most = std::max(most, big_endian(jpeg + at + 3, 2) * big_endian(jpeg + at + 5, 2));
+  });
+  return most;
+}
+
+/// What is of neither format is OpenCV's to judge.
+bool is_modest(const std::uint8_t* bytes, std::size_t size) {
+  if (is_jpeg(bytes, size))
+    return jpeg_pixels(bytes, size) <= kMostPixels && count_jpeg_scans(bytes, size) <= kMostScans;
+  if (size < kPngHeader || !std::equal(kPngStart.begin(), kPngStart.end(), bytes)) return true;
+  const std::uint64_t width = big_endian(bytes + 16, 4);
+  const std::uint64_t height = big_endian(bytes + 20, 4);
+  return width * height <= kMostPixels;
+}
+
+/// Of a JPEG all of it, of others what their header may have.
+std::vector<std::uint8_t> bytes_to_judge(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::vector<std::uint8_t> bytes(kPngHeader);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  if (is_jpeg(bytes.data(), bytes.size()))
+    bytes.insert(bytes.end(), std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  return bytes;
+}
+
+}  // namespace
 
 cv::Mat decode_image(const std::uint8_t* bytes, std::size_t size, int mode) {
-  if (size == 0 || size > static_cast<std::size_t>(std::numeric_limits<int>::max())) return {};
+  if (size == 0 || size > static_cast<std::size_t>(std::numeric_limits<int>::max()) || !is_modest(bytes, size))
+    return {};
   try {
     // The matrix borrows the bytes, and is read only.
     return cv::imdecode(cv::Mat(1, static_cast<int>(size), CV_8UC1, const_cast<std::uint8_t*>(bytes)), mode);
@@ -16,11 +91,20 @@ cv::Mat decode_image(const std::uint8_t* bytes, std::size_t size, int mode) {
 }
 
 cv::Mat decode_image_file(const std::filesystem::path& file, int mode) {
+  const std::vector<std::uint8_t> bytes = bytes_to_judge(file);
+  if (!is_modest(bytes.data(), bytes.size())) return {};
   try {
     return cv::imread(file.string(), mode);
   } catch (const cv::Exception&) {
     return {};
   }
+}
+
+int count_jpeg_scans(const std::uint8_t* jpeg, std::size_t size) {
+  constexpr std::uint8_t kScan = 0xDA;
+  int scans = 0;
+  walk_jpeg(jpeg, size, [&](std::uint8_t marker, std::size_t /*at*/) { scans += marker == kScan ? 1 : 0; });
+  return scans;
 }
 
 }  // namespace houghstream

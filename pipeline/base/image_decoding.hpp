@@ -7,9 +7,14 @@
 
 namespace houghstream {
 
-/// What OpenCV makes of an encoded image or an image file (`mode`: cv::IMREAD_*); empty where it cannot be decoded.
-/// OpenCV itself throws, in words that name no source, where there is nothing to decode or the image is too large.
+/// What OpenCV makes of an encoded image or an image file (`mode`: cv::IMREAD_*); empty where it cannot be decoded, and
+/// where a PNG or JPEG states more than 64 million pixels or has more than 64 scans: a small one may ask for gigabytes,
+/// or for minutes. OpenCV itself throws, in words that name no source, where there is nothing to decode or the image is
+/// too large.
 cv::Mat decode_image(const std::uint8_t* bytes, std::size_t size, int mode);
 cv::Mat decode_image_file(const std::filesystem::path& file, int mode);
+
+/// Scans of a JPEG (ITU-T T.81, annex B), as far as it can be walked through.
+int count_jpeg_scans(const std::uint8_t* jpeg, std::size_t size);
 
 }  // namespace houghstream

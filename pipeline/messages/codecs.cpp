@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/image_decoding.hpp"
 
 namespace houghstream {
 namespace {
@@ -32,24 +33,6 @@ void unzip_into(ByteView zipped, std::uint8_t* raw, std::size_t raw_size) {
   require(result != LIBDEFLATE_BAD_DATA, "zlib data of {} bytes is damaged or cut", zipped.size);
   require(result == LIBDEFLATE_SUCCESS, "zlib data of {} bytes unpacks to {} than the {} bytes expected", zipped.size,
           result == LIBDEFLATE_SHORT_OUTPUT ? "fewer" : "more", raw_size);
-}
-
-/// Scans of a JPEG (ITU-T T.81, annex B), as far as it can be walked through.
-int count_scans(ByteView jpeg) {
-  constexpr std::uint8_t kScan = 0xDA;
-  int scans = 0;
-  std::size_t at = 2;  // behind the start of the image
-  while (at + 4 <= jpeg.size) {
-    const std::uint8_t marker = jpeg.data[at + 1];
-    const bool is_data = jpeg.data[at] != 0xFF || marker == 0 || (marker >= 0xD0 && marker <= 0xD7);
-    if (is_data || marker == 0xFF) {  // of a scan, or bytes that fill up
-      ++at;
-      continue;
-    }
-    if (marker == kScan) ++scans;
-    at += 2 + std::size_t{jpeg.data[at + 2]} * 256 + jpeg.data[at + 3];
-  }
-  return scans;
 }
 
 }  // namespace
@@ -86,8 +69,8 @@ cv::Mat decode_jpeg(ByteView jpeg, int width, int height) {
   require(bad_header == 0, "JPEG of {} bytes cannot be read: {}", jpeg.size, tjGetErrorStr2(handle.get()));
   require(found_width == width && found_height == height, "JPEG of {}x{} pixels, the message says {}x{}", found_width,
           found_height, width, height);
-  require(count_scans(jpeg) <= kMaxScans, "JPEG of {} bytes with {} scans, expected at most {}", jpeg.size,
-          count_scans(jpeg), kMaxScans);
+  const int scans = count_jpeg_scans(jpeg.data, jpeg.size);
+  require(scans <= kMaxScans, "JPEG of {} bytes with {} scans, expected at most {}", jpeg.size, scans, kMaxScans);
   cv::Mat bgr(height, width, CV_8UC3);
   // A cut stream is only a warning to the decoder, which fills the rest with grey: made-up values.
   const int failed = tjDecompress2(handle.get(), jpeg.data, jpeg.size, bgr.data, width, static_cast<int>(bgr.step),

@@ -27,6 +27,19 @@ TEST(ImageDecoding, WhatCannotBeDecodedIsEmpty) {
   EXPECT_TRUE(decode_image(huge.data(), huge.size(), cv::IMREAD_UNCHANGED).empty());
 }
 
+// 8192x8192 pixels of one value are a PNG of 65 kB; OpenCV itself draws the line at a thousand million.
+TEST(ImageDecoding, MorePixelsThanAnyCameraHasAreNotDecoded) {
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", cv::Mat(8192, 8192, CV_8UC1, cv::Scalar(7)), png);
+  EXPECT_TRUE(decode_image(png.data(), png.size(), cv::IMREAD_UNCHANGED).empty());
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", cv::Mat(16, 16, CV_8UC3, cv::Scalar::all(90)), jpeg);
+  EXPECT_EQ(decode_image(jpeg.data(), jpeg.size(), cv::IMREAD_COLOR).size(), cv::Size(16, 16));
+  const std::vector<std::uint8_t> scan = {0xFF, 0xDA, 0, 8, 1, 1, 0, 1, 63, 0, 0x2B};
+  for (int i = 0; i < 70; ++i) jpeg.insert(jpeg.end() - 2, scan.begin(), scan.end());
+  EXPECT_TRUE(decode_image(jpeg.data(), jpeg.size(), cv::IMREAD_COLOR).empty());
+}
+
 TEST(ImageDecoding, SoItIsOfFiles) {
   const auto file = std::filesystem::temp_directory_path() / ("image_decoding_test." + std::to_string(getpid()));
   const std::vector<std::uint8_t> huge = png_of_width(0xFF);

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/image_decoding.hpp"
 #include "tests/pipeline/test_frame.hpp"
 
 namespace houghstream {
@@ -95,6 +96,15 @@ TEST(Codecs, AJpegOfManyScansIsRefusedBeforeItIsDecoded) {
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("17 scans"), std::string::npos) << error.what();
   }
+}
+
+// A marker without a length; who takes the first bytes behind it for one passes over scans that the decoder sees.
+TEST(Codecs, AMarkerHidesNoScans) {
+  std::vector<std::uint8_t> jpeg = with_scans(0);
+  const std::vector<std::uint8_t> hidden = {0xFF, 0x01, 0xFF, 0xDA, 0, 8, 1, 1, 0, 1, 63, 0, 0x2B};
+  for (int i = 0; i < kMaxScans; ++i) jpeg.insert(jpeg.end() - 2, hidden.begin(), hidden.end());
+  EXPECT_EQ(count_jpeg_scans(jpeg.data(), jpeg.size()), kMaxScans + 1);
+  EXPECT_THROW(decode_jpeg({jpeg.data(), jpeg.size()}, 16, 16), InputError);
 }
 
 }  // namespace
