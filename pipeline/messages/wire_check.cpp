@@ -15,8 +15,15 @@
 namespace houghstream {
 namespace {
 
-// LCM refuses larger messages itself (1 << 28).
-constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 28U;
+/// The longest message of a type. A frame of kMaxPixels has less, uncompressed and with rows filled up; LCM itself
+/// refuses what has more than 1 << 28.
+std::size_t most_bytes(std::int64_t fingerprint) {
+  if (fingerprint == images_t::getHash()) return kMostFrameBytes;
+  if (fingerprint == status_t::getHash()) return std::size_t{1} << 16U;
+  if (fingerprint == known_objects_t::getHash() || fingerprint == teaching_t::getHash()) return std::size_t{1} << 20U;
+  if (fingerprint == objects_t::getHash()) return std::size_t{1} << 22U;
+  return std::size_t{1} << 28U;
+}
 
 // Fewest bytes that an entry of a list can take on the wire: its numbers, and 5 bytes for an empty string.
 constexpr std::size_t kLeastMetadata = 5 + 4;
@@ -30,6 +37,21 @@ constexpr std::size_t kStatusNumbers = 4 + 4 + 5 * 8 + 3 * 4;
 constexpr std::size_t kKnownObject = 5 + 8;
 constexpr std::size_t kTeachingNumbers = 4 + 4 + 4 + 4 * 4 + 3 * 8 + 4 * 8;  // progress to quat
 constexpr std::size_t kSeenDirection = 3 * 4 + 1;
+
+/// What is kept, told and printed must not be as long as a message may be.
+std::string read_within(WireReader& reader, std::size_t most, const char* what) {
+  std::string text = reader.read_string();
+  require(text.size() <= most, "{}: {} of {} bytes, expected at most {}", reader.source(), what, text.size(), most);
+  return text;
+}
+
+std::string read_channel(WireReader& reader) {
+  return read_within(reader, channel::kMostBytes, "a channel");
+}
+
+void walk_name(WireReader& reader) {
+  read_within(reader, kLongestName, "a name");
+}
 
 void walk_image(WireReader& reader, FrameHeader& header) {
   reader.skip(8 + 4 * 4);  // utime, width, height, row_stride, pixelformat
@@ -52,18 +74,20 @@ FrameHeader walk_images(WireReader& reader) {
 }
 
 void walk_stages(WireReader& reader) {
-  for (std::size_t left = reader.read_count(kLeastStage); left > 0; --left) {
-    reader.read_string();
+  const std::size_t stages = reader.read_count(kLeastStage);
+  require(stages <= kMostStages, "{}: {} stages, expected at most {}", reader.source(), stages, kMostStages);
+  for (std::size_t left = stages; left > 0; --left) {
+    walk_name(reader);
     reader.skip(8);
   }
 }
 
 void walk_detections(WireReader& reader) {
   reader.skip(8);
-  reader.read_string();
+  read_channel(reader);
   for (std::size_t left = reader.read_count(4 + 5 + kDetectionNumbers + 4); left > 0; --left) {
     reader.skip(4);
-    reader.read_string();
+    walk_name(reader);
     reader.skip(kDetectionNumbers);
     reader.skip(kVote * reader.read_count(kVote));
   }
@@ -72,10 +96,10 @@ void walk_detections(WireReader& reader) {
 
 void walk_poses(WireReader& reader) {
   reader.skip(8);
-  reader.read_string();
+  read_channel(reader);
   for (std::size_t left = reader.read_count(4 + 5 + kPoseNumbers); left > 0; --left) {
     reader.skip(4);
-    reader.read_string();
+    walk_name(reader);
     reader.skip(kPoseNumbers);
   }
   walk_stages(reader);
@@ -83,14 +107,14 @@ void walk_poses(WireReader& reader) {
 
 void walk_objects(WireReader& reader) {
   reader.skip(8);
-  reader.read_string();
-  reader.read_string();
+  read_channel(reader);
+  read_channel(reader);  // the world, which may have a camera's name
   reader.skip(4 + 3 * 8 + 4 * 8);
   for (std::size_t left = reader.read_count(8 + 4 + 5 + kTrackNumbers + 5 + 5); left > 0; --left) {
     reader.skip(8 + 4);
-    reader.read_string();
+    walk_name(reader);
     reader.skip(kTrackNumbers);
-    reader.read_string();
+    read_channel(reader);
     reader.read_string();
   }
   walk_stages(reader);
@@ -98,27 +122,27 @@ void walk_objects(WireReader& reader) {
 
 void walk_status(WireReader& reader) {
   reader.skip(8);
-  reader.read_string();
+  walk_name(reader);
   reader.skip(kStatusNumbers);
   reader.read_string();
 }
 
 void walk_known_objects(WireReader& reader) {
   reader.skip(8);
-  reader.read_string();
+  walk_name(reader);
   reader.skip(4);
   reader.read_string();
   reader.skip(8);
   const std::size_t objects = reader.read_count(kKnownObject);
-  for (std::size_t left = objects; left > 0; --left) reader.read_string();
+  for (std::size_t left = objects; left > 0; --left) walk_name(reader);
   reader.skip(8 * objects);
   reader.read_string();
 }
 
 void walk_teaching(WireReader& reader) {
   reader.skip(8);
-  reader.read_string();
-  reader.read_string();
+  read_channel(reader);
+  walk_name(reader);
   reader.skip(1);
   reader.read_string();
   reader.skip(kTeachingNumbers);
@@ -126,7 +150,8 @@ void walk_teaching(WireReader& reader) {
 }
 
 WireReader open_message(ByteView bytes, std::int64_t fingerprint, const std::string& type) {
-  require(bytes.size <= kMaxMessageBytes, "{}: {} bytes, expected at most {}", type, bytes.size, kMaxMessageBytes);
+  const std::size_t most = most_bytes(fingerprint);
+  require(bytes.size <= most, "{}: {} bytes, expected at most {}", type, bytes.size, most);
   WireReader reader(bytes, type);
   const std::int64_t found = reader.read_int64();
   require(found == fingerprint, "message of fingerprint {:016x}, expected {} ({:016x})",
@@ -162,7 +187,7 @@ FrameId read_result_frame(ByteView bytes, const std::string& source) {
           static_cast<std::uint64_t>(fingerprint));
   FrameId frame;
   frame.utime = reader.read_int64();
-  frame.channel = reader.read_string();
+  frame.channel = read_channel(reader);
   return frame;
 }
 

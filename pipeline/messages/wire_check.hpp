@@ -16,6 +16,14 @@ namespace houghstream {
 /// A unit vector or quaternion in single precision, rounded by another sender, is this close to length 1.
 inline constexpr double kUnitTolerance = 1e-3;
 
+/// A frame of 4K (kMaxPixels), uncompressed, has less. Whoever keeps encoded frames can count on it.
+inline constexpr std::size_t kMostFrameBytes = std::size_t{64} << 20U;
+
+/// Stage times of a result, and the bytes that the name of a class, a stage or a process may have: more, or longer
+/// ones, are refused.
+inline constexpr std::size_t kMostStages = 256;
+inline constexpr std::size_t kLongestName = 255;
+
 /// What names a frame, read without decoding its images.
 struct FrameHeader {
   std::int64_t utime = 0;
@@ -39,7 +47,8 @@ bool is_frame_message(ByteView bytes);
 /// A frame counter, or a run, as it stands in the metadata, decimal text. Throws InputError.
 std::int64_t parse_sequence(ByteView text);
 
-/// Throws InputError unless the bytes are one whole message of the type with this fingerprint. Types known here:
+/// Throws InputError unless the bytes are one whole message of the type with this fingerprint, no larger than one of it
+/// may be. Types known here:
 /// images_t, detections_t, object_poses_t, objects_t, status_t, known_objects_t, teaching_t, rigid_transform_t.
 void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type);
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <houghstream/status_t.hpp>
+
 #include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
 
@@ -106,6 +108,54 @@ TEST(WireCheck, DamagedResultsNeverCrash) {
       continue;  // refusing is right; anything else thrown, or a crash, is not
     }
   }
+}
+
+/// What the check says of a message; empty where it passes.
+template <typename Message>
+std::string fault_of(const Message& message) {
+  const std::vector<std::uint8_t> bytes = encode_message(message);
+  try {
+    check_wire(view_of(bytes), Message::getHash(), Message::getTypeName());
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(WireCheck, NamesAndListsThatAreKeptAreNotAsLongAsMessages) {
+  Detection detection;
+  detection.class_name = std::string(kLongestName, 'x');
+  Detections detections;
+  detections.frame = {std::string(999, 'C'), 7};
+  detections.detections = {detection};
+  detections.stages.assign(kMostStages, {"detect.leaves", 3});
+  EXPECT_EQ(fault_of(to_message(detections)), "");
+
+  Detections longer = detections;
+  longer.frame.channel += 'C';
+  EXPECT_NE(fault_of(to_message(longer)).find("a channel of 1000 bytes"), std::string::npos);
+  const std::vector<std::uint8_t> bytes = encode_message(to_message(longer));
+  EXPECT_THROW(read_result_frame(view_of(bytes), "test"), InputError);
+  longer = detections;
+  longer.detections[0].class_name += 'x';
+  EXPECT_NE(fault_of(to_message(longer)).find("a name of 256 bytes"), std::string::npos);
+  longer = detections;
+  longer.stages.push_back({"detect.more", 1});
+  EXPECT_NE(fault_of(to_message(longer)).find("257 stages"), std::string::npos);
+
+  status_t status{};
+  status.process = "hs-detect";
+  status.last_error = std::string(70000, 'e');
+  EXPECT_NE(fault_of(status).find("expected at most 65536"), std::string::npos);
+}
+
+TEST(WireCheck, AFrameOfMoreBytesThanAnyImageHasIsRefused) {
+  images_t message = to_message(make_test_frame(5), WireFormat{}, 41);
+  message.images[0].metadata[0].value.assign(kMostFrameBytes, 0);
+  message.images[0].metadata[0].n = static_cast<std::int32_t>(kMostFrameBytes);
+  const std::vector<std::uint8_t> bytes = encode_message(message);
+  EXPECT_THROW(read_frame_header(view_of(bytes)), InputError);
+  EXPECT_THROW(decode_message<images_t>(view_of(bytes)), InputError);
 }
 
 }  // namespace
