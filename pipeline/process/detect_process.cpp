@@ -6,6 +6,7 @@
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/process/look_budget.hpp"
 #include "pipeline/process/newest_of_each.hpp"
+#include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/process_loop.hpp"
 
 namespace houghstream {
@@ -40,6 +41,7 @@ class Reception {
 
   /// Of what is followed: where something is lost, the camera is looked at soon.
   void receive_poses(const Arrival& arrival) {
+    PairInbox::require_size(arrival.bytes.size);
     const ObjectPoses poses = poses_from_message(decode_message<object_poses_t>(arrival.bytes));
     for (const ObjectPose& pose : poses.poses) {
       const bool is_lost = pose.status != PoseStatus::kValid && pose.status != PoseStatus::kOccluded;
@@ -52,8 +54,8 @@ class Reception {
   bool put(const Arrival& arrival, FrameOrder order) {
     const ByteView& bytes = arrival.bytes;
     WaitingFrame frame{arrival.channel, {bytes.data, bytes.data + bytes.size}, arrival.time};
-    return order == FrameOrder::kLate ? newest_.put_late(arrival.channel, std::move(frame))
-                                      : newest_.put(arrival.channel, std::move(frame));
+    return order == FrameOrder::kLate ? newest_.put_late(arrival.channel, std::move(frame), bytes.size)
+                                      : newest_.put(arrival.channel, std::move(frame), bytes.size);
   }
 
   bool is_log_;

@@ -98,8 +98,9 @@ class FollowProcess {
         return std::vector<std::uint8_t>(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
       };
       EncodedFrame frame{id, copy(), arrival.time};
-      const bool passed_over = order == FrameOrder::kLate ? frames_.put_late(arrival.channel, std::move(frame))
-                                                          : frames_.put(arrival.channel, std::move(frame));
+      const std::size_t bytes = arrival.bytes.size;
+      const bool passed_over = order == FrameOrder::kLate ? frames_.put_late(arrival.channel, std::move(frame), bytes)
+                                                          : frames_.put(arrival.channel, std::move(frame), bytes);
       if (passed_over) status_.count_skipped(1);
       detections_.put_frame(id, copy());
     } catch (const InputError& error) {

@@ -19,14 +19,20 @@ class NewestOfEach {
  public:
   /// Channels whose items wait at once; the item of one more is passed over. A sender of rubbish may make up channels.
   static constexpr std::size_t kChannels = 64;
+  /// Bytes of those that wait at once, as they are stated; one alone may have more.
+  static constexpr std::size_t kBytes = std::size_t{192} << 20U;
 
   /// Returns whether an item that nobody has taken was passed over. The newer one of a channel takes its turn.
-  bool put(const std::string& channel, T item) {
+  bool put(const std::string& channel, T item, std::size_t bytes = 0) {
     bool is_first = false;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (is_full_for(channel)) return true;
-      is_first = items_.insert_or_assign(channel, std::move(item)).second;
+      if (is_full_for(channel, bytes)) return true;
+      const auto known = items_.find(channel);
+      is_first = known == items_.end();
+      if (!is_first) bytes_ -= known->second.bytes;
+      bytes_ += bytes;
+      items_.insert_or_assign(channel, Waiting{std::move(item), bytes});
       if (is_first) turns_.push_back(channel);
     }
     filled_.notify_one();
@@ -34,10 +40,11 @@ class NewestOfEach {
   }
 
   /// An item that newer ones have overtaken: it is taken where none waits. Returns whether it was passed over.
-  bool put_late(const std::string& channel, T item) {
+  bool put_late(const std::string& channel, T item, std::size_t bytes = 0) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (is_full_for(channel) || !items_.emplace(channel, std::move(item)).second) return true;
+      if (is_full_for(channel, bytes) || !items_.emplace(channel, Waiting{std::move(item), bytes}).second) return true;
+      bytes_ += bytes;
       turns_.push_back(channel);
     }
     filled_.notify_one();
@@ -48,9 +55,10 @@ class NewestOfEach {
   std::optional<T> take(std::chrono::milliseconds timeout) {
     std::unique_lock<std::mutex> lock(mutex_);
     if (!filled_.wait_for(lock, timeout, [this] { return !turns_.empty(); })) return std::nullopt;
-    std::optional<T> item = std::move(items_.extract(turns_.front()).mapped());
+    Waiting taken = std::move(items_.extract(turns_.front()).mapped());
     turns_.pop_front();
-    return item;
+    bytes_ -= taken.bytes;
+    return std::move(taken.item);
   }
 
   /// Items that nobody has taken.
@@ -60,13 +68,23 @@ class NewestOfEach {
   }
 
  private:
-  bool is_full_for(const std::string& channel) const {
-    return items_.size() >= kChannels && items_.count(channel) == 0;
+  struct Waiting {
+    T item;
+    std::size_t bytes = 0;
+  };
+
+  bool is_full_for(const std::string& channel, std::size_t bytes) const {
+    const auto known = items_.find(channel);
+    const bool is_known = known != items_.end();
+    if (!is_known && items_.size() >= kChannels) return true;
+    const std::size_t others = items_.size() - (is_known ? 1 : 0);
+    return others > 0 && bytes_ - (is_known ? known->second.bytes : 0) + bytes > kBytes;
   }
 
   mutable std::mutex mutex_;
   std::condition_variable filled_;
-  std::map<std::string, T> items_;
+  std::map<std::string, Waiting> items_;
+  std::size_t bytes_ = 0;
   std::deque<std::string> turns_;  // channels with an item, the longest waiting first
 };
 

@@ -33,8 +33,10 @@ void PairInbox::put_detections(const FrameId& id, std::vector<std::uint8_t> byte
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     detectors_.note_result(id);
+    waiting_bytes_ += bytes.size();
     camera.waiting.push_back({id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen});
     drop_hopeless(camera);
+    keep_waiting_within_bytes();
   }
   changed_.notify_one();
 }
@@ -59,6 +61,15 @@ void PairInbox::keep_within_bytes() {
     }
     if (most->frames.size() < 2) return;
     forget_oldest(*most);
+  }
+}
+
+void PairInbox::keep_waiting_within_bytes() {
+  while (waiting_bytes_ > kAllWaitingBytes) {
+    const auto most = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
+      return a.second.waiting.size() < b.second.waiting.size();
+    });
+    give_up_first(most->second);
   }
 }
 
@@ -100,6 +111,7 @@ void PairInbox::give_up_first(Camera& camera) {
   } else {
     ++dropped_.skipped;
   }
+  waiting_bytes_ -= camera.waiting.front().bytes.size();
   camera.waiting.pop_front();
 }
 
@@ -143,6 +155,7 @@ void PairInbox::pass_over_older(const std::string& channel, Camera& camera) {
   }
   if (left > 0) return;
   dropped_.skipped += oldest - camera.waiting.begin();
+  for (auto it = camera.waiting.begin(); it != oldest; ++it) waiting_bytes_ -= it->bytes.size();
   camera.waiting.erase(camera.waiting.begin(), oldest);
 }
 
@@ -158,6 +171,7 @@ void PairInbox::drop_hopeless(Camera& camera) {
 PairedMessages PairInbox::take_pair(Camera& camera) {
   const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
   if (chosen->id == camera.frames.back().id) camera.fresh = false;
+  waiting_bytes_ -= chosen->bytes.size();
   PairedMessages pair{chosen->id, camera.find_frame(chosen->id)->bytes, std::move(chosen->bytes), chosen->arrival};
   camera.turn = ++turns_;
   camera.waiting.erase(chosen);

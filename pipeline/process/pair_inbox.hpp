@@ -42,6 +42,8 @@ class PairInbox {
   /// detections have so many bytes) are refused.
   static constexpr std::size_t kWaiting = 128;
   static constexpr std::size_t kWaitingBytes = std::size_t{1} << 20U;
+  /// Of the detections of all cameras that wait; where there are more, the camera with the most gives up its oldest.
+  static constexpr std::size_t kAllWaitingBytes = std::size_t{128} << 20U;
   /// Frames on more channels are refused: a sender of rubbish may make up channels without end.
   static constexpr std::size_t kCameras = 64;
   /// Detections whose frame is not here wait for this many further frames of the camera, then are given up.
@@ -99,6 +101,7 @@ class PairInbox {
   Camera& camera_of(const std::string& channel);
   void forget_oldest(Camera& camera);
   void keep_within_bytes();
+  void keep_waiting_within_bytes();
   Camera* next_camera();
   void pass_over_older(const std::string& channel, Camera& camera);
   void give_up_first(Camera& camera);
@@ -112,7 +115,8 @@ class PairInbox {
   std::condition_variable changed_;
   std::map<std::string, Camera> cameras_;  // by channel
   DetectorCount detectors_;
-  std::size_t frame_bytes_ = 0;  // of all cameras
+  std::size_t frame_bytes_ = 0;    // of all cameras
+  std::size_t waiting_bytes_ = 0;  // of their detections
   std::int64_t arrivals_ = 0;
   std::int64_t turns_ = 0;
   Dropped dropped_;

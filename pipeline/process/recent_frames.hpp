@@ -18,11 +18,16 @@ class RecentFrames {
 
   /// A decoded frame has some megabytes, and a sender of rubbish may make up channels without end.
   static constexpr std::size_t kFrames = 12;
+  static constexpr std::size_t kBytes = std::size_t{192} << 20U;  ///< of their images; the newest stays in any case
 
   void keep(Decoded frame) {
     const std::lock_guard<std::mutex> lock(mutex_);
+    bytes_ += bytes_of(frame->frame);
     frames_.push_back(std::move(frame));
-    if (frames_.size() > kFrames) frames_.pop_front();
+    while (frames_.size() > kFrames || (frames_.size() > 1 && bytes_ > kBytes)) {
+      bytes_ -= bytes_of(frames_.front()->frame);
+      frames_.pop_front();
+    }
   }
 
   /// The newest of that name; null where it is not there any more.
@@ -34,8 +39,13 @@ class RecentFrames {
   }
 
  private:
+  static std::size_t bytes_of(const RgbdFrame& frame) {
+    return frame.colour.total() * frame.colour.elemSize() + frame.depth.total() * frame.depth.elemSize();
+  }
+
   mutable std::mutex mutex_;
   std::deque<Decoded> frames_;
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace houghstream

@@ -70,5 +70,19 @@ TEST(NewestOfEach, HoldsAFewChannelsOnly) {
   EXPECT_EQ(slot.waiting(), NewestOfEach<int>::kChannels);
 }
 
+TEST(NewestOfEach, LargeItemsOfManyChannelsAreKeptWithinABound) {
+  constexpr std::size_t kBytes = NewestOfEach<int>::kBytes;
+  NewestOfEach<int> slots;
+  EXPECT_FALSE(slots.put("A", 1, 2 * kBytes)) << "one alone may be as large as it is";
+  EXPECT_TRUE(slots.put("B", 2, 1));
+  EXPECT_TRUE(slots.put("A", 3, kBytes - 1)) << "the one before gives way";
+  EXPECT_FALSE(slots.put("B", 4, 1));
+  EXPECT_TRUE(slots.put_late("C", 5, 1));
+  EXPECT_EQ(slots.take(milliseconds(0)), 3);
+  EXPECT_FALSE(slots.put_late("C", 6, kBytes - 1));
+  EXPECT_EQ(slots.take(milliseconds(0)), 4);
+  EXPECT_EQ(slots.take(milliseconds(0)), 6);
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -217,5 +217,18 @@ TEST(PairInbox, ListensToAFewCamerasOnly) {
   EXPECT_NO_THROW(inbox.put_frame({"0", 2}, {1}));
 }
 
+TEST(PairInbox, LargeDetectionsOfManyCamerasAreKeptWithinABound) {
+  PairInbox inbox(false);
+  constexpr int kCameras = 3;
+  for (int i = 0; i < 60; ++i) {
+    for (int camera = 0; camera < kCameras; ++camera)
+      inbox.put_detections({std::to_string(camera), i}, std::vector<std::uint8_t>(PairInbox::kWaitingBytes));
+  }
+  constexpr std::size_t kMost = PairInbox::kAllWaitingBytes / PairInbox::kWaitingBytes;
+  EXPECT_EQ(inbox.take_dropped().without_frame.size(), kCameras * 60 - kMost);
+  for (int camera = 0; camera < kCameras; ++camera) inbox.put_frame({std::to_string(camera), 59}, {1});
+  for (int camera = 0; camera < kCameras; ++camera) EXPECT_TRUE(inbox.take(kNow).has_value());
+}
+
 }  // namespace
 }  // namespace houghstream

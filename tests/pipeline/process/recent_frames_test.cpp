@@ -33,5 +33,19 @@ TEST(RecentFrames, AreFewHoweverManyCamerasThereAre) {
   EXPECT_NE(frames.find({"1", 1}), nullptr);
 }
 
+TEST(RecentFrames, LargeOnesAreFewer) {
+  const cv::Mat large(3840, 2160, CV_32FC1);  // 33 MB, of which all have the same
+  RecentFrames frames;
+  for (std::int64_t i = 0; i < 8; ++i) {
+    DecodedFrame frame;
+    frame.frame.id = {"LEFT", i};
+    frame.frame.depth = large;
+    frames.keep(std::make_shared<const DecodedFrame>(std::move(frame)));
+  }
+  EXPECT_EQ(frames.find({"LEFT", 1}), nullptr);
+  EXPECT_NE(frames.find({"LEFT", 7}), nullptr);
+  EXPECT_NE(frames.find({"LEFT", 3}), nullptr);
+}
+
 }  // namespace
 }  // namespace houghstream
