@@ -61,7 +61,8 @@ std::size_t SequenceCount::slot(std::int64_t number) {
 }
 
 bool SequenceCount::is_repeated(const Seen& seen, const Seen& frame) {
-  return seen.number == frame.number && seen.utime == frame.utime && frame.arrival_us - seen.arrival_us <= kRepeatUs;
+  return seen.number == frame.number && seen.utime == frame.utime &&
+         microseconds_between(seen.arrival_us, frame.arrival_us) <= kRepeatUs;
 }
 
 /// Whether the number lies close to the newest one, and no other frame has had it.

@@ -15,7 +15,12 @@ namespace {
 
 constexpr std::chrono::seconds kPeriod(1);
 constexpr std::size_t kMostSources = 256;          // a sender of rubbish may make up channels without end
+constexpr std::size_t kLongestReason = 1000;       // bytes: it may quote what somebody else has sent
 constexpr std::chrono::seconds kLatencyWindow(5);  // at 30 Hz enough frames for a 99th percentile
+
+std::string shortened(const std::string& reason) {
+  return reason.size() <= kLongestReason ? reason : reason.substr(0, kLongestReason) + "...";
+}
 
 }  // namespace
 
@@ -67,13 +72,13 @@ void StatusReporter::note_bad_message(const std::string& reason) {
 }
 
 void StatusReporter::complain(const std::string& kind, const std::string& reason) {
-  last_error_ = reason;
-  if (const auto line = complaints_.admit(kind, reason, Clock::now())) log_line(LogLevel::kWarning, *line);
+  last_error_ = shortened(reason);
+  if (const auto line = complaints_.admit(kind, last_error_, Clock::now())) log_line(LogLevel::kWarning, *line);
 }
 
 void StatusReporter::remember_error(const std::string& reason) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  last_error_ = reason;
+  last_error_ = shortened(reason);
 }
 
 status_t StatusReporter::message() const {

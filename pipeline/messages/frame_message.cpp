@@ -166,6 +166,7 @@ std::vector<StageTime> stages_of(const images_t& message) {
     require(stage.size() <= kLongestName, "metadata '{}' names a stage of {} bytes, expected at most {}",
             metadata::kStages, stage.size(), kLongestName);
     stages.push_back({std::move(stage), reader.read_int64()});
+    check_stage_time(stages.back().duration_us, metadata::kStages);
   }
   return stages;
 }

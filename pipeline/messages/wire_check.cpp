@@ -78,7 +78,7 @@ void walk_stages(WireReader& reader) {
   require(stages <= kMostStages, "{}: {} stages, expected at most {}", reader.source(), stages, kMostStages);
   for (std::size_t left = stages; left > 0; --left) {
     walk_name(reader);
-    reader.skip(8);
+    check_stage_time(reader.read_int64(), reader.source());
   }
 }
 
@@ -203,6 +203,12 @@ std::int64_t parse_sequence(ByteView text) {
   require(error == std::errc() && stop == end && sequence >= 0 && text.size == shown.size(),
           "images_t: frame counter '{}', expected a decimal number from 0", shown);
   return sequence;
+}
+
+void check_stage_time(std::int64_t duration_us, const std::string& source) {
+  constexpr std::int64_t kLongestUs = 1'000'000'000'000;  // eleven days: times are added up
+  require(duration_us >= -kLongestUs && duration_us <= kLongestUs, "{}: a stage of {} us, expected less than {}",
+          source, duration_us, kLongestUs);
 }
 
 void check_wire(ByteView bytes, std::int64_t fingerprint, const std::string& type) {

@@ -47,6 +47,9 @@ bool is_frame_message(ByteView bytes);
 /// A frame counter, or a run, as it stands in the metadata, decimal text. Throws InputError.
 std::int64_t parse_sequence(ByteView text);
 
+/// Throws InputError for the time of a stage that is absurd.
+void check_stage_time(std::int64_t duration_us, const std::string& source);
+
 /// Throws InputError unless the bytes are one whole message of the type with this fingerprint, no larger than one of it
 /// may be. Types known here:
 /// images_t, detections_t, object_poses_t, objects_t, status_t, known_objects_t, teaching_t, rigid_transform_t.

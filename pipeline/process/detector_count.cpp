@@ -6,6 +6,7 @@ namespace houghstream {
 
 void DetectorCount::note_result(const FrameId& frame) {
   constexpr std::size_t kFrames = 16;
+  if (cameras_.size() >= kCameras && cameras_.count(frame.channel) == 0) return;
   std::deque<Frame>& frames = cameras_[frame.channel];
   const auto known = std::find_if(frames.begin(), frames.end(), [&](const Frame& f) { return f.utime == frame.utime; });
   if (known != frames.end()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -13,6 +14,9 @@ namespace houghstream {
 /// detector. Not thread-safe.
 class DetectorCount {
  public:
+  /// Cameras whose results are counted; of a further one nothing is known. Results may name any camera.
+  static constexpr std::size_t kCameras = 64;
+
   void note_result(const FrameId& frame);
 
   /// The frame has come again (a log that is replayed): results of it are counted anew.

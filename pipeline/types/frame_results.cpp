@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -88,6 +90,8 @@ void FrameResults::add(Detections detections) {
   if (same != results_.end()) {
     same->detections = std::move(detections);
   } else {
+    require(results_.size() < kMost, "frame {}: more than {} detections_t, expected one of each detector",
+            to_string(detections.frame), kMost);
     results_.push_back({std::move(detections), std::nullopt});
   }
   unmatched_.erase(
@@ -100,7 +104,10 @@ void FrameResults::add(ObjectPoses poses) {
     followed_ = std::move(poses);
     return;
   }
-  if (!place(poses)) unmatched_.push_back(std::move(poses));
+  if (place(poses)) return;
+  require(unmatched_.size() < kMost, "frame {}: more than {} object_poses_t of no detections", to_string(poses.frame),
+          kMost);
+  unmatched_.push_back(std::move(poses));
 }
 
 // Where several results may be meant: one without poses before one that has some, one of equal scores before others.

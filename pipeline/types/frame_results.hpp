@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -28,7 +29,12 @@ bool are_followed(const ObjectPoses& poses);
 /// objects: each result stands by itself, with its own poses. Results and poses may come in any order.
 class FrameResults {
  public:
-  /// One that finds the very same objects as an earlier one takes its place: it is a log that is played again.
+  /// Results of one frame, and poses of none of them, that are kept: nobody has so many detectors, and each new one is
+  /// compared with all.
+  static constexpr std::size_t kMost = 64;
+
+  /// One that finds the very same objects as an earlier one takes its place: it is a log that is played again. Throws
+  /// InputError for one too many.
   void add(Detections detections);
   void add(ObjectPoses poses);
 

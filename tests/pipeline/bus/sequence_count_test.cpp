@@ -154,6 +154,15 @@ TEST(SequenceCount, IsExactWhereForgeriesLieCloseBy) {
   }
 }
 
+// A damaged log's events may be dated anyhow.
+TEST(SequenceCount, ArrivalsMayBeAsFarApartAsNumbersCanTell) {
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  SequenceCount count;
+  EXPECT_EQ(count.note({5, 1, 0}, kFirst), FrameOrder::kNext);
+  EXPECT_NE(count.note({5, 1, 0}, kLast), FrameOrder::kDuplicate);
+}
+
 TEST(RepeatedMessages, AreTheSameBytesOfTheSameFrameSoonAfter) {
   RepeatedMessages repeats;
   const std::vector<std::uint8_t> a = {1, 2, 3};

@@ -101,5 +101,13 @@ TEST(StatusReporter, ABusThatDoesNotTakeItIsToldAndSurvived) {
   EXPECT_THROW(status.publish(bus), InputError);
 }
 
+TEST(StatusReporter, AnErrorThatQuotesAMessageIsCut) {
+  StatusReporter status("test");
+  status.count_refused(std::string(100'000, 'x'));
+  EXPECT_EQ(status.message().last_error, std::string(1000, 'x') + "...");
+  status.remember_error(std::string(100'000, 'y'));
+  EXPECT_EQ(status.message().last_error, std::string(1000, 'y') + "...");
+}
+
 }  // namespace
 }  // namespace houghstream

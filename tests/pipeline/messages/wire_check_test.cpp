@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <houghstream/status_t.hpp>
+#include <limits>
 
 #include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
@@ -142,6 +143,8 @@ TEST(WireCheck, NamesAndListsThatAreKeptAreNotAsLongAsMessages) {
   longer = detections;
   longer.stages.push_back({"detect.more", 1});
   EXPECT_NE(fault_of(to_message(longer)).find("257 stages"), std::string::npos);
+  longer.stages = {{"detect.leaves", std::numeric_limits<std::int64_t>::max()}};
+  EXPECT_NE(fault_of(to_message(longer)).find("a stage of 9223372036854775807 us"), std::string::npos);
 
   status_t status{};
   status.process = "hs-detect";

@@ -28,5 +28,16 @@ TEST(DetectorCount, AFrameThatComesAgainIsCountedAnew) {
   EXPECT_EQ(detectors.of("LEFT"), 1);
 }
 
+TEST(DetectorCount, RemembersAFewCamerasOnly) {
+  DetectorCount detectors;
+  for (std::size_t i = 0; i < DetectorCount::kCameras; ++i) detectors.note_result({std::to_string(i), 1});
+  for (int twice = 0; twice < 2; ++twice) {
+    detectors.note_result({"one more", 1});
+    detectors.note_result({"0", 1});
+  }
+  EXPECT_EQ(detectors.of("one more"), 1);
+  EXPECT_EQ(detectors.of("0"), 3);
+}
+
 }  // namespace
 }  // namespace houghstream

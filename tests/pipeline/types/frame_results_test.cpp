@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -140,6 +142,17 @@ TEST(FrameResults, OtherPosesAnswerNothing) {
   EXPECT_FALSE(answers(other_frame, kBowls));
   EXPECT_FALSE(answers(no_such_place, kBowls));
   EXPECT_FALSE(answers(poses_of(kCan, 0), kBowls));
+}
+
+TEST(FrameResults, MoreThanAnybodysDetectorsAreRefused) {
+  FrameResults results;
+  for (std::size_t i = 0; i < FrameResults::kMost; ++i)
+    results.add(Detections{kFrame, {found("can", static_cast<float>(i))}, {}});
+  EXPECT_NO_THROW(results.add(Detections{kFrame, {found("can", 3.0F)}, {}})) << "played again";
+  EXPECT_THROW(results.add(kBowls), InputError);
+  FrameResults early;
+  for (std::size_t i = 0; i < FrameResults::kMost; ++i) early.add(poses_of(kCan, 1));
+  EXPECT_THROW(early.add(poses_of(kCan, 1)), InputError);
 }
 
 }  // namespace
