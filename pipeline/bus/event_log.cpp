@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::int32_t kSync = static_cast<std::int32_t>(0xEDA1DA01U);
 constexpr std::size_t kHeaderBytes = 28;
+constexpr std::uint32_t kMostData = 1U << 28U;  // LCM sends no more
 
 }  // namespace
 
@@ -95,6 +96,8 @@ LogReader::Header LogReader::read_header() {
           channel::kMostBytes);
   const std::uint64_t event_bytes = kHeaderBytes + std::uint64_t{header.channel_bytes} + header.data_bytes;
   require(event_bytes <= left, "{}: cut in event {}: {} of its {} bytes are there", file_, events_, left, event_bytes);
+  require(header.data_bytes <= kMostData, "{}: event {} has a message of {} bytes, expected at most {}", file_, events_,
+          header.data_bytes, kMostData);
   return header;
 }
 
@@ -158,11 +161,12 @@ bool LogReader::is_event_at(std::uint64_t position) {
 
 std::optional<std::uint64_t> LogReader::find_event(std::uint64_t from) {
   constexpr std::array<char, 4> kSyncBytes = {'\xED', '\xA1', '\xDA', '\x01'};
+  constexpr std::size_t kFirstChunk = std::size_t{1} << 12U;  // the next event may be near, again and again
   constexpr std::size_t kChunk = std::size_t{1} << 20U;
-  std::vector<char> chunk(kChunk);
-  while (from + kHeaderBytes <= size_) {
+  std::vector<char> chunk(kFirstChunk);
+  for (; from + kHeaderBytes <= size_; chunk.resize(std::min(2 * chunk.size(), kChunk))) {
     seek(from);
-    const std::size_t read = std::fread(chunk.data(), 1, kChunk, in_.get());
+    const std::size_t read = std::fread(chunk.data(), 1, chunk.size(), in_.get());
     if (read < kHeaderBytes) return std::nullopt;
     const auto end = chunk.begin() + static_cast<std::ptrdiff_t>(read);
     for (auto at = chunk.begin();; ++at) {
@@ -180,8 +184,12 @@ LogReader::Damage LogReader::skip_damage() {
   if (std::exchange(is_unlike_seal_, false)) return {position_ - last_position_, false};
   seals_.clear();  // which of them are of what follows is not known
   const std::uint64_t damaged = position_;
-  // A wrong length in a header reaches into later events: those are looked for too.
-  const std::uint64_t from = events_ > 0 ? last_position_ + 1 : damaged + 1;
+  // A wrong length in a header reaches into later events: those are looked for too. A forged log may hold nothing but
+  // such headers, each of which would have the rest read once more.
+  const std::uint64_t most_again = 4 * size_ + (std::uint64_t{1} << 20U);
+  const bool goes_back = events_ > 0 && looked_again_ + (damaged - last_position_) <= most_again;
+  const std::uint64_t from = (goes_back ? last_position_ : damaged) + 1;
+  if (goes_back) looked_again_ += damaged - last_position_;
   std::optional<std::uint64_t> found = find_event(from);
   if (found && *found == damaged) found = find_event(damaged + 1);
   const bool last_event_too = found && *found < damaged;

@@ -89,6 +89,7 @@ class LogReader {
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;       // of the next event
   std::uint64_t last_position_ = 0;  // of the event returned last
+  std::uint64_t looked_again_ = 0;   // bytes that were searched once more for events
   std::int64_t events_ = 0;
   bool is_sealed_ = false;
   std::deque<std::uint32_t> seals_;  // checksums of the events that follow

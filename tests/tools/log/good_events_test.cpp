@@ -74,6 +74,42 @@ TEST(GoodEvents, WhatIsNoLogIsRefused) {
   EXPECT_THROW(read_all(folder / "missing", losses), InputError);
 }
 
+/// Events one within the other, each up to the last byte but one.
+void write_nested(const fs::path& file, std::uint32_t events) {
+  constexpr std::uint32_t kEach = 29;
+  std::string text;
+  const auto put = [&](std::uint64_t number, std::size_t bytes) {
+    for (std::size_t i = bytes; i > 0; --i) text += static_cast<char>(number >> (8 * (i - 1)) & 0xFFU);
+  };
+  for (std::uint32_t i = 0; i < events; ++i) {
+    put(0xEDA1DA01U, 4);
+    put(i, 8);
+    put(i, 8);
+    put(1, 4);
+    put(kEach * (events - 1 - i), 4);
+    text += 'C';
+  }
+  write_text(file, text + 'x');
+}
+
+// Read anew from each of them on, this log of 6 MB would be 600 GB.
+TEST(GoodEvents, AForgedLogIsReadAFewTimesOnly) {
+  const fs::path file = fresh_folder("good_forged") / "log";
+  write_nested(file, 200'000);
+  LogReader reader(file);
+  std::size_t events = 0;
+  for (bool ended = false; !ended;) {
+    try {
+      ended = !reader.next().has_value();
+      if (!ended) ++events;
+    } catch (const InputError&) {
+      reader.skip_damage();
+    }
+  }
+  EXPECT_GE(events, 1U);
+  EXPECT_LE(events, 10U);
+}
+
 TEST(LossAccount, SaysInOneLineWhatWasLost) {
   LossAccount losses;
   losses.note_refused("frame 7: no camera");
