@@ -55,7 +55,7 @@ std::map<int, std::string> read_bop_names(const fs::path& names_file) {
   std::map<int, std::string> names;
   for (const auto& [object_id, value] : read_json_by_id(names_file)) {
     require(value.is_string() && !value.get<std::string>().empty(), "{}: name of object {} is {}, expected a text",
-            names_file.string(), object_id, value.dump());
+            names_file.string(), object_id, json_text(value));
     names[object_id] = value.get<std::string>();
   }
   return names;

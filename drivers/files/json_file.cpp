@@ -5,6 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/json_nesting.hpp"
 
 namespace houghstream {
 namespace {
@@ -24,7 +25,9 @@ int index_of(const std::string& key, const std::string& file) {
 }
 
 nlohmann::json read_json(const std::filesystem::path& file) {
-  return nlohmann::json::parse(read_file(file, "a JSON file"), nullptr, false);
+  const std::string text = read_file(file, "a JSON file");
+  check_json_nesting(text, file.string());
+  return nlohmann::json::parse(text, nullptr, false);
 }
 
 }  // namespace
@@ -57,9 +60,15 @@ void write_json(const OrderedJson& json, const std::filesystem::path& file) {
   write_whole_file(file, json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + '\n');
 }
 
+std::string json_text(const nlohmann::json& value) {
+  constexpr std::size_t kLongest = 200;
+  const std::string text = value.dump();
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
 double json_number(const nlohmann::json& object, const std::string& key, const std::string& where) {
   const nlohmann::json& value = member(object, key, where);
-  require(value.is_number(), "{}: '{}' is {}, expected a number", where, key, value.dump());
+  if (!value.is_number()) fail("{}: '{}' is {}, expected a number", where, key, json_text(value));
   const auto number = value.get<double>();
   require(std::isfinite(number), "{}: '{}' is {}, expected a finite number", where, key, number);
   return number;
@@ -75,12 +84,12 @@ int json_integer(const nlohmann::json& object, const std::string& key, const std
 std::vector<double> json_numbers(const nlohmann::json& object, const std::string& key, std::size_t count,
                                  const std::string& where) {
   const nlohmann::json& values = member(object, key, where);
-  require(values.is_array() && values.size() == count, "{}: '{}' is {}, expected {} numbers", where, key, values.dump(),
-          count);
+  if (!values.is_array() || values.size() != count)
+    fail("{}: '{}' is {}, expected {} numbers", where, key, json_text(values), count);
   std::vector<double> numbers;
   for (const nlohmann::json& value : values) {
-    require(value.is_number() && std::isfinite(value.get<double>()), "{}: '{}' holds {}, expected finite numbers",
-            where, key, value.dump());
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      fail("{}: '{}' holds {}, expected finite numbers", where, key, json_text(value));
     numbers.push_back(value.get<double>());
   }
   return numbers;

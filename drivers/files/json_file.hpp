@@ -14,6 +14,8 @@ using OrderedJson = nlohmann::ordered_json;
 /// JSON has no NaN and no infinity: null stands for what is not known.
 OrderedJson finite_or_null(double value);
 
+// Files whose lists lie within one another more than 64 times are refused (pipeline/base/json_nesting.hpp).
+
 /// Throws InputError when the file is missing or no JSON object.
 nlohmann::json read_json_object(const std::filesystem::path& file);
 
@@ -26,6 +28,9 @@ std::map<int, nlohmann::json> read_json_by_id(const std::filesystem::path& file)
 
 /// Throws InputError when the file cannot be written.
 void write_json(const OrderedJson& json, const std::filesystem::path& file);
+
+/// The value for a message: what is long is cut.
+std::string json_text(const nlohmann::json& value);
 
 // The functions below throw InputError naming `where` (file and entry) when the key is missing or of another type.
 

@@ -20,14 +20,14 @@ constexpr const char* kVersionKey = "houghstream_store";
 std::string text(const nlohmann::json& entry, const char* key, const std::string& where) {
   const auto found = entry.find(key);
   require(found != entry.end() && found->is_string() && !found->get<std::string>().empty(),
-          "{}: '{}' is {}, expected a text", where, key, found == entry.end() ? "missing" : found->dump());
+          "{}: '{}' is {}, expected a text", where, key, found == entry.end() ? "missing" : json_text(*found));
   return found->get<std::string>();
 }
 
 bool truth(const nlohmann::json& entry, const char* key, const std::string& where) {
   const auto found = entry.find(key);
   require(found != entry.end() && found->is_boolean(), "{}: '{}' is {}, expected true or false", where, key,
-          found == entry.end() ? "missing" : found->dump());
+          found == entry.end() ? "missing" : json_text(*found));
   return found->get<bool>();
 }
 
@@ -37,7 +37,7 @@ Eigen::Vector3f vote_centre(const nlohmann::json& entry, const std::string& wher
   const std::vector<double> xyz = json_numbers(entry, "vote_centre_m", 3, where);
   Eigen::Vector3f centre = Eigen::Vector3d(xyz[0], xyz[1], xyz[2]).cast<float>();
   require(centre.norm() < kFarthestCentre_m, "{}: 'vote_centre_m' is {}, expected x, y, z in metres", where,
-          entry.at("vote_centre_m").dump());
+          json_text(entry.at("vote_centre_m")));
   return centre;
 }
 
@@ -46,16 +46,17 @@ ToneRange parse_tone(const nlohmann::json& json, const std::string& file) {
   ToneRange tone;
   const auto found = json.find("tone");
   if (found == json.end()) return tone;
-  require(found->is_object(), "{}: 'tone' is {}, expected means and a deviation of grey values", file, found->dump());
+  require(found->is_object(), "{}: 'tone' is {}, expected means and a deviation of grey values", file,
+          json_text(*found));
   tone.least_mean = static_cast<float>(json_number(*found, "least_mean", file));
   tone.most_mean = static_cast<float>(json_number(*found, "most_mean", file));
   tone.most_deviation = static_cast<float>(json_number(*found, "most_deviation", file));
-  require(tone.is_sound(), "{}: 'tone' is {}, expected grey values of 0 to 255", file, found->dump());
+  require(tone.is_sound(), "{}: 'tone' is {}, expected grey values of 0 to 255", file, json_text(*found));
   return tone;
 }
 
 StoredObject parse_object(const nlohmann::json& entry, const std::string& file) {
-  require(entry.is_object(), "{}: an object is {}, expected its id, name and more", file, entry.dump());
+  require(entry.is_object(), "{}: an object is {}, expected its id, name and more", file, json_text(entry));
   StoredObject object;
   object.id = json_integer(entry, "id", file);
   const std::string where = fmt::format("{} object {}", file, object.id);
@@ -68,7 +69,7 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   object.vote_centre = vote_centre(entry, where);
   if (entry.contains("quality")) object.quality = entry.at("quality");
   require(object.quality.is_null() || object.quality.is_object(), "{}: 'quality' is {}, expected numbers by name",
-          where, object.quality.dump());
+          where, json_text(object.quality));
   return object;
 }
 

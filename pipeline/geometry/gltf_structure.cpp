@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/json_nesting.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/geometry/mesh_structure.hpp"
 
 namespace houghstream {
@@ -26,8 +28,8 @@ class GltfCheck {
   GltfCheck(std::string_view bytes, const std::filesystem::path& file) : file_(file), source_(file.string()) {
     text_ = bytes;
     if (bytes.substr(0, 4) == "glTF") take_chunks(bytes);
-    check_nesting();
-    json_ = Json::parse(text_, nullptr, false);
+    check_json_nesting(text_, source_);
+    json_ = parsed_text();
     require(json_.is_object(), "{}: no glTF, or cut: its JSON does not end", source_);
   }
 
@@ -60,28 +62,27 @@ class GltfCheck {
       const std::string_view chunk = bytes.substr(at + kChunkHeader, little_endian(bytes, at));
       const std::string_view type = bytes.substr(at + 4, 4);
       require(at != kHeader || type == "JSON", "{}: does not begin with JSON", source_);
+      const bool is_binary = type == std::string_view("BIN\0", 4);
+      require(!is_binary || !has_binary_, "{}: two chunks of numbers, expected one", source_);
       if (at == kHeader) text_ = chunk;
-      if (type == std::string_view("BIN\0", 4)) binary_ = chunk;
-      has_binary_ = has_binary_ || type == std::string_view("BIN\0", 4);
+      if (is_binary) binary_ = chunk;
+      has_binary_ = has_binary_ || is_binary;
       at += kChunkHeader + chunk.size();
     }
   }
 
-  /// Who reads it goes down as deep as it goes.
-  void check_nesting() const {
-    constexpr int kDeepest = 64;
-    int depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text_.size(); ++i) {
-      if (in_string && text_[i] == '\\') {
-        ++i;
-      } else if (text_[i] == '"') {
-        in_string = !in_string;
-      } else if (!in_string) {
-        depth += text_[i] == '[' || text_[i] == '{' ? 1 : text_[i] == ']' || text_[i] == '}' ? -1 : 0;
-      }
-      require(depth <= kDeepest, "{}: lists within lists more than {} times", source_, kDeepest);
-    }
+  /// A name that stands twice in an object has two values: its first one for the library, its last one here.
+  Json parsed_text() const {
+    std::vector<std::set<std::string>> open;  // names in the objects that have begun
+    const auto note = [&](int /*depth*/, Json::parse_event_t event, const Json& parsed) {
+      if (event == Json::parse_event_t::object_start) open.emplace_back();
+      if (event == Json::parse_event_t::object_end) open.pop_back();
+      if (event == Json::parse_event_t::key)
+        require(open.back().insert(parsed.get<std::string>()).second, "{}: '{}' stands twice in an object", source_,
+                printable(parsed.get<std::string>()));
+      return true;
+    };
+    return Json::parse(text_, note, false);
   }
 
   const Json& list(const char* name) const {

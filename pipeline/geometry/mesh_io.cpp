@@ -51,6 +51,37 @@ void require_whole(const std::filesystem::path& file) {
   check_gltf(bytes, file);
 }
 
+/// What the steps behind the reading believe: corners may be wherever a buffer of its own says, and a polygon takes the
+/// cube of its corners to be cut into triangles.
+void check_faces(const aiMesh& part, const std::string& file) {
+  constexpr unsigned kMostCorners = 1024;
+  for (unsigned i = 0; i < part.mNumFaces; ++i) {
+    const aiFace& face = part.mFaces[i];
+    require(face.mNumIndices <= kMostCorners, "{}: face {} with {} corners, expected at most {}", file, i,
+            face.mNumIndices, kMostCorners);
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      require(face.mIndices[k] < part.mNumVertices, "{}: face {} names vertex {} of {}", file, i, face.mIndices[k],
+              part.mNumVertices);
+    }
+  }
+}
+
+/// The scene as the file has it, then in triangles. It belongs to the importer.
+const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& importer) {
+  const auto require_scene = [&](const aiScene* scene) {
+    require(scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U,
+            "{}: {}, expected a PLY, OBJ or glTF mesh with triangles", file.string(), importer.GetErrorString());
+  };
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  require_scene(scene);
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) check_faces(*scene->mMeshes[i], file.string());
+  scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
+                                       aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices);
+  require_scene(scene);
+  return *scene;
+}
+
 void append_vertices(const aiMesh& part, double unit_m, const std::filesystem::path& file, Mesh& mesh) {
   const bool is_linear = is_gltf(file);
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
@@ -168,18 +199,13 @@ void append_ply_vertices(const Mesh& mesh, const PlyParts& parts, std::string& t
 Mesh load_mesh(const std::filesystem::path& file, double unit_m) {
   require_whole(file);
   Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene =
-      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
-                                           aiProcess_GenSmoothNormals | aiProcess_PreTransformVertices);
-  require(scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) == 0U,
-          "{}: {}, expected a PLY, OBJ or glTF mesh with triangles", file.string(), importer.GetErrorString());
+  const aiScene& scene = read_scene(file, importer);
   Mesh mesh;
   std::vector<MeshPart> parts;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());
-    const aiMesh& part = *scene->mMeshes[i];
-    parts.push_back(describe_part(*scene, part, first_vertex, file));
+    const aiMesh& part = *scene.mMeshes[i];
+    parts.push_back(describe_part(scene, part, first_vertex, file));
     append_vertices(part, unit_m, file, mesh);
     append_triangles(part, first_vertex, file.string(), mesh);
   }

@@ -67,6 +67,9 @@ PlyProperty ply_property(const Words& words, const std::string& where) {
 
 void check_ply_names(const PlyElement& element, const std::string& source) {
   require(element.name != "tristrips", "{}: holds strips of triangles, expected faces", source);
+  // Entries of no bytes: a file of a few lines may state thousands of millions, for which the library makes room.
+  require(element.count == 0 || !element.properties.empty(), "{}: {} entries '{}' without properties", source,
+          element.count, shown(element.name));
   std::set<std::string> names;
   for (const PlyProperty& property : element.properties) {
     require(names.insert(property.name).second, "{}: element {} has '{}' twice; is the header damaged?", source,

@@ -60,6 +60,14 @@ TEST(BopSymmetries, WhatIsNoSymmetryIsRefusedWithOneLine) {
             "info.json object 3: 'symmetries_discrete' holds " + mirror + ", expected rigid motions");
   const std::string stretched = "[2,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]";
   EXPECT_NE(refusal("{\"symmetries_discrete\": [" + stretched + "]}").find("rigid"), std::string::npos);
+  const std::string far_away = "[1,0,0,1e300,0,1,0,0,0,0,1,0,0,0,0,1]";
+  EXPECT_NE(refusal("{\"symmetries_discrete\": [" + far_away + "]}").find("rigid"), std::string::npos);
+  EXPECT_NE(refusal(R"({"symmetries_continuous": [{"axis": [1e300, 0, 0], "offset": [0, 0, 0]}]})").find("inf"),
+            std::string::npos);
+  std::string many = "0";
+  for (int i = 0; i < 256; ++i) many += ",0";
+  EXPECT_EQ(refusal("{\"symmetries_discrete\": [" + many + "]}"),
+            "info.json object 3: 'symmetries_discrete' lists 257, expected at most 256");
 }
 
 }  // namespace

@@ -74,5 +74,19 @@ TEST(JsonValues, AreOfTheTypeAskedForOrNamed) {
   EXPECT_THROW(json_number(nlohmann::json::array(), "half", "here"), InputError);
 }
 
+TEST(JsonFile, ListsWithinListsWithoutEndAreRefused) {
+  const std::string deep = "{\"0\":{\"cam_K\":" + std::string(200'000, '[') + std::string(200'000, ']') + "}}";
+  EXPECT_THROW(read_json_object(file_with(deep)), InputError);
+  EXPECT_NO_THROW(read_json_object(file_with("{\"a\":" + std::string(60, '[') + std::string(60, ']') + "}")));
+  EXPECT_NO_THROW(read_json_object(file_with("{\"a\":\"" + std::string(100, '[') + "\"}")));
+}
+
+TEST(JsonFile, LongValuesAreCutInMessages) {
+  const nlohmann::json json = {{"cam_K", std::vector<int>(10'000, 1)}};
+  const std::string words = error_of([&] { json_numbers(json, "cam_K", 9, "here"); });
+  EXPECT_LT(words.size(), 300U);
+  EXPECT_NE(words.find("here: 'cam_K' is [1,1,"), std::string::npos) << words;
+}
+
 }  // namespace
 }  // namespace houghstream

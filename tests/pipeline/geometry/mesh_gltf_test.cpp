@@ -125,5 +125,23 @@ TEST(MeshGltf, ATextureThatIsNoPictureIsRefused) {
   }
 }
 
+// Those of a GLB are looked at in its bytes; here they lie in another file.
+TEST(MeshGltf, CornersThatAreNoVerticesAreRefusedBeforeTheyAreUsed) {
+  const fs::path folder = fresh_folder("far_corners");
+  const std::vector<float> numbers = {0, 0, 0, 0.2F, 0, 0, 0, 0.2F, 0};
+  const std::vector<std::uint16_t> corners = {0, 1, 60000};
+  std::string binary(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
+  binary.append(reinterpret_cast<const char*>(corners.data()), corners.size() * sizeof(std::uint16_t));
+  std::ofstream(folder / "part.bin", std::ios::binary) << binary;
+  std::ofstream(folder / "part.gltf")
+      << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      << R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+      << R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+      << R"({"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],)"
+      << R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],)"
+      << R"("buffers":[{"uri":"part.bin","byteLength":42}]})";
+  EXPECT_THROW(load_mesh(folder / "part.gltf", 1.0), InputError);
+}
+
 }  // namespace
 }  // namespace houghstream

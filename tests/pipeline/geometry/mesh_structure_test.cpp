@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <random>
@@ -192,6 +193,38 @@ TEST(MeshStructure, NodesThatGoRoundAreRefused) {
   EXPECT_THROW(check_gltf(head + R"({"children":[0]}]})", "itself.gltf"), InputError);
   EXPECT_THROW(check_gltf(std::string(100000, '['), "deep.gltf"), InputError);
   EXPECT_NO_THROW(check_gltf(head + R"({"children":[1]},{}]})", "one.gltf"));
+}
+
+// One reader takes the first value, another the last.
+TEST(MeshStructure, NamesThatStandTwiceAreRefused) {
+  EXPECT_THROW(check_gltf(R"({"asset":{"version":"2.0"},"accessors":[],"accessors":[]})", "twice.gltf"), InputError);
+  EXPECT_THROW(check_gltf(R"({"asset":{"version":"2.0","version":"2.0"}})", "within.gltf"), InputError);
+  EXPECT_NO_THROW(check_gltf(R"({"asset":{"version":"2.0"},"nodes":[{"name":"a"},{"name":"b"}]})", "once.gltf"));
+  std::string bytes = glb();
+  const std::string more = std::string("\4\0\0\0BIN\0", 8) + "more";
+  bytes += more;
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+  std::memcpy(&bytes[8], &size, sizeof size);
+  EXPECT_THROW(check_gltf(bytes, "two_bodies.glb"), InputError);
+}
+
+TEST(MeshStructure, EntriesOfNoBytesAreRefused) {
+  std::string bytes = binary_ply();
+  bytes.insert(bytes.find("end_header"), "element nothing 2147483647\n");
+  EXPECT_THROW(check_ply(bytes, "nothing.ply"), InputError);
+}
+
+TEST(MeshStructure, APolygonOfThousandsOfCornersIsRefused) {
+  std::string text;
+  std::string face = "f";
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = 2.0 * M_PI * i / 2000;
+    text += fmt::format("v {:.6f} {:.6f} 0\n", 1e3 * std::cos(angle), 1e3 * std::sin(angle));
+    face += fmt::format(" {}", i + 1);
+  }
+  const fs::path file = fs::temp_directory_path() / "mesh_structure_test_round.obj";
+  std::ofstream(file) << text << face << "\n";
+  EXPECT_THROW(load_mesh(file), InputError);
 }
 
 }  // namespace
