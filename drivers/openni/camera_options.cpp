@@ -7,6 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/text_nesting.hpp"
 
 namespace houghstream::openni {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 /// OpenCV reads YAML that starts with its own header; ROS writes none.
 cv::FileStorage parse_yaml(const std::filesystem::path& file) {
   std::string text = read_file(file, "a camera calibration file");
+  check_yaml_nesting(text, file.string());
   if (text.rfind("%YAML", 0) != 0) text = "%YAML:1.0\n---\n" + text;
   cv::FileStorage yaml;
   try {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <opencv2/core.hpp>
 #include <set>
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
+#include "pipeline/base/text_nesting.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/motion_filter.hpp"
 
@@ -24,8 +24,10 @@ bool equal_places(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 
 Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz, const std::string& of) {
   constexpr double kUnitTolerance = 1e-2;  // written by people, with a few digits
-  require(translation.allFinite(), "{}: translation ({}, {}, {}), expected finite metres", of, translation.x(),
-          translation.y(), translation.z());
+  constexpr double kFarthestM = 1e6;
+  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kFarthestM,
+          "{}: translation ({}, {}, {}), expected metres within {}", of, translation.x(), translation.y(),
+          translation.z(), kFarthestM);
   require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "{}: quaternion of length {:.3f}, expected 1", of, wxyz.norm());
   return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
 }
@@ -41,7 +43,10 @@ template <int Count>
 Eigen::Matrix<double, Count, 1> numbers_of(const cv::FileNode& node, const std::string& of) {
   Eigen::Matrix<double, Count, 1> out;
   require(node.isSeq() && node.size() == Count, "{}: expected {} numbers", of, Count);
-  for (int i = 0; i < Count; ++i) out[i] = node[i].real();
+  for (int i = 0; i < Count; ++i) {
+    require(node[i].isReal() || node[i].isInt(), "{}: expected {} numbers", of, Count);
+    out[i] = node[i].real();
+  }
   return out;
 }
 
@@ -87,8 +92,9 @@ Eigen::Isometry3d chained(const Links& links, const std::string& camera, const s
 // OpenCV reads YAML that starts with its own header, holds one document, and indents the entries of a list; ROS prints
 // none, ends with a line of ---, and does not.
 cv::FileStorage parse_yaml(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  require(in.good(), "{}: cannot be read, expected a YAML file of camera poses", file.string());
+  const std::string given = read_file(file, "a YAML file of camera poses");
+  check_yaml_nesting(given, file.string());
+  std::istringstream in(given);
   std::string text = "%YAML:1.0\n---\n";
   bool in_list = false;
   for (std::string line; std::getline(in, line);) {
@@ -96,9 +102,15 @@ cv::FileStorage parse_yaml(const std::filesystem::path& file) {
     if (line[0] != ' ') in_list = line[0] == '-';
     text += (in_list ? "  " : "") + line + "\n";
   }
+  return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
+}
+
+Links read_links(const std::filesystem::path& file) {
   try {
-    return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
-  } catch (const cv::Exception&) {
+    return links_of(parse_yaml(file), file.string());
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception&) {  // OpenCV's own, where a name stands for something else than expected too
     fail("{}: no YAML, expected 'cameras:' or 'transforms:'", file.string());
   }
 }
@@ -154,9 +166,11 @@ CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) cons
 }
 
 std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file) {
-  const cv::FileStorage yaml = parse_yaml(file);
-  const Links links = links_of(yaml, file.string());
+  constexpr std::size_t kMostFrames = 1024;  // each may hang on all others
+  const Links links = read_links(file);
   require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
+  require(links.size() <= kMostFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
+          kMostFrames);
   std::map<std::string, Eigen::Isometry3d> places;
   for (const auto& [camera, link] : links) places[camera] = chained(links, camera, file.string());
   return places;

@@ -70,5 +70,18 @@ TEST(CameraInfo, BadFilesAreRefused) {
   EXPECT_THROW(read_camera_info(file), InputError) << "no YAML";
 }
 
+// OpenCV's reader would need 25 MB of the stack.
+TEST(CameraInfo, ListsWithinListsWithoutEndAreRefused) {
+  const auto file = fresh_folder("camera_info_deep") / "camera.yaml";
+  std::string brackets;
+  for (int i = 0; i < 5000; ++i) brackets += "[\n";
+  std::string dashes;
+  for (int i = 0; i < 5000; ++i) dashes += "- ";
+  for (const std::string& deep : {brackets, dashes}) {
+    write_text(file, kYaml + "more:\n  " + deep + "1\n");
+    EXPECT_THROW(read_camera_info(file), InputError);
+  }
+}
+
 }  // namespace
 }  // namespace houghstream::openni

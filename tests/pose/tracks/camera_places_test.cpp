@@ -126,7 +126,7 @@ TEST(CameraPlaces, StaticTransformsAreReadAsRosPrintsThem) {
 }
 
 TEST(CameraPlaces, BadFilesAreOneLine) {
-  EXPECT_NE(error_of([] { read_camera_places("/nowhere.yaml"); }).find("/nowhere.yaml: cannot be read"),
+  EXPECT_NE(error_of([] { read_camera_places("/nowhere.yaml"); }).find("/nowhere.yaml: missing or unreadable"),
             std::string::npos);
   const auto loop = written("loop.yaml",
                             "cameras:\n"
@@ -140,6 +140,20 @@ TEST(CameraPlaces, BadFilesAreOneLine) {
   const auto empty = written("empty.yaml", "other: 1\n");
   EXPECT_NE(error_of([&] { read_camera_places(empty); }).find("neither 'cameras:' nor 'transforms:'"),
             std::string::npos);
+}
+
+TEST(CameraPlaces, WhatIsNoNumberOrLiesTooDeepIsRefused) {
+  const auto words = written("words.yaml", "cameras:\n  A: {translation: [a, 0, 0], rotation: [1, 0, 0, 0]}\n");
+  EXPECT_NE(error_of([&] { read_camera_places(words); }).find("camera A: translation: expected 3 numbers"),
+            std::string::npos);
+  const auto far_away = written("far.yaml", "cameras:\n  A: {translation: [1e300, 0, 0], rotation: [1, 0, 0, 0]}\n");
+  EXPECT_NE(error_of([&] { read_camera_places(far_away); }).find("expected metres within"), std::string::npos);
+  const auto scalar = written("scalar.yaml", "cameras:\n  A: 5\n");
+  EXPECT_NE(error_of([&] { read_camera_places(scalar); }), "");
+  std::string deep = "cameras:\n";
+  for (int i = 0; i < 5000; ++i) deep += " [\n";
+  const auto brackets = written("deep.yaml", deep);
+  EXPECT_NE(error_of([&] { read_camera_places(brackets); }).find("5000 brackets"), std::string::npos);
 }
 
 TEST(CameraPlaces, TheOptionIsParsed) {
