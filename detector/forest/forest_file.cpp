@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "detector/extensions.hpp"
 #include "detector/features/feature_families.hpp"
@@ -104,7 +106,8 @@ struct Reader {
     copy(text.data(), text.size());
   }
   void operator()(std::vector<ObjectClass>& classes) {
-    classes.resize(count(1));
+    constexpr std::size_t kLeast = 4 + 8 + 2 * 4;  // id, the name's length, radius and mass
+    classes.resize(count(kLeast));
     for (ObjectClass& c : classes) archive_class(*this, c);
   }
   template <typename T>
@@ -157,14 +160,11 @@ void check_leaves(const Forest& forest, const std::string& source) {
   for (std::size_t l = 1; l < forest.leaves.size(); ++l) {
     require(forest.leaves[l - 1] <= forest.leaves[l], "{}: leaf {} ends before it begins", source, l - 1);
   }
-  for (std::size_t l = 1; l < forest.leaves.size(); ++l) {  // within the list: the last one ends where it does
-    const std::uint32_t first = forest.leaves[l - 1];
-    for (std::uint32_t e = first; e < forest.leaves[l]; ++e) {
-      const auto is_same = [&](const LeafClass& other) {
-        return other.class_index == forest.leaf_classes[e].class_index;
-      };
-      require(std::none_of(&forest.leaf_classes[first], &forest.leaf_classes[e], is_same),
-              "{}: leaf {} knows class {} twice", source, l - 1, forest.leaf_classes[e].class_index);
+  std::vector<std::size_t> last_leaf(forest.classes.size(), 0);  // that knew a class, counted from 1
+  for (std::size_t l = 1; l < forest.leaves.size(); ++l) {       // within the list: the last one ends where it does
+    for (std::uint32_t e = forest.leaves[l - 1]; e < forest.leaves[l]; ++e) {
+      const std::uint32_t known = forest.leaf_classes[e].class_index;
+      require(std::exchange(last_leaf[known], l) != l, "{}: leaf {} knows class {} twice", source, l - 1, known);
     }
   }
   for (const LeafView& view : forest.leaf_views) {
