@@ -82,13 +82,17 @@ std::vector<TimedImage> read_list(const fs::path& folder, const char* name) {
   return images;
 }
 
-std::vector<TumPair> pair_images(const std::vector<TimedImage>& colours, const std::vector<TimedImage>& depths) {
+std::vector<TumPair> pair_images(const fs::path& folder, const std::vector<TimedImage>& colours,
+                                 const std::vector<TimedImage>& depths) {
   constexpr std::int64_t kFarthest_us = 20000;
+  constexpr std::size_t kMostNear = 64;  // of one depth image: all of them are compared
   std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // distance, depth, colour
   std::size_t first = 0;
   for (std::size_t d = 0; d < depths.size(); ++d) {
     while (first < colours.size() && colours[first].utime < depths[d].utime - kFarthest_us) ++first;
     for (std::size_t c = first; c < colours.size() && colours[c].utime <= depths[d].utime + kFarthest_us; ++c) {
+      require(c - first < kMostNear, "{}: more than {} colour images within 20 ms of {}, expected a sequence",
+              (folder / "rgb.txt").string(), kMostNear, depths[d].file.string());
       candidates.emplace_back(std::abs(colours[c].utime - depths[d].utime), d, c);
     }
   }
@@ -108,7 +112,7 @@ std::vector<TumPair> pair_images(const std::vector<TimedImage>& colours, const s
 class TumSource : public FrameSource {
  public:
   TumSource(const fs::path& folder, const Camera& camera)
-      : pairs_(pair_images(read_list(folder, "rgb.txt"), read_list(folder, "depth.txt"))), camera_(camera) {
+      : pairs_(pair_images(folder, read_list(folder, "rgb.txt"), read_list(folder, "depth.txt"))), camera_(camera) {
     require(!pairs_.empty(), "{}: no colour image within 20 ms of a depth image", folder.string());
   }
 

@@ -98,7 +98,7 @@ std::vector<ViewName> list_views(const Instance& instance) {
     ViewName name;
     int used = 0;
     const std::string rest = file.substr(instance.name.size());
-    if (std::sscanf(rest.c_str(), "_%d_%d_crop.png%n", &name.video, &name.number, &used) != 2) continue;
+    if (std::sscanf(rest.c_str(), "_%6d_%6d_crop.png%n", &name.video, &name.number, &used) != 2) continue;
     if (static_cast<std::size_t>(used) != rest.size()) continue;
     name.stem = fmt::format("{}_{}_{}", instance.name, name.video, name.number);
     names.push_back(name);
@@ -132,7 +132,7 @@ TrainingView read_view(const Instance& instance, const ViewName& name, const Cam
   view.mask = read_mask_image(prefix + "_maskcrop.png");
   const cv::Point at = read_location(prefix + "_loc.txt");
   const cv::Size size = view.frame.colour.size();
-  require(at.x + size.width <= camera.width && at.y + size.height <= camera.height,
+  require(at.x <= camera.width - size.width && at.y <= camera.height - size.height,
           "{}: crop {}x{} at {},{}, expected inside the {}x{} image", prefix, size.width, size.height, at.x, at.y,
           camera.width, camera.height);
   view.frame.camera = camera.cropped(at.x, at.y, size.width, size.height);

@@ -22,13 +22,17 @@ constexpr std::size_t kHeaderBytes = 128;
 
 std::vector<unsigned char> read_bytes(const fs::path& path) {
   require_regular_file(path, "a MATLAB file");
+  constexpr std::uintmax_t kMostBytes = 16U << 20U;
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  require(!error && size <= kMostBytes, "{}: {} bytes, expected at most {}", path.string(), size, kMostBytes);
   std::ifstream in(path, std::ios::binary);
   require(in.good() && fs::is_regular_file(path), "{}: missing or unreadable, expected a MATLAB file", path.string());
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::vector<unsigned char> inflate_all(const MatBytes& packed, const std::string& where) {
-  constexpr std::size_t kMostBytes = 256U << 20U;
+  constexpr std::size_t kMostBytes = 16U << 20U;  // each 8 of them may be an array of a hundred
   z_stream stream{};
   require(inflateInit(&stream) == Z_OK, "{}: no memory to decompress", where);
   const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);

@@ -67,6 +67,9 @@ std::vector<std::string> parse_fields(MatBytes& bytes) {
   const MatElement names = bytes.take_element(true);
   require(names.bytes.size() % step == 0, "{}: damaged: field names of {} bytes, expected a multiple of {}",
           bytes.file(), names.bytes.size(), step);
+  constexpr std::size_t kMostFields = 1024;
+  require(names.bytes.size() / step <= kMostFields, "{}: damaged: {} field names, expected at most {}", bytes.file(),
+          names.bytes.size() / step, kMostFields);
   std::vector<std::string> fields;
   for (std::size_t at = 0; at < names.bytes.size(); at += step)
     fields.push_back(text_of(names.bytes.data() + at, step));

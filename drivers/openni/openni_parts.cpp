@@ -26,6 +26,7 @@ bool is_usable(const ::openni::VideoMode& mode, Sensor sensor) {
 }
 
 cv::Mat picture_of(const ::openni::VideoFrameRef& frame, Sensor sensor) {
+  if (frame.getWidth() < 1 || frame.getHeight() < 1) return {};
   const int type = sensor == Sensor::kDepth ? CV_16UC1 : CV_8UC3;
   const std::size_t row = frame.getWidth() * CV_ELEM_SIZE(type);
   const auto stride = static_cast<std::size_t>(frame.getStrideInBytes());

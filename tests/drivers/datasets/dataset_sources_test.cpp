@@ -59,6 +59,10 @@ TEST(TumSource, BadFoldersAreRefused) {
   EXPECT_THROW(open_tum_source(folder, kCamera), InputError) << "a second apart";
   write_text(folder / "depth.txt", "1.01 depth/missing.png\n");
   EXPECT_THROW(open_tum_source(folder, kCamera)->next(), InputError);
+  std::string all_at_once;
+  for (int i = 0; i < 65; ++i) all_at_once += "1.0 rgb/0.png\n";
+  write_text(folder / "rgb.txt", all_at_once);
+  EXPECT_NE(error_of([&] { open_tum_source(folder, kCamera); }).find("more than 64 colour images"), std::string::npos);
 }
 
 }  // namespace

@@ -96,6 +96,18 @@ TEST(UwDataset, MissingAndDisagreeingFilesAreRefused) {
   EXPECT_THROW(read_uw_training_views(outside, {}, kCamera), InputError);
 }
 
+TEST(UwDataset, NumbersAsLargeAsCanBeAreRefused) {
+  const fs::path folder = write_objects("uw_large");
+  write_text(folder / "cup/cup_1/cup_1_1_1_loc.txt", "2147483647,200");
+  EXPECT_NE(error_of([&] {
+              read_uw_training_views(folder, {{"cup_1"}, false}, kCamera);
+            }).find("expected inside"),
+            std::string::npos);
+  const fs::path other = write_objects("uw_large_names");
+  write_text(other / "cup/cup_1/cup_1_2147483647_-2147483648_crop.png", "no view");
+  EXPECT_EQ(read_uw_training_views(other, {{"cup_1"}, false}, kCamera).size(), 4U);
+}
+
 TEST(UwDataset, BadSelectionsAreRefused) {
   const fs::path folder = write_objects("uw_selection");
   EXPECT_THROW(read_uw_training_views(folder, {{"dog_1"}, false}, kCamera), InputError);
