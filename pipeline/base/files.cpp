@@ -53,7 +53,10 @@ bool lies_in(const fs::path& place, const fs::path& folder) {
 /// The file, open, empty and locked.
 int open_locked(const fs::path& partial, const fs::path& file) {
   for (;;) {
-    const int opened = open(partial.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    // A link of that name is somebody's: what it names must not be emptied.
+    const int opened = open(partial.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    require(opened >= 0 || errno != ELOOP, "{}: cannot be written: {} is a symbolic link", file.string(),
+            partial.string());
     require(opened >= 0, "{}: cannot be written: {}", file.string(), std::strerror(errno));
     const bool locked = flock(opened, LOCK_EX | LOCK_NB) == 0;
     if (locked && is_same(opened, partial)) {

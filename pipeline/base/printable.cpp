@@ -22,9 +22,20 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || surrogate || too_large ? 0 : length;
 }
 
+/// What turns the direction of text, or begins a line (Unicode 15, sections 23.2 and 5.8): U+200E, U+200F, U+2028 to
+/// U+202E, U+2066 to U+2069.
+bool turns_text(std::string_view character) {
+  if (character.size() != 3 || character[0] != '\xE2') return false;
+  const auto middle = static_cast<std::uint8_t>(character[1]);
+  const auto last = static_cast<std::uint8_t>(character[2]);
+  const bool is_of_general = middle == 0x80 && (last == 0x8E || last == 0x8F || (last >= 0xA8 && last <= 0xAE));
+  return is_of_general || (middle == 0x81 && last >= 0xA6 && last <= 0xA9);
+}
+
 bool is_control(std::string_view character) {
   const auto first = static_cast<std::uint8_t>(character[0]);
-  return first < 0x20 || first == 0x7F || (first == 0xC2 && static_cast<std::uint8_t>(character[1]) < 0xA0);
+  return first < 0x20 || first == 0x7F || (first == 0xC2 && static_cast<std::uint8_t>(character[1]) < 0xA0) ||
+         turns_text(character);
 }
 
 std::string shown(std::string_view text, bool keep_lines) {

@@ -102,6 +102,15 @@ TEST_F(Files, KeepLinksAndRights) {
   EXPECT_EQ(is.st_mode & 0777U, 0640U);
 }
 
+TEST_F(Files, EmptyNothingThatALinkBesideThemNames) {
+  const fs::path other = folder / "other";
+  std::ofstream(other) << "of somebody";
+  fs::create_symlink(other, file.string() + ".partial");
+  EXPECT_THROW(write_whole_file(file, "new"), InputError);
+  EXPECT_EQ(read_file(other, "text"), "of somebody");
+  EXPECT_TRUE(fs::is_symlink(file.string() + ".partial"));
+}
+
 TEST_F(Files, NeverReplaceADevice) {
   EXPECT_NO_THROW(write_whole_file("/dev/null", "text"));
   EXPECT_TRUE(fs::is_character_file("/dev/null"));

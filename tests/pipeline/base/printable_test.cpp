@@ -17,7 +17,10 @@ TEST(Printable, ShowsWhatWouldSteerATerminal) {
   EXPECT_EQ(printable("\x7f"), "\\x7f");
   EXPECT_EQ(printable("\xc2\x9b"
                       "2J"),
-            "\\xc2\\x9b2J");  // CSI in eight bits
+            "\\xc2\\x9b2J");                                            // CSI in eight bits
+  EXPECT_EQ(printable("mug\xe2\x80\xaegum"), "mug\\xe2\\x80\\xaegum");  // from right to left
+  EXPECT_EQ(printable("\xe2\x81\xa6"), "\\xe2\\x81\\xa6");
+  EXPECT_EQ(printable("\xe2\x80\xa6"), "\xe2\x80\xa6") << "an ellipsis";
 }
 
 TEST(Printable, ShowsWhatIsNotUtf8) {
