@@ -71,7 +71,8 @@ class Telling {
     constexpr std::int64_t kApart_us = 1'000'000;  // of the take's time
     const std::string line = fmt::format("{}: {}", name_of(now_.state), now_.message);
     const bool is_choice = printed_state_ == ShowState::kChoosing && now_.state != ShowState::kChoosing;
-    const bool soon = printed_us_ != 0 && !is_choice && std::abs(now_.frame.utime - printed_us_) < kApart_us;
+    const std::int64_t since_us = microseconds_between(printed_us_, now_.frame.utime);
+    const bool soon = printed_us_ != 0 && !is_choice && since_us > -kApart_us && since_us < kApart_us;
     if (line != printed_ && !soon) {
       fmt::print(stderr, "hs-teach: {}\n", line);
       printed_ = line;

@@ -281,8 +281,7 @@ void write_page(const Shown& shown, const Verdict& verdict, const fs::path& fold
 }  // namespace
 
 double second_of(const Take& take, int frame) {
-  return 1e-6 *
-         static_cast<double>(take.frames[static_cast<std::size_t>(frame)].id.utime - take.frames.front().id.utime);
+  return seconds_between(take.frames.front().id.utime, take.frames[static_cast<std::size_t>(frame)].id.utime);
 }
 
 double share_of_seen(const std::vector<bool>& seen) {

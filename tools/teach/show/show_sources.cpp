@@ -1,6 +1,7 @@
 #include "tools/teach/show/show_sources.hpp"
 
 #include <memory>
+#include <optional>
 
 #include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
@@ -27,15 +28,16 @@ class LiveFrames {
     if (stop_requested()) return std::nullopt;
     std::optional<RgbdFrame> frame = source_->next();
     if (!frame) return frame;
-    if (first_ == 0) first_ = frame->id.utime;
-    if (frame->id.utime - first_ > longest_us_) return std::nullopt;
+    // A clock that is set back begins the take anew, instead of making it longer by so much.
+    if (!first_ || frame->id.utime < *first_) first_ = frame->id.utime;
+    if (microseconds_between(*first_, frame->id.utime) > longest_us_) return std::nullopt;
     return frame;
   }
 
  private:
   std::unique_ptr<FrameSource> source_;
   std::int64_t longest_us_;
-  std::int64_t first_ = 0;
+  std::optional<std::int64_t> first_;
 };
 
 /// Frames of a log or a recorder's file, with what was lost of it said at the end.

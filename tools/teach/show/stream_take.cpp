@@ -14,7 +14,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::size_t kMostWaiting = 300;  // ten seconds at 30 Hz, some 60 MB
-constexpr milliseconds kMoment(50);        // for which a stop signal may go unnoticed
+constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
+constexpr milliseconds kMoment(50);  // for which a stop signal may go unnoticed
 
 }  // namespace
 
@@ -49,7 +50,9 @@ void StreamTake::put(const Arrival& arrival) {
   last_ = arrival.time;
   if (!first_) first_ = arrival.time;
   waiting_.emplace_back(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
-  if (waiting_.size() > kMostWaiting) {
+  waiting_bytes_ += arrival.bytes.size;
+  while (waiting_.size() > kMostWaiting || (waiting_.size() > 1 && waiting_bytes_ > kMostBytes)) {
+    waiting_bytes_ -= waiting_.front().size();
     waiting_.pop_front();
     ++passed_over_;
   }
@@ -85,6 +88,7 @@ std::optional<std::vector<std::uint8_t>> StreamTake::take() {
   if (ended_ || waiting_.empty()) return std::nullopt;
   std::optional<std::vector<std::uint8_t>> bytes = std::move(waiting_.front());
   waiting_.pop_front();
+  waiting_bytes_ -= bytes->size();
   return bytes;
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -63,7 +64,8 @@ class StreamTake {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::vector<std::uint8_t>> waiting_;  // encoded
-  std::optional<Clock::time_point> first_;         // when it came
+  std::size_t waiting_bytes_ = 0;
+  std::optional<Clock::time_point> first_;  // when it came
   Clock::time_point last_ = Clock::now();
   bool ended_ = false;
   std::string failure_;

@@ -91,11 +91,13 @@ void TeachingPublisher::repeat() noexcept {
 bool EnoughSeen::operator()(const ShowProgress& now) {
   constexpr std::int64_t kLeast_us = 6'000'000;
   const int seen = static_cast<int>(std::count(now.seen.begin(), now.seen.end(), true));
-  if (begin_us_ == 0) begin_us_ = now.frame.utime;
-  if (seen != seen_) since_us_ = now.frame.utime;
+  const std::int64_t now_us = now.frame.utime;
+  if (!begin_us_ || now_us < *begin_us_) begin_us_ = now_us;  // clocks are set back
+  if (seen != seen_ || now_us < since_us_) since_us_ = now_us;
   seen_ = seen;
-  const std::int64_t nothing_new_us = now.frame.utime - since_us_;
-  return 2 * seen > ShowProgress::kDirections && nothing_new_us > std::max(kLeast_us, (since_us_ - begin_us_) / 2);
+  const std::int64_t nothing_new_us = microseconds_between(since_us_, now_us);
+  const std::int64_t took_us = microseconds_between(*begin_us_, since_us_);
+  return 2 * seen > ShowProgress::kDirections && nothing_new_us > std::max(kLeast_us, took_us / 2);
 }
 
 }  // namespace houghstream::teach

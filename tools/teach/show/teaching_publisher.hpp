@@ -5,8 +5,10 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "pipeline/bus/lcm_bus.hpp"
@@ -55,7 +57,7 @@ class EnoughSeen {
 
  private:
   int seen_ = 0;
-  std::int64_t begin_us_ = 0;
+  std::optional<std::int64_t> begin_us_;
   std::int64_t since_us_ = 0;
 };
 

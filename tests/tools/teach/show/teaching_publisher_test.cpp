@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
@@ -104,6 +106,22 @@ TEST(EnoughSeen, WhenMoreThanHalfWasSeenAndNothingNewComes) {
   now.frame.utime += 6'100'000;
   EXPECT_FALSE(enough(now)) << "19 s brought new ones: a turn of which that was two thirds is not closed yet";
   now.frame.utime += 4'000'000;
+  EXPECT_TRUE(enough(now));
+}
+
+// Times off the wire may be any, and a clock may be set back.
+TEST(EnoughSeen, GoesOnWhereTheClockJumps) {
+  EnoughSeen enough;
+  ShowProgress now = tracked(std::numeric_limits<std::int64_t>::max());
+  std::fill_n(now.seen.begin(), 31, true);
+  EXPECT_FALSE(enough(now));
+  now.frame.utime = std::numeric_limits<std::int64_t>::min();
+  EXPECT_FALSE(enough(now));
+  now.frame.utime += 5'000'000;
+  EXPECT_FALSE(enough(now));
+  now.frame.utime += 2'000'000;
+  EXPECT_TRUE(enough(now)) << "seven seconds since it was set back";
+  now.frame.utime = std::numeric_limits<std::int64_t>::max();
   EXPECT_TRUE(enough(now));
 }
 
