@@ -5,7 +5,6 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/base/text_nesting.hpp"
 
 namespace houghstream {
 namespace {

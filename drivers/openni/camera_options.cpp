@@ -7,7 +7,6 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/base/text_nesting.hpp"
 
 namespace houghstream::openni {
 namespace {

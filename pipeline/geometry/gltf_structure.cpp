@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "pipeline/base/printable.hpp"
-#include "pipeline/base/text_nesting.hpp"
 #include "pipeline/geometry/mesh_structure.hpp"
 
 namespace houghstream {

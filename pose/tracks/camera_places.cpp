@@ -8,7 +8,6 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/base/text_nesting.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/motion_filter.hpp"
 
