@@ -203,6 +203,13 @@ void require_store(const fs::path& folder) {
   store::read_store(folder);
 }
 
+/// Views of another teaching would be taken for this one's.
+void require_free(const fs::path& dump) {
+  std::error_code error;
+  require(dump.empty() || !fs::exists(dump, error) || (fs::is_directory(dump, error) && fs::is_empty(dump, error)),
+          "--dump-views {}: holds something already, expected a new folder or an empty one", dump.string());
+}
+
 void name_lookalikes(const std::vector<NamedModel>& models) {
   std::vector<NamedMesh> named;
   named.reserve(models.size());
@@ -228,6 +235,7 @@ void teach_meshes(const TeachOptions& options) {
   if (!options.add && options.shown.empty()) warn_of_replaced(options.out);  // hs-teach show has said it
   world::parse_mesh_attitudes(options.attitudes);
   if (options.rooms.camera) parse_camera(*options.rooms.camera);
+  require_free(options.dump_views);
   store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on
   Contents old;
   if (options.add) old = read_contents(options.out);

@@ -215,6 +215,15 @@ TEST(TeachJobs, WhereTheOriginLiesMakesNoDifference) {
     EXPECT_LT((view.T_camera_object * middle.cast<double>()).head<2>().norm(), 0.1) << "in the mesh's own frame";
 }
 
+TEST(TeachJobs, ViewsAreNotMixedWithOthers) {
+  const fs::path folder = folder_of_meshes("teach_mixed");
+  TeachOptions options = quick_options(folder, "grey.ply");
+  options.dump_views = folder / "views";
+  fs::create_directories(options.dump_views / "000001");
+  EXPECT_NE(error_of([&] { teach_meshes(options); }).find("views: holds something already"), std::string::npos);
+  EXPECT_FALSE(fs::exists(options.out));
+}
+
 TEST(TeachJobs, WhatCannotBeReadBackIsNotPublished) {
   const fs::path folder = fresh_folder("teach_unreadable");
   TeachOptions options = quick_options(folder, "");

@@ -9,6 +9,7 @@
 #include "drivers/datasets/uw_scenes.hpp"
 #include "drivers/files/frame_folder.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "tools/evaluate/import/drawn_boxes.hpp"
 
 namespace houghstream {
@@ -40,9 +41,17 @@ FrameFiles named_pair(const fs::path& source, const std::string& name) {
   return {name, source / (name + "_color.png"), source / (name + "_depth.png")};
 }
 
+/// Frames of another scene would be taken for this one's.
+void require_free(const fs::path& scene_folder, const fs::path& source) {
+  require_other_file(scene_folder, source);
+  require(!holds_pictures(scene_folder), "{}: holds pictures already, expected a new folder or one without",
+          scene_folder.string());
+}
+
 }  // namespace
 
 int import_boxes(const fs::path& source, const fs::path& scene_folder) {
+  require_free(scene_folder, source);
   const DrawnBoxes drawn = read_drawn_boxes(source / "boxes.json");
   std::set<std::string> names;
   for (const DrawnFrame& frame : drawn.frames) {
@@ -62,6 +71,7 @@ int import_boxes(const fs::path& source, const fs::path& scene_folder) {
 
 int import_uw_scene(const fs::path& video, const Camera& camera, const fs::path& scene_folder) {
   check_camera(camera, "camera");
+  require_free(scene_folder, video);
   const std::vector<UwSceneFrame> frames = read_uw_scene(video, {camera.width, camera.height});
   std::set<std::string> names;
   for (const UwSceneFrame& frame : frames) {

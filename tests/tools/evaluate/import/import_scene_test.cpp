@@ -45,6 +45,17 @@ TEST(ImportScene, BoxesBecomeASceneWithoutPosesInTheirOrder) {
   EXPECT_EQ(pack.object_id, 2);
 }
 
+TEST(ImportScene, PicturesThatAreThereAreNotMixedWithOthers) {
+  const fs::path scene_folder = fresh_folder("import_mixed_out");
+  const fs::path source = write_source("import_mixed");
+  fs::create_directories(scene_folder / "rgb");
+  write_text(scene_folder / "rgb/000007.png", "recorded");
+  EXPECT_EQ(error_of([&] { import_boxes(source, scene_folder); }),
+            scene_folder.string() + ": holds pictures already, expected a new folder or one without");
+  EXPECT_FALSE(fs::exists(scene_folder / "depth"));
+  EXPECT_THROW(import_boxes(source, source / "scene"), InputError);
+}
+
 TEST(ImportScene, UwVideosBecomeScenesAsBoxesDo) {
   const fs::path video = fresh_folder("import_uw") / "desk" / "desk_1";
   fs::create_directories(video);
@@ -70,13 +81,13 @@ TEST(ImportScene, UwVideosBecomeScenesAsBoxesDo) {
   EXPECT_EQ(can.box_visible_px, cv::Rect(10, 5, 20, 20));
   EXPECT_EQ(can.visible_fraction, 1.0);
   EXPECT_EQ(find_bop_names(scene_folder), (std::map<int, std::string>{{1, "cap_1"}, {2, "soda_can_4"}}));
-  EXPECT_THROW(import_uw_scene(video, {32, 48, 60.0, 61.0, 31.5, 23.5}, scene_folder), InputError);
-  EXPECT_THROW(import_uw_scene(video, Camera(), scene_folder), InputError);
+  const fs::path other_folder = fresh_folder("import_uw_other");
+  EXPECT_THROW(import_uw_scene(video, {32, 48, 60.0, 61.0, 31.5, 23.5}, other_folder), InputError);
+  EXPECT_THROW(import_uw_scene(video, Camera(), other_folder), InputError);
 }
 
 TEST(ImportScene, BadSourcesAreRefused) {
-  const fs::path out = fresh_folder("import_bad_out");
-  EXPECT_THROW(import_boxes(fresh_folder("import_nothing"), out), InputError);
+  EXPECT_THROW(import_boxes(fresh_folder("import_nothing"), fresh_folder("import_bad_out")), InputError);
   for (const auto& [from, to] :
        std::vector<std::pair<std::string, std::string>>{{"[10, 5, 30, 25]", "[10, 5, 300, 25]"},
                                                         {"[10, 5, 30, 25]", "[30, 5, 10, 25]"},
@@ -86,7 +97,7 @@ TEST(ImportScene, BadSourcesAreRefused) {
                                                         {"[64, 48]", "[640, 480]"}}) {
     const fs::path source = write_source("import_bad");
     replace_in_file(source / "boxes.json", from, to);
-    EXPECT_THROW(import_boxes(source, out), InputError) << from << " -> " << to;
+    EXPECT_THROW(import_boxes(source, fresh_folder("import_bad_out")), InputError) << from << " -> " << to;
   }
 }
 
