@@ -105,7 +105,7 @@ def check_bad_start(tools, made, folder):
 
 
 def check_short_scene(tools, made, folder):
-    """The source waits until the others hear it: of two frames none is lost."""
+    """The source waits until the others hear it, and they for its last frames: of two frames none is lost or passed over."""
     seen = folder / "short.log"
     logger = subprocess.Popen(["lcm-logger", "-f", "-q", "-c", "HOUGHSTREAM_STATUS", str(seen)], stderr=subprocess.DEVNULL)
     command = [tools / "hs-stream", "--source", f"bop:{made / 'scene'}", "--capture-options=--frames 2 --rate 1", "--forest",
@@ -117,6 +117,8 @@ def check_short_scene(tools, made, folder):
     states = [status_t.decode(event.data) for event in read_log(seen)]
     received = max(state.frames_received for state in states if state.process == "hs-detect")
     assert received == 2, received
+    processed = max(state.frames_processed for state in states if state.process == "hs-detect")
+    assert processed == 2, processed
 
 
 def main():

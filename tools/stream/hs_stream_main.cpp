@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
@@ -10,6 +11,7 @@
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/stream/last_frames.hpp"
 #include "tools/stream/state_board.hpp"
 #include "tools/stream/stream_plan.hpp"
 
@@ -112,6 +114,15 @@ class StatusEar {
   StateBoard::Clock::time_point again_;
 };
 
+/// Until what the source has sent last has gone through all others, and no longer than they are worth waiting for.
+void await_last_frames(StatusEar& ear, const LastFrames& last_frames) {
+  const auto end = LastFrames::Clock::now() + LastFrames::kPatience;
+  while (!stop_requested() && !last_frames.are_through() && LastFrames::Clock::now() < end)
+    ear.listen(std::chrono::milliseconds(20));
+  if (!last_frames.are_through() && !stop_requested())
+    log_warning("the stream ends, though not all processes have said that the last frames went through them");
+}
+
 void run_stream(StreamOptions options, const Pace& pace) {
   require(options.objects.empty() != options.forest.empty(), "expected either --objects STORE or --forest FILE");
   require(options.objects.empty() || options.models.empty(), "--models goes with --forest; --objects has its own");
@@ -128,9 +139,12 @@ void run_stream(StreamOptions options, const Pace& pace) {
   settings.start_silence = from_seconds<std::chrono::milliseconds>(pace.start_patience);
   Supervisor supervisor(plan_stream(options), settings, [](const std::string& words) { log_info("{}", words); });
   StateBoard board;
+  std::optional<LastFrames> last_frames;
   ear.hear([&](const Arrival& arrival) {
     const auto status = decode_message<status_t>(arrival.bytes);
-    if (supervisor.note_running(status.pid)) board.note(status, arrival.time);
+    if (!supervisor.note_running(status.pid)) return;
+    board.note(status, arrival.time);
+    if (last_frames) last_frames->note(status, arrival.time);
   });
   const auto period = from_seconds<StateBoard::Clock::duration>(pace.every);
   auto due = StateBoard::Clock::now() + period;
@@ -141,6 +155,7 @@ void run_stream(StreamOptions options, const Pace& pace) {
     board.keep(supervisor.states());
     log_info("{}", board.line(supervisor.states(), StateBoard::Clock::now()));
   }
+  await_last_frames(ear, last_frames.emplace(supervisor.who_follows_source(), LastFrames::Clock::now()));
   for (const std::string& name : supervisor.stop()) log_warning("{} did not end when asked and was killed", name);
   log_info("all ended");
 }

@@ -117,6 +117,7 @@ bool Supervisor::look_after(Member& member, Clock::duration listened) {
   }
   if (ending->success && member.plan.ends_stream) {
     say_(fmt::format("{} has ended: the stream ends", member.plan.name));
+    source_has_ended_ = member.plan.awaits_others;
     return false;
   }
   // A signal is somebody's doing; a status says that the process itself sees no way.
@@ -143,6 +144,14 @@ bool Supervisor::note_running(pid_t pid) {
     return true;
   }
   return false;
+}
+
+std::vector<pid_t> Supervisor::who_follows_source() const {
+  std::vector<pid_t> pids;
+  for (const Member& member : members_) {
+    if (source_has_ended_ && member.child && !member.plan.awaits_others) pids.push_back(member.child->pid());
+  }
+  return pids;
 }
 
 void Supervisor::note_deaf() {

@@ -54,6 +54,10 @@ class Supervisor {
   /// The process has shown that it runs; expected of each one every second. False where it is none of these.
   bool note_running(pid_t pid);
 
+  /// Once step() has said that the stream is to end because its source has: the processes that the source's last frames
+  /// go through, in their order. None where something else has ended it.
+  std::vector<pid_t> who_follows_source() const;
+
   /// Since the last step nothing could have been heard of any.
   void note_deaf();
 
@@ -91,6 +95,7 @@ class Supervisor {
   void restart_if_due(Member& member);
 
   std::vector<Member> members_;
+  bool source_has_ended_ = false;  // by itself
   SupervisorSettings settings_;
   Say say_;
   Clock::time_point begun_ = Clock::now();

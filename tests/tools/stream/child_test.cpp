@@ -79,5 +79,17 @@ TEST(Child, AMissingProgramIsNamed) {
   EXPECT_THROW(Child({"/nowhere/hs-detect"}), InputError);
 }
 
+TEST(Child, WhoWritesWithoutEndKeepsNobody) {
+  testing::internal::CaptureStderr();
+  {
+    Child flood({"/bin/sh", "-c", "exec yes >&2"}, true);
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_FALSE(flood.ending().has_value());
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+  }
+  EXPECT_FALSE(testing::internal::GetCapturedStderr().empty());
+}
+
 }  // namespace
 }  // namespace houghstream::stream

@@ -220,6 +220,23 @@ TEST(Supervisor, TheEndOfTheSourceEndsTheStream) {
   EXPECT_TRUE(ended);
 }
 
+TEST(Supervisor, WhatTheSourceHasSentLastGoesThroughTheOthers) {
+  ChildPlan source = shell("capture", "exit 0", true);
+  source.awaits_others = true;
+  SupervisorSettings settings = quick();
+  settings.others_patience = milliseconds(10);
+  Supervisor supervisor({shell("detect", "exec sleep 100"), source}, settings, be_silent);
+  const pid_t detector = supervisor.states()[0].pid;
+  EXPECT_TRUE(supervisor.who_follows_source().empty());
+  bool ended = false;
+  for (int i = 0; i < 1000 && !ended; ++i) {
+    ended = !supervisor.step();
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(supervisor.who_follows_source(), std::vector<pid_t>{detector});
+}
+
 TEST(Supervisor, AMissingProgramIsNamed) {
   EXPECT_THROW(Supervisor({{"a", {"/nowhere/hs-detect"}, false}}, quick(), be_silent), InputError);
 }
