@@ -11,6 +11,7 @@ constexpr std::int64_t kTogetherUs = 40000;  // of frames that are compared
 constexpr double kReachM = 0.3;              // an object that is seen farther away is another one
 constexpr std::size_t kOffsets = 300;
 constexpr std::size_t kEnough = 20;
+constexpr std::size_t kMostSeen = 500;  // objects of a view: each is compared with each of another camera's
 
 Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
   Eigen::Vector3d out;
@@ -30,7 +31,7 @@ Eigen::Vector3d median_of(const std::deque<Eigen::Vector3d>& offsets) {
 void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera, const TrackModels& models) {
   View view{poses.frame.utime, {}};
   for (const ObjectPose& pose : poses.poses) {
-    if (pose.T_camera_object)
+    if (pose.T_camera_object && view.objects.size() < kMostSeen)
       view.objects.push_back(
           {pose.class_name, T_world_camera * *pose.T_camera_object * centre_of(models, pose.class_name)});
   }
@@ -55,7 +56,9 @@ void ExtrinsicCheck::add(const ObjectPoses& poses, const Eigen::Isometry3d& T_wo
   // Several detectors' results of one frame are one view.
   View& last = last_[poses.frame.channel];
   if (last.utime != view.utime) last = {view.utime, {}};
-  last.objects.insert(last.objects.end(), view.objects.begin(), view.objects.end());
+  const std::size_t room = kMostSeen - std::min(kMostSeen, last.objects.size());
+  const auto taken = static_cast<std::ptrdiff_t>(std::min(room, view.objects.size()));
+  last.objects.insert(last.objects.end(), view.objects.begin(), view.objects.begin() + taken);
 }
 
 std::vector<Contradiction> ExtrinsicCheck::pairs() const {

@@ -95,6 +95,9 @@ void Tracker::begin_world() {
 std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   State& state = *state_;
   const FrameId& frame = seen.poses.frame;
+  // Each pose is compared with each object.
+  require(seen.poses.poses.size() <= state.settings.most_objects, "frame {}: {} poses, expected at most {}",
+          to_string(frame), seen.poses.poses.size(), state.settings.most_objects);
   const CameraClock* clock = state.begin_frame(frame);
   if (clock == nullptr) return std::nullopt;
   const std::vector<SeenPose> poses = state.new_poses(seen);
@@ -143,6 +146,8 @@ const CameraClock* Tracker::State::begin_frame(const FrameId& frame) {
   if (frame.utime < clock.utime) return nullptr;
   const double seconds = clock.results == 0 ? kUsualS : std::min(kMostS, seconds_between(clock.utime, frame.utime));
   if (clock.results == 0 || frame.utime != clock.utime) clock = {frame.utime, 0, seconds, {}};
+  constexpr int kMostResults = 64;  // of one frame; nobody has so many detectors
+  if (clock.results >= kMostResults) return nullptr;
   ++clock.results;
   return &clock;
 }
@@ -195,7 +200,7 @@ std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& pos
   }
   const int together = static_cast<int>(std::count_if(
       objects.begin(), objects.end(), [](const Track* track) { return track->id != 0 && track->seen_now; }));
-  most_together[class_name] = std::max(most_together[class_name], together);
+  if (together > 0) most_together[class_name] = std::max(most_together[class_name], together);
   std::vector<SeenPose> left;
   for (std::size_t j = 0; j < measured.size(); ++j) {
     if (taken[j]) continue;

@@ -60,7 +60,9 @@ void FrameTimes::note_poses(const FrameId& frame, Time time) {
 }
 
 void FrameTimes::note_status(const status_t& status) {
-  processes_[{status.process, status.pid}] = status;
+  constexpr std::size_t kMost = 64;  // a sender of rubbish may make them up without end
+  const std::pair<std::string, std::int32_t> key(status.process, status.pid);
+  if (processes_.size() < kMost || processes_.count(key) > 0) processes_[key] = status;
 }
 
 std::size_t FrameTimes::frames() const {

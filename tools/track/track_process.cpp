@@ -180,7 +180,7 @@ class TrackProcess {
     constexpr milliseconds kTransformsMayCome(3);
     std::optional<PairedMessages> pair =
         inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kTransformsMayCome));
-    if (pair) waiting_.push_back({std::move(*pair), now_us()});
+    if (pair) keep_waiting({std::move(*pair), now_us()});
     count_dropped();
     tell_silence();
     bool worked = false;
@@ -192,6 +192,7 @@ class TrackProcess {
       }
       const Waiting now = std::move(*it);
       it = waiting_.erase(it);
+      waiting_bytes_ -= now.messages.frame.size();
       worked = true;
       if (!place.T_world_camera) {
         refuse(now.messages.id, place.reason);
@@ -200,6 +201,18 @@ class TrackProcess {
       }
     }
     return worked;
+  }
+
+  /// A copy of its frame goes with each pose, and poses may be sent without end.
+  void keep_waiting(Waiting waiting) {
+    constexpr std::size_t kMost = 1024;
+    waiting_bytes_ += waiting.messages.frame.size();
+    waiting_.push_back(std::move(waiting));
+    while (waiting_.size() > 1 && (waiting_.size() > kMost || waiting_bytes_ > PairInbox::kHistoryBytes)) {
+      refuse(waiting_.front().messages.id, "too many wait for the transforms of their cameras");
+      waiting_bytes_ -= waiting_.front().messages.frame.size();
+      waiting_.pop_front();
+    }
   }
 
   /// Where the camera was; `may_come` only while it is worth waiting.
@@ -332,6 +345,7 @@ class TrackProcess {
   LimitedLines silences_;  // of processes
   std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
   std::deque<Waiting> waiting_;
+  std::size_t waiting_bytes_ = 0;  // of their frames
   std::string world_;
   std::string alone_;               // the camera whose frame is the world, where no place is known
   std::int64_t without_frame_ = 0;  // poses

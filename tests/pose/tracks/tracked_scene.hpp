@@ -92,13 +92,16 @@ class TrackedScene {
   }
 
   /// Without time passing: another camera.
-  WorldObjects look() {
+  WorldObjects look() { return look_if_any().value(); }
+
+  /// Nothing where the tracker passes over the frame.
+  std::optional<WorldObjects> look_if_any() {
     std::optional<RgbdFrame> image;
     const auto render = [&]() -> const RgbdFrame* {
       image = depth();
       return &*image;
     };
-    return tracker.update({poses(), nullptr, T_world_camera, render}).value();
+    return tracker.update({poses(), nullptr, T_world_camera, render});
   }
 
   ObjectPoses poses() {

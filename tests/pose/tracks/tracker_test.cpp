@@ -335,8 +335,22 @@ TEST(Tracker, MoreObjectsThanAllowedAreRefused) {
   TrackerSettings settings;
   settings.most_objects = 2;
   TrackedScene scene(settings);
+  scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}});
+  EXPECT_NO_THROW(scene.frame());
   scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}, {"can", on_table(0.3, 0)}});
-  EXPECT_THROW(scene.frame(), std::runtime_error);
+  EXPECT_THROW(scene.frame(), std::runtime_error) << "so many poses at once";
+  scene.show({{"can", on_table(0.3, 0)}});
+  EXPECT_THROW(scene.frame(), std::runtime_error) << "one more than are known";
+}
+
+TEST(Tracker, ResultsOfOneFrameWithoutEndArePassedOver) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(10);
+  bool is_passed_over = false;
+  for (int i = 0; i < 100 && !is_passed_over; ++i) is_passed_over = scene.look_if_any() == std::nullopt;
+  EXPECT_TRUE(is_passed_over);
+  EXPECT_EQ(scene.frame().objects.size(), 1U) << "the next frame";
 }
 
 TEST(Tracker, TheSameFramesGiveTheSameObjectsBitForBit) {

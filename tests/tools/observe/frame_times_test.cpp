@@ -107,6 +107,16 @@ TEST(FrameTimes, WithoutMessagesThereAreNoNumbers) {
   EXPECT_EQ(FrameTimes().csv(), "utime,channel,t_frame,t_detections,t_poses\n");
 }
 
+TEST(FrameTimes, ForgedProcessesDoNotFillTheMemory) {
+  FrameTimes times;
+  for (int pid = 1; pid <= 100; ++pid) {
+    status_t status = detector_status(1, 1, 0);
+    status.pid = pid;
+    times.note_status(status);
+  }
+  EXPECT_EQ(times.summary(std::nullopt)["processes"].size(), 64U);
+}
+
 TEST(FrameTimes, RowsLeaveEmptyWhatHasNotCome) {
   FrameTimes times;
   times.note_frame({"LEFT", 7}, at_ms(0));
