@@ -1,14 +1,16 @@
-"""Tests of the Python package: frames as arrays, what a subscriber asks for. Usage: PYTHONPATH=build/python package_test.py"""
+"""Tests of the Python package: logs, frames as arrays, what a subscriber asks for. Usage: PYTHONPATH=build/python package_test.py"""
 
 import io
+import pathlib
 import sys
+import tempfile
 import types
 import unittest
 import zlib
 from unittest import mock
 
 import numpy
-from houghstream import image_t, images_t, subscriber
+from houghstream import event_log, image_t, images_t, subscriber
 from houghstream.frames import decode_frame
 from PIL import Image
 
@@ -83,6 +85,16 @@ class Colour(unittest.TestCase):
         for size in (0, 1, 10, len(whole) // 2, len(whole) - 20):
             with self.assertRaisesRegex(ValueError, "image 5: a JPEG of .* damaged or cut"):
                 frame_of(image_of(whole[:size], image_t.PIXEL_FORMAT_MJPEG), raw_depth())
+
+
+class EventLog(unittest.TestCase):
+    def test_lengths_that_lcm_does_not_write_are_damage(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = pathlib.Path(folder) / "log"
+            for channel_size, data_size in ((7, 0x7FFFFFFF), (0x7FFFFFFF, 5), (-1, 5)):
+                log.write_bytes(event_log.HEADER.pack(event_log.SYNC, 0, 1, channel_size, data_size) + b"CHANNEL12345")
+                with self.assertRaisesRegex(event_log.DamagedLog, "no valid header"):
+                    list(event_log.read_log(log))
 
 
 class Subscriber(unittest.TestCase):

@@ -10,6 +10,7 @@ SEAL = "HOUGHSTREAM_SEAL"  # channel of an event before each block of a sealed l
 SEAL_HEADER = struct.Struct(">8sI")  # magic, number of checksums (32 bits each, big-endian)
 SEAL_MAGIC = b"HSSEAL1\0"
 SEALED_BLOCK = 256  # events, at most
+MOST_CHANNEL, MOST_DATA = 999, 1 << 28  # bytes that LCM writes
 
 
 class DamagedLog(ValueError):
@@ -50,7 +51,7 @@ def _events(path, log):
         if len(header) < HEADER.size:
             raise DamagedLog(f"{path}: cut within a header")
         sync, number, timestamp, channel_size, data_size = HEADER.unpack(header)
-        if sync != SYNC or channel_size < 0 or data_size < 0:
+        if sync != SYNC or not 0 <= channel_size <= MOST_CHANNEL or not 0 <= data_size <= MOST_DATA:
             raise DamagedLog(f"{path}: event {number} has no valid header")
         channel, data = log.read(channel_size), log.read(data_size)
         if len(channel) < channel_size or len(data) < data_size:
