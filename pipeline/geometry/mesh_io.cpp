@@ -22,7 +22,8 @@ namespace houghstream {
 namespace {
 
 std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::min(std::max(value, 0.0F), 1.0F) * 255.0F));
+  const float share = value > 0.0F ? std::min(value, 1.0F) : 0.0F;  // NaN too
+  return static_cast<std::uint8_t>(std::lround(share * 255.0F));
 }
 
 /// glTF states colours linear in the light, all else as a screen shows them (IEC 61966-2-1).
@@ -46,7 +47,10 @@ bool is_gltf(const std::filesystem::path& file) {
 void require_whole(const std::filesystem::path& file) {
   const std::string bytes = read_file(file, "a PLY, OBJ or glTF mesh");
   if (lower_extension(file) == ".ply") return check_ply(bytes, file.string());
-  if (lower_extension(file) == ".obj") return check_obj(bytes, file.string());
+  if (lower_extension(file) == ".obj") {
+    check_obj(bytes, file.string());
+    return check_materials(bytes, file);
+  }
   require(is_gltf(file), "{}: expected a file .ply, .obj, .glb or .gltf", file.string());
   check_gltf(bytes, file);
 }

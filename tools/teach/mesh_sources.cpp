@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/files.hpp"
 #include "tools/teach/mesh_checks.hpp"
 
 namespace houghstream::teach {
@@ -40,7 +41,7 @@ double unit_of(const fs::path& file, const MeshSources& sources) {
 void require_materials(const fs::path& file) {
   if (lower_extension(file) != ".obj") return;
   constexpr const char* kWord = "mtllib ";
-  std::ifstream in(file);
+  std::istringstream in(read_file(file, "an OBJ mesh"));
   for (std::string line; std::getline(in, line);) {
     if (line.rfind(kWord, 0) != 0) continue;
     std::string name = line.substr(std::string(kWord).size());

@@ -227,5 +227,36 @@ TEST(MeshStructure, APolygonOfThousandsOfCornersIsRefused) {
   EXPECT_THROW(load_mesh(file), InputError);
 }
 
+TEST(MeshStructure, MaterialsAreWholeToo) {
+  EXPECT_NO_THROW(
+      check_mtl("# made\r\nnewmtl red\r\nNs 250.0 # shiny\r\nKa 1 1 1\r\nKd 0.8 0 0\r\nd 1\r\nillum 2\r\n"
+                "map_Kd -s 1 1 1 -bm 1.0 red paint.png\r\nmap_Bump bump.png\r\nof_others 5\r\n",
+                "of Windows"));
+  EXPECT_NO_THROW(check_mtl("", "empty"));
+  for (const char* bad : {"Kd 1 0 0\n", "newmtl\n", "newmtl a\nKd\n", "newmtl a\nKd 1 x 0\n", "newmtl a\nKd 1 nan 0\n",
+                          "newmtl a\nKd 1 1 1 1\n", "newmtl a\nNs\n", "newmtl a\nmap_Kd\n", "newmtl a\nmap_Kd -bm 1\n",
+                          "newmtl a\nmap_Kd -unknown 1 a.png\n"})
+    EXPECT_THROW(check_mtl(bad, "bad.mtl"), InputError) << bad;
+  EXPECT_THROW(check_mtl("newmtl a\n# " + std::string(2000, 'x'), "long.mtl"), InputError);
+  EXPECT_THROW(check_mtl(std::string("newmtl a\0", 9), "zero.mtl"), InputError);
+}
+
+TEST(MeshStructure, DamagedMaterialsOfAMeshAreRefused) {
+  const fs::path folder = fs::temp_directory_path();
+  const fs::path file = folder / "mesh_structure_test_painted.obj";
+  const auto say = [&](const std::string& name, const std::string& materials) {
+    std::ofstream(file) << name << "\n" << obj();
+    std::ofstream(folder / "mesh_structure_test_painted.mtl") << materials;
+  };
+  say("mtllib mesh_structure_test_painted.mtl", "newmtl red\nKd 1 0 0\n");
+  EXPECT_NO_THROW(load_mesh(file));
+  say("mtllib mesh_structure_test_painted.mtl", "Kd 1 0 0\n");
+  EXPECT_THROW(load_mesh(file), InputError);
+  say("mtllib not_there.mtl", "Kd 1 0 0\n");
+  EXPECT_THROW(load_mesh(file), InputError) << "the library takes the one of its own name";
+  say("mtllib not_there.mtl \\", "newmtl red\n");
+  EXPECT_THROW(load_mesh(file), InputError);
+}
+
 }  // namespace
 }  // namespace houghstream
