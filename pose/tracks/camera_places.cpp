@@ -56,13 +56,18 @@ double number_of(const cv::FileNode& node, const char* key, const std::string& o
 
 Links links_of(const cv::FileStorage& yaml, const std::string& file) {
   Links links;
-  for (const cv::FileNode& node : yaml["cameras"]) {
+  const cv::FileNode cameras = yaml["cameras"];
+  const cv::FileNode transforms = yaml["transforms"];
+  // What is in a list has no name that could be asked for.
+  require((cameras.isNone() || cameras.isMap()) && (transforms.isNone() || transforms.isSeq()),
+          "{}: expected 'cameras:' with names, or a list of 'transforms:'", file);
+  for (const cv::FileNode& node : cameras) {
     const std::string of = fmt::format("{}: camera {}", file, node.name());
     const std::string parent = node["parent"].isString() ? std::string(node["parent"]) : "world";
     links[node.name()] = {parent, rigid(numbers_of<3>(node["translation"], of + ": translation"),
                                         numbers_of<4>(node["rotation"], of + ": rotation"), of)};
   }
-  for (const cv::FileNode& node : yaml["transforms"]) {
+  for (const cv::FileNode& node : transforms) {
     require(node["child_frame_id"].isString() && node["header"]["frame_id"].isString(),
             "{}: a transform without header.frame_id and child_frame_id", file);
     const std::string child = node["child_frame_id"];

@@ -16,6 +16,7 @@
 #include "drivers/openni/recording/oni_times.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/messages/codecs.hpp"
 #include "tests/detector/forest/random_forest.hpp"
 #include "tests/drivers/store/small_store.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
@@ -195,7 +196,7 @@ void read_picture(ByteView input) {
 std::vector<Bytes> pictures() {
   const std::string file = as_file({}, "seed.png");
   write_png(make_test_frame(5, 16, 12).colour, file);
-  return {content(file)};
+  return {content(file), encode_jpeg(make_test_frame(5, 16, 12).colour, 90)};
 }
 
 void read_oni(ByteView input) {
@@ -244,13 +245,17 @@ std::vector<FuzzTarget> file_targets() {
        {"cam_K", "cam_R_m2c", "cam_t_m2c", "bbox_visib", "obj_id", "null", "1e400"}},
       {"store", read_stored, stores, nullptr, {"symmetries_discrete", "symmetries_continuous", "version", "objects"}},
       {"calibration", read_calibration, calibrations, nullptr, {"!!opencv-matrix", "data:", "&a", "*a", "- [", "{"}},
-      {"picture", read_picture, pictures, nullptr, {"IHDR", "IDAT", "PLTE", "tRNS", "IEND"}},
+      {"picture",
+       read_picture,
+       pictures,
+       nullptr,
+       {"IHDR", "IDAT", "PLTE", "tRNS", "IEND", "\xFF\xDA", "\xFF\xC2", "\xFF\x01"}},
       {"oni", read_oni, recordings, nullptr, {"NIR"}}};
 }
 
 std::vector<FuzzTarget> fuzz_targets() {
   std::vector<FuzzTarget> all;
-  for (const auto& some : {message_targets(), file_targets(), mesh_targets()})
+  for (const auto& some : {message_targets(), file_targets(), mesh_targets(), text_targets()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

@@ -31,6 +31,7 @@ struct FuzzTarget {
 std::vector<FuzzTarget> message_targets();
 std::vector<FuzzTarget> file_targets();
 std::vector<FuzzTarget> mesh_targets();
+std::vector<FuzzTarget> text_targets();
 
 /// All of them.
 std::vector<FuzzTarget> fuzz_targets();

@@ -1,4 +1,5 @@
 #include <cstring>
+#include <filesystem>
 
 #include "pipeline/geometry/mesh.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
@@ -14,6 +15,14 @@ void read_ply(ByteView input) {
 
 void read_obj(ByteView input) {
   load_mesh(as_file(input, "mesh.obj"));
+}
+
+/// The materials of a mesh that is whole.
+void read_mtl(ByteView input) {
+  const std::string materials = std::filesystem::path(as_file(input, "paint.mtl")).filename().string();
+  const Bytes mesh =
+      bytes_of_text("mtllib " + materials + "\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 2\n");
+  load_mesh(as_file({mesh.data(), mesh.size()}, "painted.obj"));
 }
 
 void read_glb(ByteView input) {
@@ -47,6 +56,10 @@ std::vector<Bytes> objs() {
   return {
       bytes_of_text("o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n"
                     "f -4/1/1 -2/1/1 -1/1/1\n")};
+}
+
+std::vector<Bytes> mtls() {
+  return {bytes_of_text("# made\nnewmtl red\nNs 250.0\nKa 1 1 1\nKd 0.8 0 0\nd 1\nillum 2\nnewmtl blue\nKd 0 0 0.8\n")};
 }
 
 std::vector<Bytes> glbs() {
@@ -93,6 +106,12 @@ std::vector<FuzzTarget> mesh_targets() {
            {"element ", "property ", "list ", "vertex_index", "end_header", "double ", "short "},
            1024},
           {"obj", read_obj, objs, nullptr, {"v ", "vt ", "vn ", "f ", "mtllib ", "usemtl ", "//", "\\\n", "nan"}, 1024},
+          {"mtl",
+           read_mtl,
+           mtls,
+           nullptr,
+           {"newmtl ", "Kd ", "map_Kd ", "bump ", "-bm 1 ", "-s 1 1 1 ", "-clamp on ", "illum ", "Tf ", "d "},
+           512},
           {"glb",
            read_glb,
            glbs,

@@ -1,10 +1,8 @@
 #include <houghstream/drake_image_array_t.hpp>
 #include <houghstream/status_t.hpp>
 
-#include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
-#include "pipeline/types/camera.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/foreign_frames.hpp"
@@ -35,6 +33,26 @@ void read_result(ByteView input) {
   if (fingerprint == teaching_t::getHash()) teaching_from_message(decode_message<teaching_t>(input));
   if (fingerprint == status_t::getHash()) decode_message<status_t>(input);
   if (fingerprint == known_objects_t::getHash()) decode_message<known_objects_t>(input);
+  if (fingerprint == objects_t::getHash()) world_from_message(decode_message<objects_t>(input));
+  if (fingerprint == rigid_transform_t::getHash()) transform_from_message(decode_message<rigid_transform_t>(input));
+}
+
+WorldObjects world_of(const FrameId& frame) {
+  WorldObjects world;
+  world.frame = frame;
+  world.world = "WORLD";
+  world.world_number = 1;
+  TrackedObject object;
+  object.track_id = 3;
+  object.class_id = 1;
+  object.class_name = "mug";
+  object.state = TrackState::kVisible;
+  object.probability = 0.9F;
+  object.last_seen = frame;
+  object.reason = "seen by LEFT";
+  world.objects = {object};
+  world.stages = {{"track.update", 5}};
+  return world;
 }
 
 std::vector<Bytes> results() {
@@ -65,8 +83,13 @@ std::vector<Bytes> results() {
   known.objects = {{"mug", 5}};
   status_t status{};
   status.process = "hs-detect";
-  return {encode_message(to_message(detections)), encode_message(to_message(poses)),
-          encode_message(to_message(teaching)), encode_message(to_message(known)), encode_message(status)};
+  return {encode_message(to_message(detections)),
+          encode_message(to_message(poses)),
+          encode_message(to_message(teaching)),
+          encode_message(to_message(known)),
+          encode_message(status),
+          encode_message(to_message(world_of(detections.frame))),
+          encode_message(to_message(7, Eigen::Isometry3d::Identity()))};
 }
 
 void read_foreign(ByteView input) {
@@ -80,26 +103,12 @@ std::vector<Bytes> foreign_frames() {
           encode_message(log_tools::kinect_message(frame, false)), encode_message(log_tools::drake_message(frame))};
 }
 
-/// What people and messages name in words: a first letter says which reader takes the rest.
-void read_words(ByteView input) {
-  if (input.size == 0) return;
-  const std::string text(reinterpret_cast<const char*>(input.data) + 1, input.size - 1);
-  if (input.data[0] == 'p') ChannelPattern(text).matches("OPENNI_FRAME");
-  if (input.data[0] == 'c') parse_camera(text);
-  if (input.data[0] == 's') parse_sequence({input.data + 1, input.size - 1});
-}
-
-std::vector<Bytes> words() {
-  return {bytes_of_text("pOPENNI_.*|LEFT"), bytes_of_text("c640x480,525,525,319.5,239.5"), bytes_of_text("s12345")};
-}
-
 }  // namespace
 
 std::vector<FuzzTarget> message_targets() {
   return {{"frame", read_frame, frames, nullptr, {"houghstream.camera", "houghstream.sequence", "houghstream.run"}},
           {"result", read_result, results, nullptr, {}},
-          {"foreign", read_foreign, foreign_frames, nullptr, {}},
-          {"words", read_words, words, nullptr, {"[a-z]", "(a|b)*", "{2,3}", "\\d", "640x480,", "1e308"}, 128}};
+          {"foreign", read_foreign, foreign_frames, nullptr, {}}};
 }
 
 }  // namespace houghstream::fuzz

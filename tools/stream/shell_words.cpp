@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream::stream {
 namespace {
@@ -33,13 +34,13 @@ std::vector<std::string> shell_words(const std::string& text, const std::string&
       quote = quote == '\0' ? c : '\0';
     } else if (escapes(text, i, quote)) {
       ++i;
-      require(i < text.size(), "{} '{}': nothing follows its last backslash", source, text);
+      require(i < text.size(), "{} '{}': nothing follows its last backslash", source, printable(text));
       word += text[i];
     } else {
       word += c;
     }
   }
-  require(quote == '\0', "{} '{}': a quote has no end, expected another {}", source, text, quote);
+  require(quote == '\0', "{} '{}': a quote has no end, expected another {}", source, printable(text), quote);
   if (has_begun) words.push_back(word);
   return words;
 }

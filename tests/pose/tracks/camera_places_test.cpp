@@ -150,6 +150,8 @@ TEST(CameraPlaces, WhatIsNoNumberOrLiesTooDeepIsRefused) {
   EXPECT_NE(error_of([&] { read_camera_places(far_away); }).find("expected metres within"), std::string::npos);
   const auto scalar = written("scalar.yaml", "cameras:\n  A: 5\n");
   EXPECT_NE(error_of([&] { read_camera_places(scalar); }), "");
+  const auto nameless = written("nameless.yaml", "cameras: [1, 2]\n");
+  EXPECT_NE(error_of([&] { read_camera_places(nameless); }).find("with names"), std::string::npos);
   std::string deep = "cameras:\n";
   for (int i = 0; i < 5000; ++i) deep += " [\n";
   const auto brackets = written("deep.yaml", deep);
