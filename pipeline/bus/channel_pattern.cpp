@@ -3,6 +3,7 @@
 #include <regex>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/bus/channels.hpp"
 
 namespace houghstream {
@@ -16,7 +17,7 @@ std::function<bool(const std::string&)> matcher_of(const std::string& text, bool
       return channel.size() <= channel::kMostBytes && std::regex_match(channel, expression);
     };
   } catch (const std::regex_error& error) {
-    fail("channels '{}': {}, expected a regular expression", text, error.what());
+    fail("channels '{}': {}, expected a regular expression", printable(text), error.what());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 
@@ -46,7 +47,8 @@ Camera parse_camera(const std::string& text) {
   const int fields = std::sscanf(text.c_str(), "%dx%d,%lf,%lf,%lf,%lf%n", &camera.width, &camera.height, &camera.fx,
                                  &camera.fy, &camera.cx, &camera.cy, &used);
   require(fields == 6 && static_cast<std::size_t>(used) == text.size(),
-          "--camera '{}', expected WIDTHxHEIGHT,fx,fy,cx,cy, for instance 640x480,525,525,319.5,239.5", text);
+          "--camera '{}', expected WIDTHxHEIGHT,fx,fy,cx,cy, for instance 640x480,525,525,319.5,239.5",
+          printable(text));
   check_camera(camera, "--camera");
   return camera;
 }

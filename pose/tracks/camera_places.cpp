@@ -8,6 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/motion_filter.hpp"
 
@@ -183,18 +184,20 @@ std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesyste
 std::pair<std::string, Eigen::Isometry3d> parse_camera_place(const std::string& text) {
   const std::string expected = "CHANNEL=x,y,z,qw,qx,qy,qz";
   const std::size_t equals = text.find('=');
-  require(equals != std::string::npos && equals > 0, "--camera-pose '{}', expected {}", text, expected);
+  require(equals != std::string::npos && equals > 0, "--camera-pose '{}', expected {}", printable(text), expected);
   std::vector<double> numbers;
   std::istringstream rest(text.substr(equals + 1));
   for (std::string word; std::getline(rest, word, ',');) {
     char* end = nullptr;
     numbers.push_back(std::strtod(word.c_str(), &end));
     require(!word.empty() && end == word.c_str() + word.size(), "--camera-pose '{}': '{}' is no number, expected {}",
-            text, word, expected);
+            printable(text), printable(word), expected);
   }
-  require(numbers.size() == 7, "--camera-pose '{}': {} numbers, expected {}", text, numbers.size(), expected);
-  return {text.substr(0, equals), rigid({numbers[0], numbers[1], numbers[2]},
-                                        {numbers[3], numbers[4], numbers[5], numbers[6]}, "--camera-pose " + text)};
+  require(numbers.size() == 7, "--camera-pose '{}': {} numbers, expected {}", printable(text), numbers.size(),
+          expected);
+  return {text.substr(0, equals),
+          rigid({numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5], numbers[6]},
+                "--camera-pose " + printable(text))};
 }
 
 void add_camera_place(const std::string& text, std::map<std::string, Eigen::Isometry3d>& places) {

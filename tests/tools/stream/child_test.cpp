@@ -82,7 +82,7 @@ TEST(Child, AMissingProgramIsNamed) {
 TEST(Child, WhoWritesWithoutEndKeepsNobody) {
   testing::internal::CaptureStderr();
   {
-    Child flood({"/bin/sh", "-c", "exec yes >&2"}, true);
+    Child flood({"/bin/sh", "-c", "while true; do echo words without end >&2; done"}, true);
     for (int i = 0; i < 20; ++i) {
       EXPECT_FALSE(flood.ending().has_value());
       std::this_thread::sleep_for(milliseconds(10));
