@@ -14,9 +14,6 @@ void set_pose(const Eigen::Isometry3d& T, double* trans, double* quat) {
   std::copy_n(transform.quat, 4, quat);
 }
 
-// Beyond the Moon: no camera's world is larger, and who draws or adds up places need not mind overflows.
-constexpr double kFarthestM = 1e9;
-
 Eigen::Isometry3d pose_from(const double* trans, const double* quat, const std::string& of) {
   const Eigen::Map<const Eigen::Vector3d> translation(trans);
   const Eigen::Quaterniond q(quat[0], quat[1], quat[2], quat[3]);

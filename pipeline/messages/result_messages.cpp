@@ -67,13 +67,14 @@ Detection detection_from_message(const detection_t& message) {
   require(message.class_id != detection_t::INVALID_CLASS && !message.class_name.empty(),
           "detection of class {} '{}', expected a class with a name", message.class_id, message.class_name);
   const cv::Rect2f box(message.box_x, message.box_y, message.box_width, message.box_height);
-  const bool box_ok = std::isfinite(box.x) && std::isfinite(box.y) && std::isfinite(box.width) &&
-                      std::isfinite(box.height) && box.width > 0.0F && box.height > 0.0F;
-  require(box_ok, "{}: box at ({}, {}) of {}x{} pixels, expected finite with positive size", message.class_name, box.x,
-          box.y, box.width, box.height);
+  const bool box_ok = std::abs(box.x) <= kFarthestPx && std::abs(box.y) <= kFarthestPx && box.width > 0.0F &&
+                      box.width <= kFarthestPx && box.height > 0.0F && box.height <= kFarthestPx;  // not NaN either
+  require(box_ok, "{}: box at ({}, {}) of {}x{} pixels, expected positive sizes, all within {}", message.class_name,
+          box.x, box.y, box.width, box.height, kFarthestPx);
   const Eigen::Vector3f centre(message.centre_camera);
-  require(centre.allFinite() || centre.array().isNaN().all(), "{}: centre ({}, {}, {}), expected metres or NaN",
-          message.class_name, centre.x(), centre.y(), centre.z());
+  const bool has_centre = centre.allFinite() && static_cast<double>(centre.cwiseAbs().maxCoeff()) <= kFarthestM;
+  require(has_centre || centre.array().isNaN().all(), "{}: centre ({}, {}, {}), expected metres within {}, or NaN",
+          message.class_name, centre.x(), centre.y(), centre.z(), kFarthestM);
   require(std::isfinite(message.score) && std::isfinite(message.vote_weight), "{}: score {} and vote weight {}",
           message.class_name, message.score, message.vote_weight);
   Detection out;
@@ -85,6 +86,8 @@ Detection detection_from_message(const detection_t& message) {
   out.centre_camera = centre;
   out.vote_weight = message.vote_weight;
   out.vote_count = message.n_votes_total;
+  require(message.vote_quat.size() <= detection_t::MAX_VOTES, "{}: {} rotations, expected at most {}",
+          message.class_name, message.vote_quat.size(), int{detection_t::MAX_VOTES});
   for (std::size_t i = 0; i < message.vote_quat.size(); ++i) {
     out.rotations.push_back(vote_from(message.vote_quat[i], message.vote_quat_weight.at(i)));
   }
@@ -119,8 +122,9 @@ object_pose_t pose_to_message(const ObjectPose& pose) {
 Eigen::Isometry3d transform_from(const object_pose_t& message) {
   const Eigen::Vector3d translation(message.trans);
   const Eigen::Quaterniond q(message.quat[0], message.quat[1], message.quat[2], message.quat[3]);
-  require(translation.allFinite(), "{}: valid pose at ({}, {}, {}), expected finite metres", message.class_name,
-          translation.x(), translation.y(), translation.z());
+  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kFarthestM,
+          "{}: valid pose at ({}, {}, {}), expected metres within {}", message.class_name, translation.x(),
+          translation.y(), translation.z(), kFarthestM);
   require(std::abs(q.norm() - 1.0) < kUnitTolerance, "{}: valid pose with a quaternion of length {}, expected 1",
           message.class_name, q.norm());
   return Eigen::Translation3d(translation) * q.normalized();

@@ -163,6 +163,7 @@ class FollowProcess {
   ObjectPoses answer(const PairedMessages& pair) {
     Detections detections =
         detections_from_message(decode_message<detections_t>({pair.detections.data(), pair.detections.size()}));
+    if (!bus_.is_log()) require_few(detections);
     RecentFrames::Decoded decoded = recent_.find(pair.id);
     if (!decoded) {
       decoded = std::make_shared<const DecodedFrame>(decode_for_poses(pair.frame, pair.id.channel, options_.camera));

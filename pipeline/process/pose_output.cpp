@@ -1,5 +1,6 @@
 #include "pipeline/process/pose_output.hpp"
 
+#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/channels.hpp"
@@ -13,6 +14,12 @@ DecodedFrame decode_for_poses(const std::vector<std::uint8_t>& bytes, const std:
   RgbdFrame frame = frame_from_message(decode_message<images_t>({bytes.data(), bytes.size()}), channel, camera);
   clock.mark("pose.decode");
   return {std::move(frame), clock.times().front()};
+}
+
+void require_few(const Detections& detections) {
+  constexpr std::size_t kMost = 512;
+  require(detections.detections.size() <= kMost, "frame {}: {} detections, expected at most {}",
+          to_string(detections.frame), detections.detections.size(), kMost);
 }
 
 TransformOutput::TransformOutput(LcmBus& bus, const std::string& frame_channels)

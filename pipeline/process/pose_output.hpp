@@ -7,6 +7,7 @@
 
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/types/camera.hpp"
+#include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 
@@ -21,6 +22,9 @@ struct DecodedFrame {
 /// Decodes an images_t. Throws InputError where it is none.
 DecodedFrame decode_for_poses(const std::vector<std::uint8_t>& bytes, const std::string& channel,
                               const std::optional<Camera>& camera);
+
+/// Throws InputError for more detections at once than could be worked on within Heartbeat::kPatience.
+void require_few(const Detections& detections);
 
 /// Where the transforms of poses go: to <OBJECT>_TO_CAMERA where there is one camera, to <OBJECT>_TO_<CAMERA'S CHANNEL>
 /// where the channels are a pattern, and from the moment on when detections of another camera's frames are heard.

@@ -134,6 +134,7 @@ class PoseProcess {
 
   ObjectPoses poses_of(const PairedMessages& pair) {
     Detections detections = detections_from_message(decode_message<detections_t>(view(pair.detections)));
+    if (!bus_.is_log()) require_few(detections);
     if (detections.detections.empty()) return {detections.frame, {}, detections.stages};
     const RecentFrames::Decoded ahead = ahead_.find(pair.id);
     const RecentFrames::Decoded frame = ahead ? ahead : decoded(pair.id, pair.frame);

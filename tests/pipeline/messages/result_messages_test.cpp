@@ -122,6 +122,13 @@ TEST(ResultMessages, AbsurdDetectionsAreRefused) {
   refused([](detection_t& d) { d.centre_camera[0] = std::numeric_limits<float>::infinity(); });
   refused([](detection_t& d) { d.vote_quat[0] = {0, 0, 0, 0}; });
   refused([](detection_t& d) { d.vote_quat_weight[0] = -1.0F; });
+  refused([](detection_t& d) { d.box_x = -1e30F; });
+  refused([](detection_t& d) { d.box_height = 1e30F; });
+  refused([](detection_t& d) { d.centre_camera[1] = 1e30F; });
+  refused([](detection_t& d) {
+    d.vote_quat.assign(detection_t::MAX_VOTES + 1, d.vote_quat[0]);
+    d.vote_quat_weight.assign(detection_t::MAX_VOTES + 1, 1.0F);
+  });
 }
 
 TEST(ResultMessages, PosesComeBack) {

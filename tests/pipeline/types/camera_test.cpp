@@ -38,6 +38,11 @@ TEST(Camera, AbsurdNumbersAreRefused) {
   bad.width = 0;
   EXPECT_THROW(check_camera(bad, "test"), InputError);
   bad = kUnequalFocals;
+  for (const double focal : {1e-300, 1e300}) {
+    bad.fy = focal;
+    EXPECT_THROW(check_camera(bad, "test"), InputError) << focal;
+  }
+  bad = kUnequalFocals;
   bad.cx = 1e9;
   EXPECT_THROW(check_camera(bad, "test"), InputError);
   EXPECT_NO_THROW(check_camera(kUnequalFocals, "test"));
