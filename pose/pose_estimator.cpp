@@ -120,8 +120,18 @@ PoseEstimator::PoseEstimator(std::map<std::string, Mesh> models, PoseSettings se
   state_->settings = std::move(settings);
 }
 
+PoseEstimator PoseEstimator::of_models(std::map<std::string, ObjectModel> models, PoseSettings settings) {
+  PoseEstimator estimator(std::map<std::string, Mesh>(), std::move(settings));
+  estimator.state_->models = std::move(models);
+  return estimator;
+}
+
 PoseEstimator::~PoseEstimator() = default;
 PoseEstimator::PoseEstimator(PoseEstimator&&) noexcept = default;
+
+const std::map<std::string, ObjectModel>& PoseEstimator::models() const {
+  return state_->models;
+}
 
 ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections) const {
   return estimate(frame, detections, {});

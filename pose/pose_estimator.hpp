@@ -10,6 +10,7 @@
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pose/following/follow.hpp"
+#include "pose/model/object_model.hpp"
 #include "pose/pose_settings.hpp"
 
 namespace houghstream {
@@ -31,8 +32,13 @@ class PoseEstimator {
   /// Models by class name, in metres, in the object frame of the training views. What registration needs of them is
   /// made on `threads` threads, the same for any number. Throws InputError as make_object_model() does.
   PoseEstimator(std::map<std::string, Mesh> models, PoseSettings settings, int threads = 1);
+  /// Of models that were made before, with settings.model.
+  static PoseEstimator of_models(std::map<std::string, ObjectModel> models, PoseSettings settings);
   ~PoseEstimator();
   PoseEstimator(PoseEstimator&&) noexcept;
+
+  /// By class name.
+  const std::map<std::string, ObjectModel>& models() const;
 
   /// One ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice and pose.verification are appended to those of the detections.

@@ -1,5 +1,6 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/store/store_watch.hpp"
+#include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -11,6 +12,7 @@
 #include "tools/common/mesh_size.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
+#include "tools/pose/kept_models.hpp"
 
 namespace {
 
@@ -19,6 +21,7 @@ using namespace houghstream;
 /// What a command line asks for.
 struct PoseOptions {
   std::string objects;
+  std::string cache;
   std::string models;
   double model_unit_m = 1e-3;
   std::string url;
@@ -36,18 +39,11 @@ std::map<std::string, Mesh> load_models(const PoseOptions& options, int threads)
   return {};
 }
 
-/// How an estimator is made.
-struct Making {
-  int threads = 1;
-  RgbdFrame frame;  ///< to warm up with
-};
-
 /// Poses of one detection of each class in a made-up frame: the models are in memory, and threads run, before the first
 /// real one.
-std::shared_ptr<const PoseEstimator> warmed_up(std::map<std::string, Mesh> meshes, const PoseSettings& settings,
-                                               const Making& making) {
+std::shared_ptr<const PoseEstimator> warmed_up(PoseEstimator cold, const RgbdFrame& made_up) {
   Detections detections;
-  for (const auto& [name, mesh] : meshes) {
+  for (const auto& [name, model] : cold.models()) {
     Detection detection;
     detection.class_id = 1;
     detection.class_name = name;
@@ -57,8 +53,8 @@ std::shared_ptr<const PoseEstimator> warmed_up(std::map<std::string, Mesh> meshe
     detection.rotations.push_back({Eigen::Quaternionf::Identity(), 1.0F});
     detections.detections.push_back(std::move(detection));
   }
-  auto estimator = std::make_shared<const PoseEstimator>(std::move(meshes), settings, making.threads);
-  estimator->estimate(making.frame, detections);
+  auto estimator = std::make_shared<const PoseEstimator>(std::move(cold));
+  estimator->estimate(made_up, detections);
   return estimator;
 }
 
@@ -90,19 +86,41 @@ void run_with_models(PoseOptions options) {
   if (!fault.empty()) log_warning("{}", fault);  // no frame will show such
   if (options.min_quality) publish_from(*options.min_quality, options.settings);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
-  auto estimator = warmed_up(std::move(meshes), options.settings, {threads, made_up.get()});
+  auto estimator = warmed_up(PoseEstimator(std::move(meshes), options.settings, threads), made_up.get());
   LcmBus bus(options.url, options.output_log);
   run(bus, options, [&] { return estimator; });
 }
 
+/// Of models that were kept at an earlier start, else of the store's meshes.
+PoseEstimator estimator_of(const store::ObjectStore& store, const PoseSettings& settings, const KeptModels& kept,
+                           int threads) {
+  const std::string state = kept.state_of(store, settings.model);
+  if (auto models = kept.find(store, state)) return PoseEstimator::of_models(std::move(*models), settings);
+  PoseEstimator made(store::load_store_meshes(store, threads), settings, threads);
+  if (kept.state_of(store, settings.model) == state) kept.keep(store, state, made.models());
+  return made;
+}
+
+/// Empty where there is no place for it.
+std::filesystem::path folder_to_keep_in(const PoseOptions& options) {
+  if (!options.cache.empty()) return options.cache;
+  try {
+    return cache_folder("--cache FOLDER") / "models";
+  } catch (const InputError& error) {
+    log_debug("models are not kept: {}", error.what());
+    return {};
+  }
+}
+
 /// A store may change while frames go by: each frame's poses are those of what is there when its turn comes.
 void run_with_store(PoseOptions options) {
+  const KeptModels kept(folder_to_keep_in(options));
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   const int threads = threads_to_start(options.settings.threads);  // of the first store: later ones are loaded alone
   const auto load = [&](const store::ObjectStore& store) {
     PoseSettings settings = options.settings;
     take_from_store(store, options.min_quality, settings);
-    return warmed_up(store::load_store_meshes(store, threads), settings, {threads, made_up.get()});
+    return warmed_up(estimator_of(store, settings, kept, threads), made_up.get());
   };
   store::StoreWatch<PoseEstimator> watch(options.objects, load);
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
@@ -123,6 +141,9 @@ int main(int argc, char** argv) {
   std::string camera;
   app.add_option("--objects", options.objects,
                  "object store of hs-teach, instead of --models; it may be made, and changed, while this runs");
+  app.add_option(
+      "--cache", options.cache,
+      "where what is made of a store's meshes is kept for the next start; default ~/.cache/houghstream/models");
   add_model_options(app, options.models, options.model_unit_m);
   app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
   app.add_option("--threads", options.settings.threads, "threads").range(1, 64).capture_default_str();
@@ -149,6 +170,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     if (!camera.empty()) options.process.camera = parse_camera(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
+    require(options.cache.empty() || !options.objects.empty(), "--cache goes with --objects");
     require_output_log(options.url, options.output_log);
     for (const std::string& input : {options.models, options.objects}) require_other_file(options.output_log, input);
     options.objects.empty() ? run_with_models(options) : run_with_store(options);
