@@ -6,10 +6,7 @@ set(shared_data "${CMAKE_INSTALL_DATADIR}/houghstream")
 
 # Programs
 set(programs hs-capture hs-detect hs-pose hs-view hs-log hs-stream hs-doctor hs-teach hs-train hs-fuse hs-evaluate
-             hs-import hs-render hs-observe)
-if(TARGET hs-track)
-  list(APPEND programs hs-track)
-endif()
+             hs-import hs-render hs-observe hs-track)
 install(TARGETS ${programs} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
 install(PROGRAMS "${PROJECT_BINARY_DIR}/bin/hs-spy" "${PROJECT_SOURCE_DIR}/tools/houghstream-demo"
         DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
@@ -60,17 +57,8 @@ else()
 endif()
 
 # Libraries and headers
-set(libraries lcmtypes pipeline pipeline_lcm drivers detector pose stored_quality finder)
-foreach(library IN LISTS libraries)
-  get_target_property(type ${library} TYPE)
-  if(NOT type STREQUAL INTERFACE_LIBRARY)
-    set_target_properties(${library} PROPERTIES OUTPUT_NAME houghstream_${library})
-  endif()
-  add_library(houghstream::${library} ALIAS ${library})
-endforeach()
 set_target_properties(lcmtypes PROPERTIES EXPORT_NAME types)
-add_library(houghstream::types ALIAS lcmtypes)
-install(TARGETS ${libraries} EXPORT houghstream_targets
+install(TARGETS ${HOUGHSTREAM_LIBRARIES} EXPORT houghstream_targets
         ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development
         INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" "${CMAKE_INSTALL_INCLUDEDIR}/houghstream")
 install(DIRECTORY "${PROJECT_BINARY_DIR}/lcmtypes/generated/houghstream" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"

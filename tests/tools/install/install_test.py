@@ -66,6 +66,35 @@ class Libraries(unittest.TestCase):
         self.assertTrue(any((place / "libhoughstream_finder.a").is_file() for place in places), said)
 
 
+class Subproject(unittest.TestCase):
+    """The sources as a folder of another project, by add_subdirectory or FetchContent."""
+
+    def test_it_gives_the_targets_of_the_package(self):
+        folder, examples = HOME.parent / "parent", SOURCE / "tools/examples/cpp"
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text(f"""
+cmake_minimum_required(VERSION 3.25)
+project(parent LANGUAGES CXX)
+find_package(Eigen3 REQUIRED NO_MODULE)
+add_subdirectory("{SOURCE}" houghstream EXCLUDE_FROM_ALL)
+foreach(library types pipeline pipeline_lcm drivers detector pose finder)
+  if(NOT TARGET houghstream::${{library}})
+    message(FATAL_ERROR "houghstream::${{library}} is no target")
+  endif()
+endforeach()
+if(HOUGHSTREAM_TESTS OR CMAKE_BUILD_TYPE)
+  message(FATAL_ERROR "the parent's settings are changed")
+endif()
+add_executable(poses_in_base "{examples}/poses_in_base.cpp")
+target_link_libraries(poses_in_base houghstream::types Eigen3::Eigen)
+add_executable(find_in_images EXCLUDE_FROM_ALL "{examples}/find_in_images.cpp")
+target_link_libraries(find_in_images houghstream::finder)
+""")
+        run("cmake", "-S", folder, "-B", folder / "build", "-G", "Ninja")
+        run("cmake", "--build", folder / "build")
+        self.assertTrue((folder / "build/poses_in_base").is_file())
+
+
 class PythonPackage(unittest.TestCase):
     def test_it_lies_where_debians_python_looks(self):
         self.assertTrue((HOME / "lib/python3/dist-packages/houghstream/event_log.py").is_file())
