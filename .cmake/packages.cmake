@@ -26,6 +26,7 @@ set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "finds taught objects in an RGB-D camer
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhoughstream-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "liblcm-dev, libopencv-dev, libturbojpeg0-dev, libdeflate-dev, zlib1g-dev, libeigen3-dev, libhwy-dev, libassimp-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "g++, cmake, make")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "finds taught objects in an RGB-D camera's stream: libraries
  Static libraries, headers, message definitions, CMake and pkg-config files,
  and examples.")
@@ -34,6 +35,13 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-houghstream)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, python3-pil")
+file(WRITE "${PROJECT_BINARY_DIR}/python_package/prerm"
+"#!/bin/sh
+set -e
+# What Python has compiled while root used it.
+rm -rf /usr/lib/python3/dist-packages/houghstream/__pycache__
+")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/python_package/prerm")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Python
  Message types, logs, and frames as numpy arrays.")
 
@@ -41,6 +49,7 @@ set(CPACK_DEBIAN_JAVA_PACKAGE_NAME houghstream-java)
 set(CPACK_DEBIAN_JAVA_PACKAGE_SECTION java)
 set(CPACK_DEBIAN_JAVA_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_JAVA_PACKAGE_DEPENDS "default-jre, liblcm-java, libjchart2d-java")
+set(CPACK_DEBIAN_JAVA_PACKAGE_RECOMMENDS "default-jdk-headless") # java FILE.java, as the example is started, compiles it
 set(CPACK_COMPONENT_JAVA_DESCRIPTION "finds taught objects in an RGB-D camera's stream: Java
  Message types, and viewers for lcm-spy.")
 
