@@ -42,6 +42,8 @@ function(houghstream_compile_options target)
   # goes without them, as precompiled headers have one set of options.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                            -Wno-float-conversion ${HOUGHSTREAM_WERROR} -ffp-contract=off -fno-strict-aliasing)
+  # A shared library that links ours, as the virtual camera's driver does, exports its own names only.
+  target_compile_options(${target} PRIVATE -fvisibility=hidden -fvisibility-inlines-hidden)
   set(sanitized -fno-omit-frame-pointer -g1 $<$<CONFIG:Release>:-O1>) # -O3 takes minutes and gigabytes
   if(HOUGHSTREAM_FUZZ) # by clang, whose warnings are others
     target_compile_options(${target} PRIVATE -Wno-error -fsanitize=fuzzer-no-link,address,undefined

@@ -58,6 +58,12 @@ class Libraries(unittest.TestCase):
                 if found:
                     self.assertIn("houghstream::", found[2], f"{library.name} defines it")
 
+    def test_a_shared_library_that_links_them_does_not_export_them(self):
+        driver = next(HOME.glob("lib/**/libvirtual_camera.so.0"))
+        exported = run("nm", "--dynamic", "--demangle", "--defined-only", driver)
+        self.assertIn("oniDriverCreate", exported)
+        self.assertNotIn("houghstream::", exported)
+
     def test_pkg_config_finds_them_where_they_are(self):
         folder = next(HOME.glob("lib/**/pkgconfig"))
         said = run("pkg-config", "--cflags", "--libs", "houghstream", env={**os.environ, "PKG_CONFIG_PATH": str(folder)})
@@ -167,6 +173,12 @@ for number in range(100):
         said = self.folder / "said.txt"
         return run(*PRIVATE, "bash", "-c", play, "bash", *words,
                    env={**python_of_installation(), "LOG": str(self.log), "SAID": str(said)})  # fmt: skip
+
+    def test_each_is_a_page(self):
+        pages = [page for page in self.source.rglob("*") if page.is_file()]
+        self.assertGreater(len(pages), 6)
+        for page in pages:
+            self.assertLessEqual(len(page.read_text().splitlines()), 60, page)
 
     def test_find_in_images_says_what_is_wrong(self):
         self.assertIn("find_in_images: expected STORE COLOUR DEPTH", run(self.folder / "find_in_images", status=1))
