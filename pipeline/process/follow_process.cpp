@@ -25,7 +25,7 @@ using std::chrono::milliseconds;
 
 struct EncodedFrame {
   FrameId id;
-  std::vector<std::uint8_t> bytes;
+  SharedBytes bytes;
   std::chrono::steady_clock::time_point arrival;
 };
 
@@ -92,17 +92,13 @@ class FollowProcess {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
+      EncodedFrame frame{{arrival.channel, header.utime}, shared_copy(arrival.bytes), arrival.time};
+      detections_.put_frame(frame.id, frame.bytes);  // refuses one camera too many
       status_.count_received();
-      const FrameId id{arrival.channel, header.utime};
-      const auto copy = [&] {
-        return std::vector<std::uint8_t>(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
-      };
-      EncodedFrame frame{id, copy(), arrival.time};
       const std::size_t bytes = arrival.bytes.size;
       const bool passed_over = order == FrameOrder::kLate ? frames_.put_late(arrival.channel, std::move(frame), bytes)
                                                           : frames_.put(arrival.channel, std::move(frame), bytes);
       if (passed_over) status_.count_skipped(1);
-      detections_.put_frame(id, copy());
     } catch (const InputError& error) {
       status_.count_received();
       status_.count_refused(fmt::format("message on {}: {}", arrival.channel, error.what()), arrival.channel);
@@ -131,7 +127,7 @@ class FollowProcess {
     const std::optional<EncodedFrame> encoded = frames_.take(timeout);
     if (!encoded) return false;
     try {
-      DecodedFrame decoded = decode_for_poses(encoded->bytes, encoded->id.channel, options_.camera);
+      DecodedFrame decoded = decode_for_poses(*encoded->bytes, encoded->id.channel, options_.camera);
       decoded.frame.stages.push_back(decoded.decoding);
       const RecentFrames::Decoded frame = std::make_shared<const DecodedFrame>(std::move(decoded));
       recent_.keep(frame);
@@ -166,7 +162,7 @@ class FollowProcess {
     if (!bus_.is_log()) require_few(detections);
     RecentFrames::Decoded decoded = recent_.find(pair.id);
     if (!decoded) {
-      decoded = std::make_shared<const DecodedFrame>(decode_for_poses(pair.frame, pair.id.channel, options_.camera));
+      decoded = std::make_shared<const DecodedFrame>(decode_for_poses(*pair.frame, pair.id.channel, options_.camera));
     }
     detections.stages.push_back(decoded->decoding);
     note_models();

@@ -7,24 +7,30 @@
 
 namespace houghstream {
 
+SharedBytes shared_copy(ByteView bytes) {
+  return std::make_shared<const std::vector<std::uint8_t>>(bytes.data, bytes.data + bytes.size);
+}
+
 void PairInbox::require_size(std::size_t bytes) {
   require(bytes <= kWaitingBytes, "results of {} bytes, expected at most {}", bytes, kWaitingBytes);
 }
 
-void PairInbox::put_frame(const FrameId& id, std::vector<std::uint8_t> bytes) {
+void PairInbox::put_frame(const FrameId& id, SharedBytes bytes) {
+  bool is_awaited = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     if (camera.find_frame(id) != nullptr) detectors_.forget(id);
-    frame_bytes_ += bytes.size();
+    frame_bytes_ += bytes->size();
     camera.frames.push_back({id, std::move(bytes)});
     if (camera.frames.size() > kHistory) forget_oldest(camera);
     keep_within_bytes();
     ++camera.frames_seen;
     camera.fresh = newest_first_ && ahead_;
     drop_hopeless(camera);
+    is_awaited = camera.fresh || !camera.waiting.empty();
   }
-  changed_.notify_one();
+  if (is_awaited) changed_.notify_one();
 }
 
 void PairInbox::put_detections(const FrameId& id, std::vector<std::uint8_t> bytes) {
@@ -48,7 +54,7 @@ PairInbox::Camera& PairInbox::camera_of(const std::string& channel) {
 }
 
 void PairInbox::forget_oldest(Camera& camera) {
-  frame_bytes_ -= camera.frames.front().bytes.size();
+  frame_bytes_ -= camera.frames.front().bytes->size();
   camera.frames.pop_front();
 }
 

@@ -5,26 +5,32 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "pipeline/messages/wire_reader.hpp"
 #include "pipeline/process/detector_count.hpp"
 #include "pipeline/types/frame_id.hpp"
 
 namespace houghstream {
 
+/// An encoded frame's bytes, which are copied once, off the bus, however many keep them.
+using SharedBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
+SharedBytes shared_copy(ByteView bytes);
+
 /// An encoded frame.
 struct ArrivedFrame {
   FrameId id;
-  std::vector<std::uint8_t> bytes;
+  SharedBytes bytes;
 };
 
 /// Encoded detections with the encoded frame that they were found in.
 struct PairedMessages {
   FrameId id;
-  std::vector<std::uint8_t> frame;
+  SharedBytes frame;
   std::vector<std::uint8_t> detections;
   std::chrono::steady_clock::time_point arrival;  ///< of the detections
 };
@@ -58,7 +64,7 @@ class PairInbox {
   static void require_size(std::size_t bytes);
 
   /// Throws InputError for one camera too many.
-  void put_frame(const FrameId& id, std::vector<std::uint8_t> bytes);
+  void put_frame(const FrameId& id, SharedBytes bytes);
   /// `id` is the frame that they were found in. Throws InputError for one camera too many, and for too many bytes.
   void put_detections(const FrameId& id, std::vector<std::uint8_t> bytes);
 

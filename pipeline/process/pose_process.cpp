@@ -72,7 +72,7 @@ class PoseProcess {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
-      inbox_.put_frame({arrival.channel, header.utime}, copy(arrival.bytes));
+      inbox_.put_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
@@ -123,7 +123,7 @@ class PoseProcess {
     const std::optional<ArrivedFrame> fresh = inbox_.take_fresh();
     if (!fresh) return;
     try {
-      ahead_.keep(decoded(fresh->id, fresh->bytes));
+      ahead_.keep(decoded(fresh->id, *fresh->bytes));
     } catch (const InputError&) {
     }
   }
@@ -137,7 +137,7 @@ class PoseProcess {
     if (!bus_.is_log()) require_few(detections);
     if (detections.detections.empty()) return {detections.frame, {}, detections.stages};
     const RecentFrames::Decoded ahead = ahead_.find(pair.id);
-    const RecentFrames::Decoded frame = ahead ? ahead : decoded(pair.id, pair.frame);
+    const RecentFrames::Decoded frame = ahead ? ahead : decoded(pair.id, *pair.frame);
     detections.stages.push_back(frame->decoding);
     note_shared_classes(detections);
     note_models();

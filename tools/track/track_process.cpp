@@ -126,7 +126,7 @@ class TrackProcess {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
-      inbox_.put_frame({arrival.channel, header.utime}, copy(arrival.bytes));
+      inbox_.put_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
@@ -269,7 +269,7 @@ class TrackProcess {
     std::optional<RgbdFrame> image;
     const auto decode = [&]() -> const RgbdFrame* {
       if (!image) {
-        image = frame_from_message(decode_message<images_t>(view(waiting.messages.frame)), poses.frame.channel,
+        image = frame_from_message(decode_message<images_t>(view(*waiting.messages.frame)), poses.frame.channel,
                                    options_.camera);
         clock.mark("track.decode");
       }

@@ -13,33 +13,37 @@ std::vector<std::uint8_t> bytes(int value) {
   return {static_cast<std::uint8_t>(value)};
 }
 
+SharedBytes arrived_bytes(int value) {
+  return std::make_shared<const std::vector<std::uint8_t>>(bytes(value));
+}
+
 FrameId id(std::int64_t utime) {
   return {"LEFT", utime};
 }
 
 TEST(PairInbox, PairsWhicheverComesFirst) {
   PairInbox inbox(true);
-  inbox.put_frame(id(1), bytes(11));
+  inbox.put_frame(id(1), arrived_bytes(11));
   EXPECT_FALSE(inbox.take(kNow).has_value());
   inbox.put_detections(id(1), bytes(21));
   std::optional<PairedMessages> pair = inbox.take(kNow);
   ASSERT_TRUE(pair.has_value());
-  EXPECT_EQ(pair->frame, bytes(11));
+  EXPECT_EQ(*pair->frame, bytes(11));
   EXPECT_EQ(pair->detections, bytes(21));
 
   inbox.put_detections(id(2), bytes(22));
   EXPECT_FALSE(inbox.take(kNow).has_value());
-  inbox.put_frame(id(2), bytes(12));
+  inbox.put_frame(id(2), arrived_bytes(12));
   pair = inbox.take(kNow);
   ASSERT_TRUE(pair.has_value());
-  EXPECT_EQ(pair->frame, bytes(12));
+  EXPECT_EQ(*pair->frame, bytes(12));
   EXPECT_FALSE(inbox.take(kNow).has_value());
 }
 
 TEST(PairInbox, NeverPairsAnotherFrame) {
   PairInbox inbox(true);
-  inbox.put_frame(id(1), bytes(11));
-  inbox.put_frame(id(3), bytes(13));
+  inbox.put_frame(id(1), arrived_bytes(11));
+  inbox.put_frame(id(3), arrived_bytes(13));
   inbox.put_detections(id(2), bytes(22));
   EXPECT_FALSE(inbox.take(kNow).has_value());
 }
@@ -47,7 +51,7 @@ TEST(PairInbox, NeverPairsAnotherFrame) {
 TEST(PairInbox, NewestFirstPassesOverOlderOnes) {
   PairInbox inbox(true);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(id(i), bytes(10 + i));
+    inbox.put_frame(id(i), arrived_bytes(10 + i));
     inbox.put_detections(id(i), bytes(20 + i));
   }
   EXPECT_EQ(inbox.take(kNow)->detections, bytes(23));
@@ -59,8 +63,8 @@ TEST(PairInbox, NewestFirstPassesOverOlderOnes) {
 TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
   PairInbox inbox(true);
   EXPECT_FALSE(inbox.take_fresh().has_value());
-  inbox.put_frame(id(1), bytes(11));
-  inbox.put_frame(id(2), bytes(12));
+  inbox.put_frame(id(1), arrived_bytes(11));
+  inbox.put_frame(id(2), arrived_bytes(12));
   EXPECT_FALSE(inbox.take(std::chrono::minutes(1)).has_value()) << "does not wait: a frame has come";
   const std::optional<ArrivedFrame> fresh = inbox.take_fresh();
   ASSERT_TRUE(fresh.has_value());
@@ -68,9 +72,9 @@ TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
   EXPECT_EQ(fresh->bytes, bytes(12));
   EXPECT_FALSE(inbox.take_fresh().has_value());
   inbox.put_detections(id(2), bytes(22));
-  EXPECT_EQ(inbox.take(kNow)->frame, bytes(12)) << "it stays for its detections";
+  EXPECT_EQ(*inbox.take(kNow)->frame, bytes(12)) << "it stays for its detections";
 
-  inbox.put_frame(id(3), bytes(13));
+  inbox.put_frame(id(3), arrived_bytes(13));
   inbox.put_detections(id(3), bytes(23));
   EXPECT_TRUE(inbox.take(kNow).has_value());
   EXPECT_FALSE(inbox.take_fresh().has_value()) << "its pair has been taken";
@@ -78,17 +82,17 @@ TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
 
 TEST(PairInbox, WhoTakesNothingAheadWaitsForPairsOnly) {
   PairInbox inbox(true, false);
-  inbox.put_frame(id(1), bytes(11));
+  inbox.put_frame(id(1), arrived_bytes(11));
   EXPECT_FALSE(inbox.take_fresh().has_value());
   EXPECT_FALSE(inbox.take(kNow).has_value());
   inbox.put_detections(id(1), bytes(21));
-  EXPECT_EQ(inbox.take(kNow)->frame, bytes(11));
+  EXPECT_EQ(*inbox.take(kNow)->frame, bytes(11));
 }
 
 TEST(PairInbox, ALogIsWorkedOnInTurn) {
   PairInbox inbox(false);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(id(i), bytes(10 + i));
+    inbox.put_frame(id(i), arrived_bytes(10 + i));
     inbox.put_detections(id(i), bytes(20 + i));
   }
   for (int i = 1; i <= 3; ++i) EXPECT_EQ(inbox.take(kNow)->detections, bytes(20 + i));
@@ -98,9 +102,9 @@ TEST(PairInbox, ALogIsWorkedOnInTurn) {
 TEST(PairInbox, DetectionsWithoutAFrameAreGivenUpInTheEnd) {
   PairInbox inbox(true);
   inbox.put_detections(id(-5), bytes(1));
-  for (int i = 0; i < PairInbox::kWait; ++i) inbox.put_frame(id(i), bytes(i));
+  for (int i = 0; i < PairInbox::kWait; ++i) inbox.put_frame(id(i), arrived_bytes(i));
   EXPECT_TRUE(inbox.take_dropped().without_frame.empty());
-  inbox.put_frame(id(100), bytes(0));
+  inbox.put_frame(id(100), arrived_bytes(0));
   EXPECT_EQ(inbox.take_dropped().without_frame, std::vector<FrameId>{id(-5)});
 
   inbox.put_detections(id(200), bytes(2));
@@ -118,7 +122,7 @@ TEST(PairInbox, MemoryIsBoundedWhereFramesNeverCome) {
 TEST(PairInbox, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
   for (const bool newest_first : {true, false}) {
     PairInbox inbox(newest_first);
-    inbox.put_frame(id(1), bytes(11));
+    inbox.put_frame(id(1), arrived_bytes(11));
     const int count = 500;
     for (int i = 0; i < count; ++i) inbox.put_detections(id(1), {1, static_cast<std::uint8_t>(i)});
     std::size_t taken = 0;
@@ -135,15 +139,15 @@ TEST(PairInbox, MemoryIsBoundedWhereResultsOfOneFrameComeWithoutEnd) {
 TEST(PairInbox, TwoCamerasOfEqualTimesKeepTheirFramesApart) {
   for (const bool newest_first : {true, false}) {
     PairInbox inbox(newest_first);
-    inbox.put_frame({"LEFT", 1}, bytes(11));
-    inbox.put_frame({"RIGHT", 1}, bytes(12));
+    inbox.put_frame({"LEFT", 1}, arrived_bytes(11));
+    inbox.put_frame({"RIGHT", 1}, arrived_bytes(12));
     inbox.put_detections({"RIGHT", 1}, bytes(22));
     inbox.put_detections({"LEFT", 1}, bytes(21));
     for (int i = 0; i < 2; ++i) {
       const std::optional<PairedMessages> pair = inbox.take(kNow);
       ASSERT_TRUE(pair.has_value());
       const int camera = pair->id.channel == "LEFT" ? 1 : 2;
-      EXPECT_EQ(pair->frame, bytes(10 + camera));
+      EXPECT_EQ(*pair->frame, bytes(10 + camera));
       EXPECT_EQ(pair->detections, bytes(20 + camera));
     }
     EXPECT_EQ(inbox.take_dropped().skipped, 0);
@@ -155,10 +159,10 @@ TEST(PairInbox, AFastCameraDoesNotStarveASlowOne) {
   int slow = 0;
   for (int i = 0; i < 20; ++i) {
     for (int k = 0; k < 5; ++k) {
-      inbox.put_frame({"FAST", 5 * i + k}, bytes(0));
+      inbox.put_frame({"FAST", 5 * i + k}, arrived_bytes(0));
       inbox.put_detections({"FAST", 5 * i + k}, bytes(0));
     }
-    inbox.put_frame({"SLOW", i}, bytes(0));
+    inbox.put_frame({"SLOW", i}, arrived_bytes(0));
     inbox.put_detections({"SLOW", i}, bytes(0));
     slow += inbox.take(kNow)->id.channel == "SLOW" ? 1 : 0;
   }
@@ -168,7 +172,7 @@ TEST(PairInbox, AFastCameraDoesNotStarveASlowOne) {
 TEST(PairInbox, OfTwoDetectorsEachKeepsItsNewestResult) {
   PairInbox inbox(true);
   for (int i = 1; i <= 3; ++i) {
-    inbox.put_frame(id(i), bytes(10 + i));
+    inbox.put_frame(id(i), arrived_bytes(10 + i));
     inbox.put_detections(id(i), bytes(20 + i));
     inbox.put_detections(id(i), bytes(30 + i));
   }
@@ -181,15 +185,15 @@ TEST(PairInbox, OfTwoDetectorsEachKeepsItsNewestResult) {
 TEST(PairInbox, OtherCamerasFramesDoNotAgeWhatWaits) {
   PairInbox inbox(true);
   inbox.put_detections({"LEFT", 7}, bytes(1));
-  for (int i = 0; i < 5 * PairInbox::kWait; ++i) inbox.put_frame({"RIGHT", i}, bytes(0));
+  for (int i = 0; i < 5 * PairInbox::kWait; ++i) inbox.put_frame({"RIGHT", i}, arrived_bytes(0));
   EXPECT_TRUE(inbox.take_dropped().without_frame.empty());
-  inbox.put_frame({"LEFT", 7}, bytes(2));
+  inbox.put_frame({"LEFT", 7}, arrived_bytes(2));
   EXPECT_TRUE(inbox.take(kNow).has_value());
 }
 
 TEST(PairInbox, OldFramesAreForgotten) {
   PairInbox inbox(true);
-  for (int i = 0; i <= static_cast<int>(PairInbox::kHistory); ++i) inbox.put_frame(id(i), bytes(0));
+  for (int i = 0; i <= static_cast<int>(PairInbox::kHistory); ++i) inbox.put_frame(id(i), arrived_bytes(0));
   inbox.put_detections(id(0), bytes(0));
   EXPECT_FALSE(inbox.take(kNow).has_value());
   inbox.put_detections(id(1), bytes(0));
@@ -198,9 +202,9 @@ TEST(PairInbox, OldFramesAreForgotten) {
 
 TEST(PairInbox, LargeFramesAreKeptWithinABoundInBytes) {
   PairInbox inbox(true);
-  constexpr std::size_t kLarge = PairInbox::kHistoryBytes / 8;
-  for (int i = 0; i < 20; ++i) inbox.put_frame({"LEFT", i}, std::vector<std::uint8_t>(kLarge));
-  inbox.put_frame({"RIGHT", 1}, std::vector<std::uint8_t>(kLarge));
+  const auto large = std::make_shared<const std::vector<std::uint8_t>>(PairInbox::kHistoryBytes / 8);
+  for (int i = 0; i < 20; ++i) inbox.put_frame({"LEFT", i}, large);
+  inbox.put_frame({"RIGHT", 1}, large);
   inbox.put_detections({"LEFT", 19}, {});
   EXPECT_TRUE(inbox.take(kNow).has_value());
   inbox.put_detections({"RIGHT", 1}, {});
@@ -211,10 +215,10 @@ TEST(PairInbox, LargeFramesAreKeptWithinABoundInBytes) {
 
 TEST(PairInbox, ListensToAFewCamerasOnly) {
   PairInbox inbox(true);
-  for (std::size_t i = 0; i < PairInbox::kCameras; ++i) inbox.put_frame({std::to_string(i), 1}, {1});
-  EXPECT_THROW(inbox.put_frame({"one more", 1}, {1}), InputError);
+  for (std::size_t i = 0; i < PairInbox::kCameras; ++i) inbox.put_frame({std::to_string(i), 1}, arrived_bytes(1));
+  EXPECT_THROW(inbox.put_frame({"one more", 1}, arrived_bytes(1)), InputError);
   EXPECT_THROW(inbox.put_detections({"one more", 1}, {1}), InputError);
-  EXPECT_NO_THROW(inbox.put_frame({"0", 2}, {1}));
+  EXPECT_NO_THROW(inbox.put_frame({"0", 2}, arrived_bytes(1)));
 }
 
 TEST(PairInbox, LargeDetectionsOfManyCamerasAreKeptWithinABound) {
