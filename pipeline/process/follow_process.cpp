@@ -8,6 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/parallel.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
@@ -69,6 +70,7 @@ class FollowProcess {
       answering = std::thread([&] {
         constexpr int kPolite = 2;
         if (nice(kPolite) == -1) log_debug("the priority of answers cannot be lowered");
+        const WorkAlone alone;  // its helpers would be of its priority, and kept for who follows
         while (running) answer_next(milliseconds(100));
       });
     }
