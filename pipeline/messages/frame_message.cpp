@@ -194,18 +194,37 @@ FrameImages decode_images(const images_t& message) {
   return {decode_colour(found.colour), decode_depth(found.depth, found.zipped_depth)};
 }
 
-RgbdFrame decode_frame(const images_t& message, const std::string& channel,
-                       const std::optional<Camera>& fallback_camera) {
-  const FoundImages found = find_images(message);
+/// All of it but its images.
+RgbdFrame undecoded_frame(const images_t& message, const std::string& channel,
+                          const std::optional<Camera>& fallback_camera) {
   RgbdFrame frame;
   frame.id = {channel, message.utime};
   frame.camera = camera_or(message, fallback_camera);
   frame.stages = stages_of(message);
+  return frame;
+}
+
+RgbdFrame decode_frame(const images_t& message, const std::string& channel,
+                       const std::optional<Camera>& fallback_camera) {
+  const FoundImages found = find_images(message);
+  RgbdFrame frame = undecoded_frame(message, channel, fallback_camera);
   parallel_for(2, 2, [&](int image) {
     if (image == 0) frame.colour = decode_colour(found.colour);
     if (image == 1) frame.depth = depth_from_millimetres(decode_depth(found.depth, found.zipped_depth));
   });
   check_frame(frame, "its camera");
+  return frame;
+}
+
+RgbdFrame decode_without_colour(const images_t& message, const std::string& channel,
+                                const std::optional<Camera>& fallback_camera) {
+  const FoundImages found = find_images(message);
+  RgbdFrame frame = undecoded_frame(message, channel, fallback_camera);
+  check_camera(frame.camera, "its camera");
+  require(found.depth.width == frame.camera.width && found.depth.height == frame.camera.height,
+          "its camera: depth {}x{} and camera {}x{}, expected equal sizes", found.depth.width, found.depth.height,
+          frame.camera.width, frame.camera.height);
+  frame.depth = depth_from_millimetres(decode_depth(found.depth, found.zipped_depth));
   return frame;
 }
 
@@ -253,6 +272,12 @@ void add_run(images_t& message, std::int64_t run) {
 RgbdFrame frame_from_message(const images_t& message, const std::string& channel,
                              const std::optional<Camera>& fallback_camera) {
   return decode_named({channel, message.utime}, [&] { return decode_frame(message, channel, fallback_camera); });
+}
+
+RgbdFrame depth_frame_from_message(const images_t& message, const std::string& channel,
+                                   const std::optional<Camera>& fallback_camera) {
+  return decode_named({channel, message.utime},
+                      [&] { return decode_without_colour(message, channel, fallback_camera); });
 }
 
 FrameImages images_from_message(const images_t& message) {

@@ -47,6 +47,11 @@ void add_run(houghstream::images_t& message, std::int64_t run);
 RgbdFrame frame_from_message(const houghstream::images_t& message, const std::string& channel,
                              const std::optional<Camera>& fallback_camera);
 
+/// The same for who looks at depth only: its colours, which take longer to decode than all the rest, are left empty,
+/// and whether they are damaged is not found.
+RgbdFrame depth_frame_from_message(const houghstream::images_t& message, const std::string& channel,
+                                   const std::optional<Camera>& fallback_camera);
+
 /// Colour and depth of a frame as they travel; equal sizes.
 struct FrameImages {
   cv::Mat colour;    ///< CV_8UC3, BGR

@@ -13,7 +13,7 @@ namespace houghstream {
 /// An RGB-D image pair, depth registered to colour.
 struct RgbdFrame {
   FrameId id;                     ///< its name in every result
-  cv::Mat colour;                 ///< CV_8UC3, BGR
+  cv::Mat colour;                 ///< CV_8UC3, BGR; empty where depth alone was asked for
   cv::Mat depth;                  ///< CV_32FC1, metres along the optical axis, NaN = none; same size as colour
   Camera camera;                  ///< of both images
   std::vector<StageTime> stages;  ///< what was done to it so far

@@ -53,7 +53,7 @@ struct FrameSeen {
   const ObjectPoses& poses;                ///< names the frame
   const Detections* detections = nullptr;  ///< of the frame, where they are known
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::function<const RgbdFrame*()> image;  ///< asked only where depth is needed; null where there is none
+  std::function<const RgbdFrame*()> image;  ///< its depth, asked only where that is needed; null where there is none
 };
 
 /// The objects of a world, over time and over all cameras: which measured pose is of which object (class, place,

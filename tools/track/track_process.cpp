@@ -269,8 +269,8 @@ class TrackProcess {
     std::optional<RgbdFrame> image;
     const auto decode = [&]() -> const RgbdFrame* {
       if (!image) {
-        image = frame_from_message(decode_message<images_t>(view(*waiting.messages.frame)), poses.frame.channel,
-                                   options_.camera);
+        image = depth_frame_from_message(decode_message<images_t>(view(*waiting.messages.frame)), poses.frame.channel,
+                                         options_.camera);
         clock.mark("track.decode");
       }
       return &*image;

@@ -59,6 +59,24 @@ TEST(FrameMessage, CompressedDepthComesBackExactly) {
   EXPECT_EQ(sequence_of(message), 3);
 }
 
+TEST(FrameMessage, DepthAloneIsReadWithoutTheColours) {
+  images_t message = good_message();
+  message.images[0].data.assign(message.images[0].data.size(), 0x5A);
+  expect_refused(message, "JPEG");
+  const RgbdFrame back = depth_frame_from_message(message, "LEFT", std::nullopt);
+  const RgbdFrame frame = make_test_frame(99);
+  EXPECT_EQ(back.id, (FrameId{"LEFT", 99}));
+  EXPECT_TRUE(back.colour.empty());
+  EXPECT_TRUE(same_depth(back.depth, frame.depth));
+  EXPECT_EQ(back.camera, frame.camera);
+  ASSERT_EQ(back.stages.size(), 1U);
+  const Camera half{32, 24, 30.0, 30.0, 16.0, 12.0};
+  EXPECT_THROW(depth_frame_from_message(foreign(good_message()), "LEFT", half), InputError) << "of another size";
+  message.images[1].data.resize(10);
+  message.images[1].size = 10;
+  EXPECT_THROW(depth_frame_from_message(message, "LEFT", std::nullopt), InputError) << "cut";
+}
+
 TEST(FrameMessage, ColourOnTheWireIsRgb) {
   const images_t message = raw_message();
   const auto bgr = make_test_frame(99).colour.at<cv::Vec3b>(0, 5);
