@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
-#include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/tracks/assignment.hpp"
+#include "pose/tracks/world_clock.hpp"
 
 namespace houghstream::tracks {
 namespace {
@@ -29,25 +30,17 @@ struct Track {
   bool there() const { return gone_utime == 0; }
 };
 
-/// When a camera looked last.
-struct CameraClock {
-  std::int64_t utime = 0;
-  std::int64_t results = 0;       ///< of the frame of this time; none before the first frame
-  double seconds = 0.0;           ///< from the frame before to the one of this time, as far as they count
-  std::set<std::string> classes;  ///< that the frame of this time was told of
-};
-
 }  // namespace
 
 struct Tracker::State {
   TrackModels models;
   TrackerSettings settings;
   std::vector<Track> tracks;  // by when they were begun; numbers follow in the order of confirmation
-  std::map<std::string, CameraClock> cameras;
+  WorldClock clock;
   std::map<std::string, int> most_together;  // by class: instances that were seen in one frame
   std::int64_t next_id = 1;
-  std::int64_t newest_utime = 0;
   int world_number = 1;
+  std::size_t refused = 0;  // poses of the last frame, for which there was no room
 
   const TrackModel* model_of(const std::string& name) const {
     const auto found = models.find(name);
@@ -65,10 +58,11 @@ struct Tracker::State {
   }
 
   void begin_world();
-  const CameraClock* begin_frame(const FrameId& frame);
-  std::vector<SeenPose> new_poses(const FrameSeen& seen);
+  CameraClock* begin_frame(const FrameSeen& seen);
+  std::vector<SeenPose> new_poses(const FrameSeen& seen, CameraClock& camera) const;
   std::vector<SeenPose> associate(const std::vector<SeenPose>& poses, const std::string& class_name, double seconds);
   void take(Track& track, const SeenPose& pose, double seconds);
+  bool has_room();
   void begin(const SeenPose& pose);
   void judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses, double seconds);
   void confirm(std::int64_t utime);
@@ -92,15 +86,17 @@ void Tracker::begin_world() {
   state_->begin_world();
 }
 
+std::size_t Tracker::refused() const {
+  return state_->refused;
+}
+
 std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   State& state = *state_;
   const FrameId& frame = seen.poses.frame;
-  // Each pose is compared with each object.
-  require(seen.poses.poses.size() <= state.settings.most_objects, "frame {}: {} poses, expected at most {}",
-          to_string(frame), seen.poses.poses.size(), state.settings.most_objects);
-  const CameraClock* clock = state.begin_frame(frame);
-  if (clock == nullptr) return std::nullopt;
-  const std::vector<SeenPose> poses = state.new_poses(seen);
+  state.refused = 0;
+  CameraClock* camera = state.begin_frame(seen);
+  if (camera == nullptr) return std::nullopt;
+  const std::vector<SeenPose> poses = state.new_poses(seen, *camera);
   for (Track& track : state.tracks) {
     track.pose.predict(frame.utime);
     track.seen_now = track.last_seen == frame;  // by another result of the same frame
@@ -109,11 +105,11 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   for (const SeenPose& pose : poses) classes.insert(pose.class_name);
   std::vector<SeenPose> unknown;
   for (const std::string& class_name : classes) {
-    const std::vector<SeenPose> left = state.associate(poses, class_name, clock->seconds);
+    const std::vector<SeenPose> left = state.associate(poses, class_name, camera->seconds);
     unknown.insert(unknown.end(), left.begin(), left.end());
   }
   // What is not seen is missed once a frame, however many results that has.
-  const double missed_s = clock->results == 1 ? clock->seconds : 0.0;
+  const double missed_s = camera->results == 1 ? camera->seconds : 0.0;
   for (Track& track : state.tracks) {
     if (track.there() && !track.seen_now) state.judge_unseen(track, seen, poses, missed_s);
   }
@@ -125,37 +121,25 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
 
 void Tracker::State::begin_world() {
   tracks.clear();
-  cameras.clear();
+  clock.begin_world();
   most_together.clear();
   next_id = 1;
-  newest_utime = 0;
   ++world_number;
 }
 
 /// The camera's clock, which the frame has set; null where the frame is passed over.
-const CameraClock* Tracker::State::begin_frame(const FrameId& frame) {
-  constexpr double kUsualS = 1.0 / 30.0;
-  constexpr double kMostS = 0.1;
-  if (newest_utime != 0 && seconds_between(frame.utime, newest_utime) > 1.0) {
-    log_warning("frame {} is {:.1f} s older than the last one: a new world begins", to_string(frame),
-                seconds_between(frame.utime, newest_utime));
-    begin_world();
-  }
-  newest_utime = std::max(newest_utime, frame.utime);
-  CameraClock& clock = cameras[frame.channel];
-  if (frame.utime < clock.utime) return nullptr;
-  const double seconds = clock.results == 0 ? kUsualS : std::min(kMostS, seconds_between(clock.utime, frame.utime));
-  if (clock.results == 0 || frame.utime != clock.utime) clock = {frame.utime, 0, seconds, {}};
-  constexpr int kMostResults = 64;  // of one frame; nobody has so many detectors
-  if (clock.results >= kMostResults) return nullptr;
-  ++clock.results;
-  return &clock;
+CameraClock* Tracker::State::begin_frame(const FrameSeen& seen) {
+  const FrameId& frame = seen.poses.frame;
+  const TimeOrder order = clock.order_of(frame, seen.newest_utime.value_or(frame.utime));
+  if (order == TimeOrder::kLate) return nullptr;
+  if (order == TimeOrder::kAnew) begin_world();
+  return &clock.set(frame);
 }
 
 /// The poses of classes that this frame was not told of yet: another detector's, or all.
-std::vector<SeenPose> Tracker::State::new_poses(const FrameSeen& seen) {
+std::vector<SeenPose> Tracker::State::new_poses(const FrameSeen& seen, CameraClock& camera) const {
   std::vector<SeenPose> poses = seen_poses(seen.poses, seen.T_world_camera, models);
-  std::set<std::string>& told = cameras[seen.poses.frame.channel].classes;
+  std::set<std::string>& told = camera.classes;
   poses.erase(
       std::remove_if(poses.begin(), poses.end(), [&](const SeenPose& pose) { return told.count(pose.class_name) > 0; }),
       poses.end());
@@ -200,7 +184,7 @@ std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& pos
   }
   const int together = static_cast<int>(std::count_if(
       objects.begin(), objects.end(), [](const Track* track) { return track->id != 0 && track->seen_now; }));
-  if (together > 0) most_together[class_name] = std::max(most_together[class_name], together);
+  most_together[class_name] = std::max(most_together[class_name], together);
   std::vector<SeenPose> left;
   for (std::size_t j = 0; j < measured.size(); ++j) {
     if (taken[j]) continue;
@@ -228,9 +212,23 @@ void Tracker::State::take(Track& track, const SeenPose& pose, double seconds) {
   track.reason = fmt::format("seen by {}", pose.frame.channel);
 }
 
+/// For one object more: what has been gone longest makes room.
+bool Tracker::State::has_room() {
+  if (tracks.size() < settings.most_objects) return true;
+  auto oldest = tracks.end();
+  for (auto it = tracks.begin(); it != tracks.end(); ++it) {
+    if (!it->there() && (oldest == tracks.end() || it->gone_utime < oldest->gone_utime)) oldest = it;
+  }
+  if (oldest == tracks.end()) return false;
+  tracks.erase(oldest);
+  return true;
+}
+
 void Tracker::State::begin(const SeenPose& pose) {
-  require(tracks.size() < settings.most_objects, "frame {}: more than {} objects, expected at most that many",
-          to_string(pose.frame), settings.most_objects);
+  if (!has_room()) {
+    ++refused;
+    return;
+  }
   Track track{0,
               pose.class_id,
               pose.class_name,
@@ -368,6 +366,12 @@ void Tracker::State::forget(std::int64_t utime) {
     return track.id == 0 || seconds_between(track.gone_utime, utime) > settings.remembered_s;
   };
   tracks.erase(std::remove_if(tracks.begin(), tracks.end(), over), tracks.end());
+  // Of classes of which nothing is known any more, whose names a sender of rubbish may make up without end.
+  for (auto it = most_together.begin(); it != most_together.end();) {
+    const bool known =
+        std::any_of(tracks.begin(), tracks.end(), [&](const Track& track) { return track.class_name == it->first; });
+    it = known ? std::next(it) : most_together.erase(it);
+  }
 }
 
 WorldObjects Tracker::State::report(const FrameSeen& seen) const {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -45,7 +46,7 @@ struct TrackerSettings {
   double told_gone_s = 2.0;        ///< what is gone is published for so long
   double remembered_s = 600.0;     ///< what comes back within this time keeps its number
   double handled_s = 3.0;          ///< what a hand hides for so long may be in the hand
-  std::size_t most_objects = 500;  ///< further ones are refused
+  std::size_t most_objects = 500;  ///< and candidates; further ones are refused
 };
 
 /// What is known of a frame of a camera.
@@ -54,6 +55,8 @@ struct FrameSeen {
   const Detections* detections = nullptr;  ///< of the frame, where they are known
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::function<const RgbdFrame*()> image;  ///< its depth, asked only where that is needed; null where there is none
+  /// Of the frame of this camera that has come last: without it, the frame of the poses.
+  std::optional<std::int64_t> newest_utime;
 };
 
 /// The objects of a world, over time and over all cameras: which measured pose is of which object (class, place,
@@ -67,11 +70,14 @@ class Tracker {
   ~Tracker();
   Tracker(Tracker&&) noexcept;
 
-  /// The world after a frame. Frames of a camera must not be older than its last one by less than a second: such a late
-  /// one is passed over, and gives nothing. An older one is the beginning of a new world. A class that the same frame
-  /// was told of before is not told again. Throws InputError where there would be more objects than TrackerSettings
-  /// allows.
+  /// The world after a frame. One that is older than its camera's last one is late, is passed over, and gives nothing;
+  /// where the camera's frames themselves go back by more than a second, a new world begins. A class that the same
+  /// frame was told of before is not told again. Throws InputError for a frame that is more than a second older than
+  /// another camera's, as long as that goes on.
   std::optional<WorldObjects> update(const FrameSeen& seen);
+
+  /// Poses of the last frame of objects for which there was no room (TrackerSettings::most_objects).
+  std::size_t refused() const;
 
   /// Forgets all objects: they were in another coordinate frame.
   void begin_world();

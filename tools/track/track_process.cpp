@@ -127,6 +127,8 @@ class TrackProcess {
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
       inbox_.put_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
+      const std::lock_guard<std::mutex> lock(mutex_);
+      newest_[arrival.channel] = header.utime;  // of as many cameras as the inbox takes
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
@@ -275,16 +277,27 @@ class TrackProcess {
       }
       return &*image;
     };
-    std::optional<WorldObjects> objects = tracker_.update({poses, &detections, T_world_camera, decode});
+    std::optional<WorldObjects> objects =
+        tracker_.update({poses, &detections, T_world_camera, decode, newest_of(poses.frame.channel)});
     if (!objects) {
       status_.count_skipped(1);  // what a detector said late of a frame whose successors are known
       return false;
     }
     clock.mark("track.update");
+    if (tracker_.refused() > 0)
+      status_.note_bad_message(fmt::format("frame {}: no room for {} objects more, expected at most {} in all",
+                                           to_string(poses.frame), tracker_.refused(),
+                                           tracks::TrackerSettings().most_objects));
     objects->world = world_;
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
     output_.publish(*objects);
     return true;
+  }
+
+  std::optional<std::int64_t> newest_of(const std::string& camera) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = newest_.find(camera);
+    return found == newest_.end() ? std::nullopt : std::optional<std::int64_t>(found->second);
   }
 
   /// All that any detector found in the frame.
@@ -353,6 +366,7 @@ class TrackProcess {
   mutable std::mutex mutex_;
   std::int64_t event_us_ = 0;
   std::deque<Detections> detections_;
+  std::map<std::string, std::int64_t> newest_;  // utimes of the frames that came last, by channel
   tracks::CameraPlaces places_;
   std::atomic<std::int64_t> poses_{0};
 };

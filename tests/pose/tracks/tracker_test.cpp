@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/base/checks.hpp"
 #include "tests/pose/tracks/tracked_scene.hpp"
 
 namespace houghstream::tracks {
@@ -331,26 +332,58 @@ TEST(Tracker, WhatASecondDetectorSeesIsAsSoonSureAsWhatTheFirstOneSees) {
   EXPECT_EQ(world.objects.size(), 2U);
 }
 
-TEST(Tracker, MoreObjectsThanAllowedAreRefused) {
+TEST(Tracker, MoreObjectsThanAllowedAreRefusedAndTheOthersToldOf) {
   TrackerSettings settings;
   settings.most_objects = 2;
   TrackedScene scene(settings);
-  scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}});
-  EXPECT_NO_THROW(scene.frame());
   scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}, {"can", on_table(0.3, 0)}});
-  EXPECT_THROW(scene.frame(), std::runtime_error) << "so many poses at once";
-  scene.show({{"can", on_table(0.3, 0)}});
-  EXPECT_THROW(scene.frame(), std::runtime_error) << "one more than are known";
+  EXPECT_EQ(scene.frames(10).objects.size(), 2U);
+  EXPECT_EQ(scene.tracker.refused(), 1U);
+  scene.show({{"can", on_table(-0.3, 0)}, {"can", on_table(0, 0)}});
+  scene.frame();
+  EXPECT_EQ(scene.tracker.refused(), 0U);
 }
 
-TEST(Tracker, ResultsOfOneFrameWithoutEndArePassedOver) {
+TEST(Tracker, WhatHasBeenGoneLongestMakesRoom) {
+  TrackerSettings settings;
+  settings.most_objects = 1;
+  TrackedScene scene(settings);
+  scene.show({{"can", on_table(0, 0)}});
+  scene.frames(60);
+  scene.show({});
+  ASSERT_TRUE(scene.frames(120).objects.empty());  // and remembered
+  scene.show({{"mug", on_table(0.2, 0)}});
+  const WorldObjects world = scene.frames(10);
+  ASSERT_EQ(world.objects.size(), 1U);
+  EXPECT_EQ(world.objects[0].class_name, "mug");
+  EXPECT_EQ(scene.tracker.refused(), 0U);
+}
+
+TEST(Tracker, AResultThatTakesLongIsNoNewWorld) {
   TrackedScene scene;
   scene.show({{"can", on_table(0, 0)}});
-  scene.frames(10);
-  bool is_passed_over = false;
-  for (int i = 0; i < 100 && !is_passed_over; ++i) is_passed_over = scene.look_if_any() == std::nullopt;
-  EXPECT_TRUE(is_passed_over);
-  EXPECT_EQ(scene.frame().objects.size(), 1U) << "the next frame";
+  scene.frames(30);
+  const std::int64_t now = scene.utime;
+  scene.utime -= 3000000;
+  const ObjectPoses late = scene.poses();
+  EXPECT_FALSE(scene.tracker.update({late, nullptr, scene.T_world_camera, nullptr, now}).has_value());
+  scene.utime = now;
+  const WorldObjects world = scene.frame();
+  EXPECT_EQ(world.world_number, 1);
+  EXPECT_EQ(world.objects.size(), 1U);
+}
+
+TEST(Tracker, ACameraWhoseClockIsBehindIsRefusedAndTheWorldGoesOn) {
+  TrackedScene scene;
+  scene.show({{"can", on_table(0, 0)}});
+  for (int i = 0; i < 60; ++i) {
+    scene.channel = "LEFT";
+    EXPECT_EQ(scene.frame().world_number, 1);
+    scene.channel = "RIGHT";
+    scene.utime -= 10000000;
+    EXPECT_THROW(scene.look(), InputError);
+    scene.utime += 10000000;
+  }
 }
 
 TEST(Tracker, TheSameFramesGiveTheSameObjectsBitForBit) {

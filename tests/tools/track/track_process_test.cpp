@@ -237,6 +237,38 @@ TEST(TrackProcess, ALogGivesTheSameObjectsEachTime) {
   }
 }
 
+TEST(TrackProcess, AResultThatComesTwoSecondsLateIsPassedOverAndTheWorldGoesOn) {
+  catch_stop_signals();
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "houghstream_track_late";
+  std::filesystem::create_directories(folder);
+  constexpr int kFrames = 61;
+  constexpr int kLate = 5;
+  LogWriter writer(folder / "in.lcmlog");
+  const auto write = [&](const std::string& name, std::int64_t utime, const auto& message) {
+    const std::vector<std::uint8_t> bytes = encode_message(message);
+    writer.write(utime, name, {bytes.data(), bytes.size()});
+  };
+  for (int i = 0; i < kFrames; ++i) {
+    if (i + 1 == kFrames) write(channel::kPoses, time_of(i - 1), to_message(one_bowl(time_of(kLate))));
+    write(channel::kFrame, time_of(i), to_message(make_test_frame(time_of(i)), WireFormat{}, i));
+    if (i != kLate) write(channel::kPoses, time_of(i), to_message(one_bowl(time_of(i))));
+  }
+  writer.close();
+  {
+    LcmBus bus("file://" + (folder / "in.lcmlog").string(), (folder / "out.lcmlog").string());
+    const auto none = std::make_shared<const tracks::TrackModels>();
+    run_track_process(bus, {}, [&] { return none; });
+  }
+  int worlds = 0;
+  LogReader reader(folder / "out.lcmlog");
+  while (const std::optional<LogEvent> event = reader.next()) {
+    const auto world = world_from_message(decode_message<objects_t>({event->data.data(), event->data.size()}));
+    EXPECT_EQ(world.world_number, 1) << to_string(world.frame);
+    ++worlds;
+  }
+  EXPECT_EQ(worlds, kFrames - 1);
+}
+
 TEST(TrackProcess, ALogWithoutPosesIsRefused) {
   catch_stop_signals();
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "houghstream_track_no_poses.lcmlog";
