@@ -224,8 +224,10 @@ void PoseTrack::update_standing(const SeenPose& pose, bool doubted, Hypothesis& 
   if (witness.apart.size() < needed || !may_tell_of_motion(pose.frame.channel, pose.frame.utime)) return;
   const PoseMeasurement& first = witness.apart.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
-  hypothesis.filter.start_moving(pose.measured,
-                                 difference(pose.measured.T_world_object, first.T_world_object) / seconds);
+  Vector6 way = difference(pose.measured.T_world_object, first.T_world_object);
+  // The first may have been measured in the turn of another hypothesis: from one to the other nothing has turned.
+  if (way.tail<3>().norm() > settings_.same_rotation_rad) way.tail<3>().setZero();
+  hypothesis.filter.start_moving(pose.measured, way / seconds);
   recent_ = {pose.measured};
   witnesses_.clear();
   witnesses_[pose.frame.channel].agreed_utime = pose.frame.utime;
@@ -235,7 +237,11 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   constexpr double kWithinS = 0.4;
   constexpr double kLeastS = 0.28;
   constexpr std::size_t kLeast = 6;
-  hypothesis.filter.update(measured);
+  // Another camera's frame may be a little older: from where it was then it has gone on.
+  const double late_s = std::min(settings_.motion.coast_s, seconds_between(measured.utime, hypothesis.filter.utime()));
+  PoseMeasurement now = measured;
+  if (late_s > 0.0) now.T_world_object = moved(measured.T_world_object, late_s * hypothesis.filter.velocity());
+  hypothesis.filter.update(now);
   recent_.push_back(measured);
   while (seconds_between(recent_.front().utime, measured.utime) > kWithinS) recent_.pop_front();
   if (recent_.size() < kLeast || seconds_between(recent_.front().utime, measured.utime) < kLeastS) return;

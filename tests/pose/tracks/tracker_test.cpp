@@ -230,6 +230,43 @@ TEST(Tracker, WhatMovesIsFollowedWithItsVelocityAndStandsAgain) {
   EXPECT_EQ(world.objects.at(0).track_id, 1);
 }
 
+TEST(Tracker, WhatHasTwoTurnsDoesNotSpinWhenItIsPushed) {
+  TrackedScene scene;
+  for (int i = 0; i < 90; ++i) {
+    const double along = i < 60 ? -0.3 : -0.3 + 0.015 * (i - 59);
+    scene.show({{"can", on_table(along, 0, i % 3 == 0 ? 2.0 : 0.0)}});
+    const WorldObjects world = scene.frame();
+    if (i < 30) continue;
+    ASSERT_EQ(world.objects.size(), 1U) << i;
+    EXPECT_LT(world.objects[0].velocity.tail<3>().norm(), 2.0) << i;
+    EXPECT_LT(Eigen::AngleAxisd(world.objects[0].T_world_object.linear()).angle(), 0.05) << i;
+  }
+}
+
+TEST(Tracker, WhatMovesIsWhereItIsNowThoughAnotherCamerasFrameIsOlder) {
+  TrackedScene scene;
+  scene.channel = "LEFT";
+  scene.show({{"can", on_table(-0.4, 0)}});
+  scene.frames(60);
+  constexpr std::int64_t kOlderUs = 30000;
+  constexpr double kOlderFrames = static_cast<double>(kOlderUs) / static_cast<double>(test::kFrameUs);
+  constexpr double kStepM = 0.015;  // from frame to frame
+  for (int i = 1; i <= 40; ++i) {
+    const Eigen::Isometry3d here = on_table(-0.4 + kStepM * i, 0);
+    scene.channel = "LEFT";
+    scene.show({{"can", here}});
+    scene.frame();
+    scene.channel = "RIGHT";
+    scene.utime -= kOlderUs;
+    scene.show({{"can", on_table(-0.4 + kStepM * (i - kOlderFrames), 0)}});
+    const WorldObjects world = scene.look();
+    scene.utime += kOlderUs;
+    if (i > 15) {
+      EXPECT_LT(distance(world.objects.at(0), here), 0.004) << i;
+    }
+  }
+}
+
 TEST(Tracker, OnePoseElsewhereTellsWhereDepthHasDoubted) {
   TrackedScene scene;
   scene.show({{"can", on_table(0, 0)}});
