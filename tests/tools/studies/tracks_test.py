@@ -2,18 +2,22 @@
 
 import contextlib
 import io
+import math
+import pathlib
+import tempfile
 import unittest
 
-from houghstream import tracked_object_t
+from houghstream import objects_t, stage_time_t, tracked_object_t
+from houghstream.event_log import write_event
 from studies.tracks import hosts
 from studies.tracks.__main__ import SEQUENCES, parse
 from studies.tracks.plan import Plan
-from studies.tracks.report import longest, pooled
+from studies.tracks.report import longest, pooled, tracks_are_equal
 
 
-def figures(name, required, recall, wrong, switches=0, hota=0.9):
-    return {"name": name, "required": required, "recall": recall, "wrong": wrong, "id_switches": switches, "hota": hota, "kept": 10,
-            "error": {"moving": {"mm_p95": None}}}  # fmt: skip
+def figures(name, required, recall, wrong, switches=0, counts=(1, 0, 0, 1)):
+    return {"name": name, "required": required, "recall": recall, "wrong": wrong, "id_switches": switches,
+            "hota_counts": [counts, counts], "kept": 10, "error": {"moving": {"mm_p95": None}}}  # fmt: skip
 
 
 class Heard:
@@ -63,18 +67,44 @@ class HostsTest(unittest.TestCase):
 
 class TracksTest(unittest.TestCase):
     def test_shares_follow_the_counts(self):
-        both = pooled([figures("pushed", 300, 0.9, {"can": 10}, 1, 0.8), figures("cans", 100, 0.5, {}, 2, 0.4)])
+        both = pooled([figures("pushed", 300, 0.9, {"can": 10}, 1, (90, 10, 0, 81)), figures("cans", 100, 0.5, {}, 2, (0, 60, 40, 0))])
         self.assertEqual(both["sequences"], ["pushed", "cans"])
         self.assertAlmostEqual(both["recall"], (270 + 50) / 400)
         self.assertAlmostEqual(both["precision"], 340 / 350)
         self.assertEqual(both["id_switches"], 3)
-        self.assertAlmostEqual(both["hota"], 0.7)
+        self.assertAlmostEqual(both["hota"], math.sqrt(81 / 200))
         self.assertIsNone(both["moving_mm_p95"], "nothing moved")
 
     def test_what_was_never_found_has_no_longest_time(self):
         self.assertEqual(longest([[0.1, 0.4], [0.2]]), 0.4)
         self.assertIsNone(longest([[0.1], [None]]))
         self.assertIsNone(longest([[], []]))
+
+    def test_tracks_are_equal_bit_for_bit_but_for_the_times_of_stages(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        (pathlib.Path(place.name) / "tracks").mkdir()
+
+        class Store:
+            def path(self, name):
+                return pathlib.Path(place.name) / name
+
+        def write(name, duration_us, x):
+            world = objects_t()
+            world.utime, world.source_channel, world.world = 5, "CAMERA_1", "WORLD"
+            world.camera_trans[0] = x
+            stage = stage_time_t()
+            stage.stage, stage.duration_us = "track.update", duration_us
+            world.n_stages, world.stages = 1, [stage]
+            with open(Store().path(f"tracks/{name}.lcmlog"), "wb") as log:
+                write_event(log, 0, (5, "HOUGHSTREAM_OBJECTS", world.encode()))
+
+        write("walk", 100, 0.1)
+        write("walk_again", 200, 0.1)
+        write("cans", 100, 0.1)
+        write("cans_again", 100, math.nextafter(0.1, 1.0))
+        self.assertTrue(tracks_are_equal(Store(), ["walk"]))
+        self.assertFalse(tracks_are_equal(Store(), ["walk", "cans"]))
 
     def test_options(self):
         options = parse(["--sequences", "cans,walk", "--forest", "f", "--models", "m", "--out", "here"])
@@ -90,7 +120,7 @@ class TracksTest(unittest.TestCase):
         names = [unit.name for unit in plan.units.all()]
         self.assertEqual(names, ["rendered/cans", "frames/cans.lcmlog", "detected/cans.lcmlog", "posed/cans.lcmlog",
                                  "found/cans.lcmlog", "tracks/cans.lcmlog", "tracks/cans_again.lcmlog", "tracked/cans.json",
-                                 "again/cans.json", "single/cans.json"])  # fmt: skip
+                                 "single/cans.json"])  # fmt: skip
         plan.sequence("cameras")
         self.assertIn("tracked/CAMERA_2.json", [unit.name for unit in plan.units.all()])
 

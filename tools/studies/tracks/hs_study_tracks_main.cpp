@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/channels.hpp"
@@ -42,7 +44,9 @@ std::vector<PublishedObject> objects_of(const LogEvent& event) {
   std::vector<PublishedObject> out;
   const WorldObjects world = world_from_message(decode_message<objects_t>({event.data.data(), event.data.size()}));
   for (const TrackedObject& object : world.objects) {
-    if (object.state != TrackState::kGone) out.push_back({object.track_id, object.class_name, object.T_world_object});
+    if (object.state == TrackState::kGone) continue;
+    out.push_back({object.track_id, object.class_name, object.T_world_object,
+                   std::sqrt(object.covariance.topLeftCorner<3, 3>().trace())});
   }
   return out;
 }

@@ -61,9 +61,8 @@ class Plan:
     def tracked(self, name, folder, found, channels):
         tracks = [self.add(f"tracks/{name}{again}.lcmlog", "hs-track", "-l", f"file://{{{found}}}", "--output-log", "{out}",
                            "--models", self.models, "-c", channels) for again in ("", "_again")]  # fmt: skip
-        for log, kind in zip(tracks, ("tracked", "again")):
-            self.add(f"{kind}/{name}.json", "hs-study-tracks", "compare", folder, f"{{{log}}}", "--models", self.models, "--out",
-                     "{out}")  # fmt: skip
+        self.add(f"tracked/{name}.json", "hs-study-tracks", "compare", folder, f"{{{tracks[0]}}}", "--models", self.models, "--out",
+                 "{out}")  # fmt: skip
 
     def make(self):
         for name in self.options.sequences:

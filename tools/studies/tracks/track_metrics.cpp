@@ -4,9 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "pose/model/symmetry.hpp"
-#include "pose/tracks/assignment.hpp"
 #include "pose/tracks/motion_filter.hpp"
+#include "tools/studies/tracks/hota.hpp"
 
 namespace houghstream::studies {
 namespace {
@@ -21,93 +20,52 @@ double at_share(Numbers values, double share) {
   return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
-/// For each true object the published one that it is given, or -1.
-std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects,
-                         double reach_m) {
-  constexpr double kFar = 1e3;
-  Eigen::MatrixXd costs = Eigen::MatrixXd::Constant(truth.size(), objects.size(), kFar);
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    for (std::size_t j = 0; j < objects.size(); ++j) {
-      if (!truth[i].T_world_object || truth[i].class_name != objects[j].class_name) continue;
-      costs(i, j) = (truth[i].T_world_object->translation() - objects[j].T_world_object.translation()).norm();
-    }
-  }
-  return tracks::assign(costs, reach_m);
-}
-
-/// Counts of one threshold of HOTA.
-class HotaCount {
- public:
-  explicit HotaCount(double alpha) : alpha_(alpha) {}
-
-  void add(const std::vector<TrueInstance>& truth, const std::vector<PublishedObject>& objects, double least_visible) {
-    constexpr double kZeroAt = 0.1;  // metres at which two places are not alike at all
-    const std::vector<int> given = matches(truth, objects, kZeroAt * (1.0 - alpha_) + 1e-12);
-    std::vector<bool> used(objects.size(), false);
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const bool required = truth[i].T_world_object && truth[i].visible >= least_visible;
-      if (given[i] >= 0) used[given[i]] = true;
-      if (!required) continue;
-      ++of_truth_[truth[i].instance];
-      if (given[i] < 0) continue;
-      const std::int64_t id = objects[given[i]].track_id;
-      ++of_both_[{truth[i].instance, id}];
-      ++of_track_[id];
-      ++true_positives_;
-    }
-    for (std::size_t j = 0; j < objects.size(); ++j) {
-      // What is where an object is that need not be seen is not counted at all.
-      if (used[j]) continue;
-      ++of_track_[objects[j].track_id];
-      ++false_positives_;
-    }
-  }
-
-  double value() const {
-    double required = 0.0;
-    for (const auto& [instance, count] : of_truth_) required += count;
-    if (true_positives_ == 0) return 0.0;
-    double association = 0.0;
-    for (const auto& [pair, count] : of_both_)
-      association += count * count / (of_truth_.at(pair.first) + of_track_.at(pair.second) - count);
-    association /= true_positives_;
-    const double detection = true_positives_ / (required + false_positives_);
-    return std::sqrt(detection * association);
-  }
-
- private:
-  double alpha_;
-  std::map<int, double> of_truth_;
-  std::map<std::int64_t, double> of_track_;
-  std::map<std::pair<int, std::int64_t>, double> of_both_;
-  double true_positives_ = 0.0;
-  double false_positives_ = 0.0;
-};
-
-double hota(const SequenceFile& sequence, const std::vector<PublishedFrame>& published, double least_visible) {
-  constexpr int kThresholds = 19;
-  double sum = 0.0;
-  for (int i = 1; i <= kThresholds; ++i) {
-    HotaCount count(0.05 * i);
-    for (const PublishedFrame& frame : published) count.add(sequence.frames[frame.index], frame.objects, least_visible);
-    sum += count.value();
-  }
-  return sum / kThresholds;
-}
-
 /// Errors of poses in millimetres and degrees.
 struct Errors {
   Numbers mm;
   Numbers deg;
+  Numbers deviations_mm;  ///< as they were published with some of them
+  int within_two = 0;     ///< of these deviations
+
+  void add(const Vector6& error, double deviation_m) {
+    mm.push_back(1e3 * error.head<3>().norm());
+    deg.push_back(kDegrees * error.tail<3>().norm());
+    if (!std::isfinite(deviation_m)) return;
+    deviations_mm.push_back(1e3 * deviation_m);
+    within_two += mm.back() <= 2.0 * deviations_mm.back() ? 1 : 0;
+  }
 
   OrderedJson json() const {
     return {{"frames", mm.size()},
             {"mm_median", finite_or_null(at_share(mm, 0.5))},
             {"mm_p95", finite_or_null(at_share(mm, 0.95))},
             {"deg_median", finite_or_null(at_share(deg, 0.5))},
-            {"deg_p95", finite_or_null(at_share(deg, 0.95))}};
+            {"deg_p95", finite_or_null(at_share(deg, 0.95))},
+            {"deviation_mm_median", finite_or_null(at_share(deviations_mm, 0.5))},
+            {"within_two_deviations",
+             finite_or_null(static_cast<double>(within_two) / static_cast<double>(deviations_mm.size()))}};
   }
 };
+
+/// A row for each threshold.
+OrderedJson counts_json(const std::vector<HotaCount>& counts) {
+  OrderedJson out = OrderedJson::array();
+  for (const HotaCount& count : counts)
+    out.push_back({count.true_positives, count.false_negatives, count.false_positives, count.association});
+  return out;
+}
+
+/// Those of the sequence of which nothing was published too, as that nothing is: in their order.
+std::vector<PublishedFrame> with_silent_frames(const SequenceFile& sequence, std::vector<PublishedFrame> published) {
+  std::vector<bool> told(sequence.frames.size(), false);
+  for (const PublishedFrame& frame : published) told[frame.index] = true;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (!told[i]) published.push_back({i, {}});
+  }
+  std::stable_sort(published.begin(), published.end(),
+                   [](const PublishedFrame& a, const PublishedFrame& b) { return a.index < b.index; });
+  return published;
+}
 
 /// What became of one true object.
 struct Life {
@@ -121,13 +79,12 @@ struct Life {
 
 class Comparison {
  public:
-  Comparison(const SequenceFile& sequence, const std::map<std::string, Symmetries>& symmetries,
-             const TrackMetricsSettings& settings)
+  Comparison(const SequenceFile& sequence, const ClassSymmetries& symmetries, const TrackMetricsSettings& settings)
       : sequence_(sequence), symmetries_(symmetries), settings_(settings) {}
 
   void add(const PublishedFrame& frame) {
     const std::vector<TrueInstance>& truth = sequence_.frames[frame.index];
-    const std::vector<int> given = matches(truth, frame.objects, settings_.reach_m);
+    const std::vector<int> given = matches(truth, frame.objects, symmetries_, settings_.reach_m);
     std::vector<bool> used(frame.objects.size(), false);
     for (std::size_t i = 0; i < truth.size(); ++i) {
       if (given[i] >= 0) used[given[i]] = true;
@@ -142,7 +99,7 @@ class Comparison {
     ++frames_;
   }
 
-  OrderedJson json(double hota_value) {
+  OrderedJson json(const std::vector<HotaCount>& hota) {
     for (auto& [instance, life] : lives_) {
       if (life.since) to_find_.push_back(nullptr);
       if (life.taken) to_gone_.push_back(nullptr);
@@ -153,7 +110,8 @@ class Comparison {
             {"recall", finite_or_null(static_cast<double>(found_) / required_)},
             {"precision", finite_or_null(static_cast<double>(found_ + kept_) / (found_ + kept_ + false_))},
             {"id_switches", switches_},
-            {"hota", hota_value},
+            {"hota", hota_of(hota)},
+            {"hota_counts", counts_json(hota)},
             {"error", {{"standing", standing_.json()}, {"moving", moving_.json()}}},
             {"jitter",
              {{"windows", jitter_.mm.size()},
@@ -228,14 +186,8 @@ class Comparison {
   }
 
   void add_error(const TrueInstance& truth, const PublishedObject& object, bool stands, std::size_t index) {
-    const auto known = symmetries_.find(truth.class_name);
-    const Symmetries none;
-    const Eigen::Isometry3d T = nearest_equivalent(object.T_world_object, *truth.T_world_object,
-                                                   known == symmetries_.end() ? none : known->second);
-    const Vector6 error = tracks::difference(T, *truth.T_world_object);
-    Errors& errors = stands ? standing_ : moving_;
-    errors.mm.push_back(1e3 * error.head<3>().norm());
-    errors.deg.push_back(kDegrees * error.tail<3>().norm());
+    const Vector6 error = tracks::difference(as_the_truth(object, truth, symmetries_), *truth.T_world_object);
+    (stands ? standing_ : moving_).add(error, object.deviation_m);
     if (stands) add_to_window(error, index, lives_[truth.instance]);
   }
 
@@ -265,7 +217,7 @@ class Comparison {
   }
 
   const SequenceFile& sequence_;
-  const std::map<std::string, Symmetries>& symmetries_;
+  const ClassSymmetries& symmetries_;
   const TrackMetricsSettings& settings_;
   std::map<int, Life> lives_;
   int frames_ = 0;
@@ -286,9 +238,12 @@ class Comparison {
 
 OrderedJson track_metrics(const SequenceFile& sequence, const std::vector<PublishedFrame>& published,
                           const std::map<std::string, Symmetries>& symmetries, const TrackMetricsSettings& settings) {
+  const std::vector<PublishedFrame> frames = with_silent_frames(sequence, published);
   Comparison comparison(sequence, symmetries, settings);
-  for (const PublishedFrame& frame : published) comparison.add(frame);
-  return comparison.json(hota(sequence, published, settings.least_visible));
+  for (const PublishedFrame& frame : frames) comparison.add(frame);
+  OrderedJson json = comparison.json(hota_counts(sequence, frames, symmetries, settings));
+  json["silent_frames"] = frames.size() - published.size();
+  return json;
 }
 
 }  // namespace houghstream::studies

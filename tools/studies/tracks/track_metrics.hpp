@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct PublishedObject {
   std::int64_t track_id = 0;  ///< 0 where objects have none: poses of single frames
   std::string class_name;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  /// Of its place, as it was published with it (root of the variances' sum), metres; NaN where it was not.
+  double deviation_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What was published of a frame of the sequence.
@@ -31,12 +34,18 @@ struct TrackMetricsSettings {
 };
 
 /// Publications beside the truth, frame by frame; each true object is given at most one published one of its class, so
-/// that the sum of distances is least:
+/// that the sum of distances is least. Of a frame of which nothing was published it is that nothing is there:
 ///
-///   "frames", "required", "recall", "precision"; "kept": published rightly though it was not required
-///   "id_switches"      how often a true object's number changed (CLEAR MOT, Bernardin and Stiefelhagen 2008)
-///   "hota"             with similarity 1 - distance / 0.1 m, mean over thresholds 0.05 to 0.95 (Luiten et al. 2021)
-///   "error"            of matched objects that stand, and that move: medians and 95 % points, mm and degrees
+///   "frames", "required", "recall", "precision"; "kept": published rightly though it was not required;
+///   "silent_frames": of which nothing was published
+///   "id_switches"      how often a true object's number changed (CLEAR MOT, Bernardin and Stiefelhagen 2008; they hold
+///                      on to what was given in the frame before as long as it is near enough, here each frame is
+///                      judged by itself, which counts no fewer)
+///   "hota"             as hota.hpp says; "hota_counts": of each threshold true positives, false negatives, false
+///                      positives and the sum of A(c), to be added up over sequences
+///   "error"            of matched objects that stand, and that move: medians and 95 % points, mm and degrees; the
+///                      published deviation of the place, and the share of errors within two of it: an honest one has
+///                      nearly all there
 ///   "jitter"           of those that stand: RMS from the mean over each 5 s, median and worst of these; mm and degrees
 ///   "seconds_to_find"  from when half of an object was seen first, or came back, to when it is published; each, null
 ///                      where it never was

@@ -54,6 +54,55 @@ TEST(TrackMetrics, NumbersThatChangePlacesAreSwitchesAndHalveTheAssociation) {
   EXPECT_NEAR(json["hota"].get<double>(), std::sqrt(1.0 / 3.0), 1e-9);
 }
 
+TEST(TrackMetrics, HotaGivesWhatItsTracksAreAlignedWithNotWhatIsNearest) {
+  SequenceFile sequence = two_cans(100);
+  for (auto& frame : sequence.frames) frame.pop_back();
+  std::vector<PublishedFrame> published;
+  for (std::size_t i = 0; i < 100; ++i) {
+    published.push_back({i, {{7, "can", at(0.018)}}});
+    if (i >= 40 && i < 60) published.back().objects.push_back({9, "can", at(0.0)});
+  }
+  const OrderedJson json = measured(sequence, published);
+  // Number 7 is as near as 16 of 19 thresholds ask for, in all frames; number 9 is wrong 20 times.
+  EXPECT_NEAR(json["hota"].get<double>(), 16.0 / 19.0 * std::sqrt(100.0 / 120.0), 1e-9);
+  EXPECT_EQ(json["hota_counts"].size(), 19U);
+  EXPECT_EQ(json["hota_counts"][0], (OrderedJson{100.0, 0.0, 20.0, 100.0}));
+  EXPECT_EQ(json["hota_counts"][18], (OrderedJson{0.0, 100.0, 120.0, 0.0}));
+}
+
+TEST(TrackMetrics, OfAFrameOfWhichNothingIsPublishedAllIsMissed) {
+  const SequenceFile sequence = two_cans(100);
+  std::vector<PublishedFrame> published;
+  for (std::size_t i = 0; i < 80; ++i) published.push_back({i, {{7, "can", at(0.0)}, {8, "can", at(1.0)}}});
+  const OrderedJson json = measured(sequence, published);
+  EXPECT_EQ(json["frames"], 100);
+  EXPECT_EQ(json["silent_frames"], 20);
+  EXPECT_NEAR(json["recall"].get<double>(), 0.8, 1e-12);
+  EXPECT_NEAR(json["hota"].get<double>(), 0.8, 1e-9);  // 160 of 200 found, in 80 of 100 frames
+}
+
+TEST(TrackMetrics, PublishedDeviationsAreComparedWithTheErrors) {
+  const SequenceFile sequence = two_cans(100);
+  std::vector<PublishedFrame> published;
+  for (std::size_t i = 0; i < 100; ++i)
+    published.push_back({i, {{7, "can", at(0.003), 0.002}, {8, "can", at(i < 50 ? 1.0 : 1.005), 0.001}}});
+  const OrderedJson standing = measured(sequence, published)["error"]["standing"];
+  EXPECT_NEAR(standing["deviation_mm_median"].get<double>(), 1.5, 0.6);
+  EXPECT_NEAR(standing["within_two_deviations"].get<double>(), 0.75, 0.01);
+}
+
+TEST(TrackMetrics, APoseThatLooksTheSameIsThatOfTheObjectWhereverItsOriginIs) {
+  const SequenceFile sequence = two_cans(10);
+  Eigen::Isometry3d half_turn = Eigen::Isometry3d::Identity();  // about a point 6 cm above the origin
+  half_turn.translate(Eigen::Vector3d(0, 0, 0.06));
+  half_turn.rotate(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+  half_turn.translate(Eigen::Vector3d(0, 0, -0.06));
+  std::vector<PublishedFrame> published;
+  for (std::size_t i = 0; i < 10; ++i) published.push_back({i, {{7, "can", at(0.0) * half_turn}, {8, "can", at(1.0)}}});
+  EXPECT_EQ(track_metrics(sequence, published, {{"can", {{half_turn}, {}}}}, {})["recall"], 1.0);
+  EXPECT_EQ(measured(sequence, published)["recall"], 0.5);
+}
+
 TEST(TrackMetrics, WhatIsMissedWrongLateOrNotGoneIsCounted) {
   SequenceFile sequence = two_cans(40);
   for (std::size_t i = 20; i < 40; ++i) sequence.frames[i][1].T_world_object.reset();
