@@ -59,6 +59,10 @@ void FrameTimes::note_poses(const FrameId& frame, Time time) {
   rows_[frame].poses = rows_[frame].poses.value_or(time);
 }
 
+void FrameTimes::note_objects(const FrameId& frame, Time time) {
+  rows_[frame].objects = rows_[frame].objects.value_or(time);
+}
+
 void FrameTimes::note_status(const status_t& status) {
   constexpr std::size_t kMost = 64;  // a sender of rubbish may make them up without end
   const std::pair<std::string, std::int32_t> key(status.process, status.pid);
@@ -151,12 +155,14 @@ json FrameTimes::summary(const std::optional<std::int64_t>& sent) const {
           {"frames_received", count(&Row::frame)},
           {"frames_detected", count(&Row::detections)},
           {"frames_with_poses", count(&Row::poses)},
+          {"frames_with_objects", count(&Row::objects)},
           {"frame_rate_hz", number(rate_hz(&Row::frame))},
           {"detection_rate_hz", number(rate_hz(&Row::detections))},
           {"latency_ms",
            {{"detect", to_json(percentiles(latencies_ms(&Row::frame, &Row::detections)))},
             {"pose", to_json(percentiles(latencies_ms(&Row::detections, &Row::poses)))},
             {"total", to_json(percentiles(latencies_ms(&Row::frame, &Row::poses)))}}},
+          {"objects_latency_ms", to_json(percentiles(latencies_ms(&Row::frame, &Row::objects)))},
           {"account", account(sent.value_or(count(&Row::frame)))},
           {"processes", processes}};
 }

@@ -14,7 +14,8 @@
 
 namespace houghstream {
 
-/// When each camera's frames, their detections and their poses arrived, on one clock, and what the processes said last.
+/// When each camera's frames, their detections, their poses and the world's objects after them arrived, on one clock,
+/// and what the processes said last.
 class FrameTimes {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -23,6 +24,7 @@ class FrameTimes {
   void note_frame(const FrameId& frame, Time time);
   void note_detections(const FrameId& frame, Time time);
   void note_poses(const FrameId& frame, Time time);
+  void note_objects(const FrameId& frame, Time time);
   void note_status(const status_t& status);
 
   std::size_t frames() const;
@@ -33,9 +35,10 @@ class FrameTimes {
 
   /// `sent`: how many frames were published, where it is known. `start_utime`: the csv's zero, microseconds since the
   /// epoch. Counts, rate, latency percentiles in milliseconds
-  /// (detect: frame to detections; pose: detections to poses; total: frame to poses), the last status of each
-  /// process (by name, with the process id where several have one name), and the account sent = detected + skipped +
-  /// refused + lost of the process that detects; null unless there is exactly one.
+  /// (detect: frame to detections; pose: detections to poses; total: frame to poses; apart from these: frame to
+  /// objects, where hs-track is there), the last status of each process (by name, with the process id where several
+  /// have one name), and the account sent = detected + skipped + refused + lost of the process that detects; null
+  /// unless there is exactly one.
   nlohmann::json summary(const std::optional<std::int64_t>& sent) const;
 
  private:
@@ -43,6 +46,7 @@ class FrameTimes {
     std::optional<Time> frame;
     std::optional<Time> detections;
     std::optional<Time> poses;
+    std::optional<Time> objects;
   };
 
   std::vector<double> latencies_ms(std::optional<Time> Row::*from, std::optional<Time> Row::*to) const;

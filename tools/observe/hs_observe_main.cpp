@@ -66,6 +66,7 @@ void observe(const ObserveOptions& options) {
   };
   stamp(channel::kDetections, &FrameTimes::note_detections);
   stamp(channel::kPoses, &FrameTimes::note_poses);
+  stamp(channel::kObjects, &FrameTimes::note_objects);
   bus.subscribe(channel::kStatus, [&](const Arrival& a) { times.note_status(decode_message<status_t>(a.bytes)); });
   log_info("ready: at {}", bus.url());
 
@@ -88,7 +89,7 @@ void observe(const ObserveOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app("Stamps the arrival of frames, detections and poses on the bus, and adds up", "hs-observe");
+  CommandLine app("Stamps the arrival of frames, detections, poses and objects on the bus, and adds up", "hs-observe");
   ObserveOptions options;
   app.add_option("--out", options.out, "write the summary to this JSON file instead of stdout");
   app.add_option("--csv", options.csv, "write one row for each frame to this file");

@@ -1,5 +1,5 @@
-"""How fast hs-pose --follow is: frame to pose at several rates, what is lost, and what it costs. tools/bench tracks asks
-measure(); by itself:
+"""How fast hs-pose --follow is: frame to pose, and to the world's objects of hs-track, at several rates, what is lost, and
+what it costs. tools/bench tracks asks measure(); by itself:
 
     cd tools && PYTHONPATH=../build/python python3 -m studies.following --scene SCENE --forest FOREST --models MODELS --out OUT
 
@@ -24,18 +24,23 @@ FIRST_UTIME = 1_500_000_000_000_000
 
 
 def figures(folder, frames):
-    """Of one replay: milliseconds from a frame's publication to its first poses, frames that never reached hs-pose, those that
-    it passed over, and processor cores that detector and poses took together."""
+    """Of one replay: milliseconds from a frame's publication to its first poses, and to the objects of the world after it,
+    frames that never reached hs-pose, those that it passed over, those after which no objects came, and processor cores that
+    detector, poses and tracks took together."""
     observed, usage = read_json(folder / "observe.json"), read_json(folder / "usage.json")
     pose = observed["processes"]["hs-pose"]
     return {
         "p50_ms": observed["latency_ms"]["total"]["p50"],
         "p99_ms": observed["latency_ms"]["total"]["p99"],
+        "objects_p50_ms": observed["objects_latency_ms"]["p50"],
+        "objects_p99_ms": observed["objects_latency_ms"]["p99"],
         "lost": frames - pose["received"],
         "skipped": round(pose["skipped"] / frames, 5),
+        "without_objects": round(1.0 - observed["frames_with_objects"] / frames, 5),
         "cores": usage["cpu_cores"],
         "cores_detect": usage["cores"]["detect"],
         "cores_pose": usage["cores"]["pose"],
+        "cores_track": usage["cores"]["track"],
     }
 
 
@@ -77,7 +82,7 @@ def measure(programs, data, out, rates=RATES, seconds=SECONDS, rounds=ROUNDS):
             step(f"following: {seconds} s at {rate} Hz, round {number + 1} of {rounds}")
             folder = out / f"following_{rate}_{number}"
             stream = Stream(programs, data["forest"], data["models"], rate * seconds, folder, watch=True, detect_threads=1,
-                            detect=("--looks-per-second", LOOKS), pose=("--follow",))  # fmt: skip
+                            detect=("--looks-per-second", LOOKS), pose=("--follow",), track=True)  # fmt: skip
             stream.play("lcm-logplayer", logs[rate])
             runs[rate].append(figures(folder, rate * seconds))
     return {f"hz{rate}": {**medians(runs[rate]), "looks_per_second": LOOKS, "runs": runs[rate]} for rate in rates}

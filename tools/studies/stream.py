@@ -204,7 +204,7 @@ class UsageWatch:
 
 @dataclasses.dataclass(frozen=True)
 class Stream:
-    """hs-detect and hs-pose, each a process, and hs-observe, which stamps what goes by: OUT/observe.json,
+    """hs-detect, hs-pose and, where asked for, hs-track, each a process, and hs-observe, which stamps what goes by: OUT/observe.json,
     OUT/frame_times.csv, and what the processes say in OUT/log."""
 
     programs: pathlib.Path
@@ -215,8 +215,14 @@ class Stream:
     detect: tuple = ()  # further options
     pose: tuple = ()
     show: bool = False  # hs-view's pictures and video, and the results as an LCM log
-    watch: bool = False  # what detector and poses cost: OUT/usage.json
+    watch: bool = False  # what finding the objects costs: OUT/usage.json
     detect_threads: int = 0  # 0: as many as this process may use
+    track: bool = False  # hs-track too
+
+    @property
+    def finders(self):
+        """The processes that are measured."""
+        return ("detect", "pose", *(["track"] if self.track else []))
 
     @property
     def with_models(self):
@@ -227,13 +233,13 @@ class Stream:
         shutil.rmtree(self.out, ignore_errors=True)
         with Processes(self.out / "log") as running:
             self._start(running)
-            usage = UsageWatch({name: running.by_name[name] for name in ("detect", "pose")}) if self.watch else None
+            usage = UsageWatch({name: running.by_name[name] for name in self.finders}) if self.watch else None
             player = running.start("player", *sender, **more_environment)
             player.wait(None)
             self._await_observer(running.by_name["observe"])
             if usage:
                 (self.out / "usage.json").write_text(json.dumps(usage.summary(), indent=2) + "\n")
-            running.stop("observe", *(["logger"] if self.show else []), "pose", "detect")
+            running.stop("observe", *(["logger"] if self.show else []), *reversed(self.finders))
             if self.show:
                 running.stop("view", seconds=120)  # draws what still waits; on a busy machine that takes a while
 
@@ -242,6 +248,8 @@ class Stream:
         running.start("detect", programs / "hs-detect", "--forest", self.forest, "--threads",
                       self.detect_threads or threads(), *self.detect)  # fmt: skip
         running.start("pose", programs / "hs-pose", *self.with_models, *self.pose)
+        if self.track:
+            running.start("track", programs / "hs-track", *self.with_models)
         running.start("observe", programs / "hs-observe", "--expect", self.frames, "--out", self.out / "observe.json",
                       "--csv", self.out / "frame_times.csv")  # fmt: skip
         if self.show:

@@ -68,6 +68,18 @@ TEST(FrameTimes, PosesThatComeBeforeDetectionsAnswerNone) {
   EXPECT_TRUE(summary["latency_ms"]["pose"]["p50"].is_null());
 }
 
+TEST(FrameTimes, TheWorldAfterAFrameIsToldApart) {
+  FrameTimes times = ten_frames();
+  EXPECT_EQ(times.summary(std::nullopt)["frames_with_objects"], 0);
+  EXPECT_TRUE(times.summary(std::nullopt)["objects_latency_ms"]["p50"].is_null());
+  for (int i = 0; i < 10; i += 2) times.note_objects({"LEFT", i}, at_ms(100 * i + 18));
+  times.note_objects({"LEFT", 0}, at_ms(90));  // after another result of the same frame
+  const nlohmann::json summary = times.summary(std::nullopt);
+  EXPECT_EQ(summary["frames_with_objects"], 5);
+  EXPECT_NEAR(summary["objects_latency_ms"]["p99"], 18.0, 1e-6);
+  EXPECT_FALSE(summary["latency_ms"].contains("objects")) << "a stream need not have them";
+}
+
 TEST(FrameTimes, TheAccountAddsUpOrSaysThatItDoesNot) {
   FrameTimes times = ten_frames();
   times.note_status(detector_status(3, 1, 1));

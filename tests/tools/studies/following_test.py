@@ -13,6 +13,8 @@ from studies.encoded import utime_of
 
 def observed(p50, p99, received, skipped):
     return {
+        "objects_latency_ms": {"p50": p50 + 1.0, "p95": p50 + 1.0, "p99": p99 + 1.0},
+        "frames_with_objects": received - skipped,
         "latency_ms": {"total": {"p50": p50, "p95": p50, "p99": p99}, "detect": {}, "pose": {}},
         "processes": {"hs-pose": {"received": received, "skipped": skipped, "lost": 0},
                       "hs-detect": {"received": 600, "skipped": 550, "lost": 0}},
@@ -24,14 +26,15 @@ class Figures(unittest.TestCase):
         place = tempfile.TemporaryDirectory()
         self.addCleanup(place.cleanup)
         folder = pathlib.Path(place.name)
-        usage = {"cpu_cores": 0.7, "cores": {"detect": 0.2, "pose": 0.5}, "rss_mb": {}}
+        usage = {"cpu_cores": 0.7, "cores": {"detect": 0.2, "pose": 0.4, "track": 0.1}, "rss_mb": {}}
         (folder / "observe.json").write_text(json.dumps(observe))
         (folder / "usage.json").write_text(json.dumps(usage))
         return folder
 
     def test_frames_are_those_of_hs_pose_not_those_that_the_detector_skips_by_its_budget(self):
         found = following.figures(self.folder(observed(5.0, 9.0, 598, 3)), 600)
-        expected = {"p50_ms": 5.0, "p99_ms": 9.0, "lost": 2, "skipped": 0.005, "cores": 0.7, "cores_detect": 0.2, "cores_pose": 0.5}
+        expected = {"p50_ms": 5.0, "p99_ms": 9.0, "objects_p50_ms": 6.0, "objects_p99_ms": 10.0, "lost": 2, "skipped": 0.005,
+                    "without_objects": 0.00833, "cores": 0.7, "cores_detect": 0.2, "cores_pose": 0.4, "cores_track": 0.1}  # fmt: skip
         self.assertEqual(found, expected)
 
     def test_of_several_rounds_the_median_of_each_figure_counts(self):

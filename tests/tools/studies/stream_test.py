@@ -65,7 +65,7 @@ class OneProcess(Case):
 
 class WholeStream(Case):
     def stream(self, **more):
-        for name in ("hs-detect", "hs-pose", "hs-observe"):
+        for name in ("hs-detect", "hs-pose", "hs-track", "hs-observe"):
             self.program(name)
         enter_shared_network()
         return Stream(self.folder, self.folder / "forest", None, 30, self.folder / "out", **more)
@@ -79,6 +79,12 @@ class WholeStream(Case):
         self.assertIn("--expect 30", said)
         self.assertIn("--threshold 0.01 ready", said)
         self.assertEqual(set(json.loads((stream.out / "usage.json").read_text())["rss_mb"]), {"detect", "pose"})
+
+    def test_objects_are_tracked_where_that_is_asked_for(self):
+        stream = self.stream(watch=True, track=True)
+        stream.play("sh", "-c", f"cat {stream.out}/log/track.txt")
+        self.assertIn("hs-track ready", (stream.out / "log" / "player.txt").read_text())
+        self.assertEqual(set(json.loads((stream.out / "usage.json").read_text())["cores"]), {"detect", "pose", "track"})
 
     def test_a_sender_that_fails_fails_the_run(self):
         with self.assertRaisesRegex(ProcessFailed, "player ended with status 1"):

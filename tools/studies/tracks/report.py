@@ -138,8 +138,8 @@ def write_page(options, summary):
                      show(one["error"]["moving"]["mm_p95"], "{:.1f}"), show(one["jitter"]["mm"], "{:.2f}"),
                      show(one["jitter"]["deg"], "{:.2f}"), show(longest([one["seconds_to_find"]]), "{:.2f}"),
                      show(longest([one["seconds_to_gone"]]), "{:.2f}"), show(one["hidden_kept"], "{:.2f}")))  # fmt: skip
-    speeds = [(f"{rate} Hz", *(show(summary[f"hz{rate}"][key], "{:.2f}") for key in ("p50_ms", "p99_ms", "lost", "skipped", "cores")))
-              for rate in RATES if f"hz{rate}" in summary]  # fmt: skip
+    keys = ("p50_ms", "p99_ms", "objects_p50_ms", "objects_p99_ms", "lost", "skipped", "cores")
+    speeds = [(f"{rate} Hz", *(show(summary[f"hz{rate}"][key], "{:.2f}") for key in keys)) for rate in RATES if f"hz{rate}" in summary]
     host_rows = [(f"{words}, host {host}", *(show(one[host][key], "{:.1f}") for key in ("hz", "p50_ms", "p99_ms")), one[host]["objects"])
                  for words, one in hosts.by_number(summary.get("hosts")) for host in hosts.HOSTS if host in one]  # fmt: skip
     template = pathlib.Path(__file__).parent.name + "/page.html"
