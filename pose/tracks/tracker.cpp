@@ -6,6 +6,7 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pose/tracks/assignment.hpp"
+#include "pose/tracks/looked_for.hpp"
 #include "pose/tracks/world_clock.hpp"
 
 namespace houghstream::tracks {
@@ -30,6 +31,13 @@ struct Track {
   bool there() const { return gone_utime == 0; }
 };
 
+/// What a result counts for an object of which it has no pose.
+struct Missed {
+  double seconds = 0.0;         ///< since the camera's frame before
+  bool by_depth = false;        ///< it is the first one of its frame
+  bool by_recognition = false;  ///< it is the first one of its frame that speaks of the class
+};
+
 }  // namespace
 
 struct Tracker::State {
@@ -37,6 +45,7 @@ struct Tracker::State {
   TrackerSettings settings;
   std::vector<Track> tracks;  // by when they were begun; numbers follow in the order of confirmation
   WorldClock clock;
+  LookedFor looked_for;
   std::map<std::string, int> most_together;  // by class: instances that were seen in one frame
   std::int64_t next_id = 1;
   int world_number = 1;
@@ -64,7 +73,8 @@ struct Tracker::State {
   void take(Track& track, const SeenPose& pose, double seconds);
   bool has_room();
   void begin(const SeenPose& pose);
-  void judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses, double seconds);
+  void miss_unseen(const FrameSeen& seen, const std::vector<SeenPose>& poses, CameraClock& camera);
+  void judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses, const Missed& missed);
   void confirm(std::int64_t utime);
   Track* earlier_self(const Track& candidate, std::int64_t utime);
   void forget(std::int64_t utime);
@@ -108,11 +118,7 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
     const std::vector<SeenPose> left = state.associate(poses, class_name, camera->seconds);
     unknown.insert(unknown.end(), left.begin(), left.end());
   }
-  // What is not seen is missed once a frame, however many results that has.
-  const double missed_s = camera->results == 1 ? camera->seconds : 0.0;
-  for (Track& track : state.tracks) {
-    if (track.there() && !track.seen_now) state.judge_unseen(track, seen, poses, missed_s);
-  }
+  state.miss_unseen(seen, poses, *camera);
   for (const SeenPose& pose : unknown) state.begin(pose);
   state.confirm(frame.utime);
   state.forget(frame.utime);
@@ -122,6 +128,7 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
 void Tracker::State::begin_world() {
   tracks.clear();
   clock.begin_world();
+  looked_for = {};
   most_together.clear();
   next_id = 1;
   ++world_number;
@@ -244,9 +251,24 @@ void Tracker::State::begin(const SeenPose& pose) {
   tracks.push_back(std::move(track));
 }
 
+/// What is not seen is missed once a frame, however many results that has.
+void Tracker::State::miss_unseen(const FrameSeen& seen, const std::vector<SeenPose>& poses, CameraClock& camera) {
+  looked_for.note(seen.poses);
+  std::set<std::string> missed_now;
+  for (Track& track : tracks) {
+    if (!track.there() || track.seen_now) continue;
+    const Missed missed{
+        camera.seconds, camera.results == 1,
+        camera.missed.count(track.class_name) == 0 && looked_for.speaks_of(seen.poses, track.class_name)};
+    if (missed.by_recognition) missed_now.insert(track.class_name);
+    if (missed.by_depth || missed.by_recognition) judge_unseen(track, seen, poses, missed);
+  }
+  camera.missed.insert(missed_now.begin(), missed_now.end());
+}
+
 /// What the frame says of an object of which it has no pose.
 void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses,
-                                  double seconds) {
+                                  const Missed& missed) {
   const ExistenceSettings& how = settings.existence;
   const TrackModel* model = model_of(track.class_name);
   const RgbdFrame* image = model != nullptr && seen.image ? seen.image() : nullptr;
@@ -271,8 +293,10 @@ void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std
   std::string why;
   switch (look.state) {
     case TrackState::kGone:
-      rate = how.seen_through * look.seen_through;
-      track.seen_through_s += seconds;
+      if (missed.by_depth) {
+        rate = how.seen_through * look.seen_through;
+        track.seen_through_s += missed.seconds;
+      }
       why =
           fmt::format("{} sees through {:.0f} % of where it was", seen.poses.frame.channel, 100.0 * look.seen_through);
       break;
@@ -281,22 +305,23 @@ void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std
       why = fmt::format("not in view of {}, or without depth", seen.poses.frame.channel);
       break;
     default:
-      rate = look.goes_on ? how.goes_on : detected ? 0.0 : how.unrecognised;
+      if (missed.by_recognition) rate = look.goes_on ? how.goes_on : detected ? 0.0 : how.unrecognised;
       why = fmt::format("not recognised by {}, whose depth agrees", seen.poses.frame.channel);
   }
   if (crowded && look.state != TrackState::kOutOfView) {
-    rate += how.crowded_out;
+    if (missed.by_depth) rate += how.crowded_out;
     why += ", where something else is";
   }
   if (track.pose.filter().moving() && unseen_s > settings.pose.motion.coast_s) {
-    rate += look.state == TrackState::kHidden ? 0.25 * how.lost : how.lost;
+    if (missed.by_recognition) rate += look.state == TrackState::kHidden ? 0.25 * how.lost : how.lost;
     why += "; it moved when it was seen last";
   }
-  if (track.id == 0) rate += how.unconfirmed;
-  track.log_odds -= seconds * rate;
+  if (track.id == 0 && missed.by_recognition) rate += how.unconfirmed;
+  track.log_odds -= missed.seconds * rate;
   // Of several cameras the one that saw it last has the word, as long as that is not long ago.
   constexpr double kHasTheWordS = 0.1;
-  if (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kHasTheWordS) {
+  const bool says_anything = missed.by_recognition || look.state != TrackState::kUnrecognised;
+  if (says_anything && (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kHasTheWordS)) {
     track.state = look.state == TrackState::kGone ? TrackState::kUnrecognised : look.state;
     track.reason = why;
   }
@@ -366,12 +391,12 @@ void Tracker::State::forget(std::int64_t utime) {
     return track.id == 0 || seconds_between(track.gone_utime, utime) > settings.remembered_s;
   };
   tracks.erase(std::remove_if(tracks.begin(), tracks.end(), over), tracks.end());
-  // Of classes of which nothing is known any more, whose names a sender of rubbish may make up without end.
-  for (auto it = most_together.begin(); it != most_together.end();) {
-    const bool known =
-        std::any_of(tracks.begin(), tracks.end(), [&](const Track& track) { return track.class_name == it->first; });
-    it = known ? std::next(it) : most_together.erase(it);
-  }
+  // Other classes' names a sender of rubbish may make up without end.
+  std::set<std::string> known;
+  for (const Track& track : tracks) known.insert(track.class_name);
+  for (auto it = most_together.begin(); it != most_together.end();)
+    it = known.count(it->first) > 0 ? std::next(it) : most_together.erase(it);
+  looked_for.keep_only(known);
 }
 
 WorldObjects Tracker::State::report(const FrameSeen& seen) const {

@@ -38,7 +38,7 @@ CameraClock& WorldClock::set(const FrameId& frame) {
   if (!newest_ || frame.utime > newest_->utime) newest_ = frame;
   CameraClock& clock = cameras_[frame.channel];
   const double seconds = clock.results == 0 ? kUsualS : std::min(kMostS, seconds_between(clock.utime, frame.utime));
-  if (clock.results == 0 || frame.utime != clock.utime) clock = {frame.utime, 0, seconds, {}};
+  if (clock.results == 0 || frame.utime != clock.utime) clock = {frame.utime, 0, seconds, {}, {}};
   ++clock.results;
   return clock;
 }

@@ -17,6 +17,7 @@ struct CameraClock {
   std::int64_t results = 0;       ///< of the frame of this time; none before the first frame
   double seconds = 0.0;           ///< from the frame before to the one of this time, as far as they count
   std::set<std::string> classes;  ///< that the frame of this time was told of
+  std::set<std::string> missed;   ///< that have been looked for in it, and of which something was not found
 };
 
 /// What a result's time says of it.

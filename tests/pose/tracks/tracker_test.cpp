@@ -369,6 +369,32 @@ TEST(Tracker, WhatASecondDetectorSeesIsAsSoonSureAsWhatTheFirstOneSees) {
   EXPECT_EQ(world.objects.size(), 2U);
 }
 
+TEST(Tracker, WhatAnotherDetectorIsSlowToLookForIsNotMissedByTheFirstOne) {
+  TrackedScene scene;
+  scene.standing = {{"can", on_table(0, 0)}, {"mug", on_table(0.2, 0)}};
+  WorldObjects world;
+  const auto told = [&](const std::string& name, double x) {
+    scene.posed = {{name, on_table(x, 0)}};
+    world = scene.look();
+  };
+  for (int i = 0; i < 12; ++i) {
+    scene.utime += 100000;
+    told("mug", 0.2);
+    if (i % 3 == 0) told("can", 0);
+  }
+  ASSERT_EQ(world.objects.size(), 2U) << "in two of three frames nobody has looked for the can";
+  const std::size_t can = world.objects[0].class_name == "can" ? 0 : 1;
+  EXPECT_EQ(world.objects[can].state, TrackState::kVisible);
+  const float before = world.objects[can].probability;
+  for (int i = 0; i < 20; ++i) {
+    scene.utime += 100000;
+    told("mug", 0.2);
+  }
+  ASSERT_EQ(world.objects.size(), 2U);
+  EXPECT_EQ(world.objects[can].state, TrackState::kUnrecognised) << "its detector is silent";
+  EXPECT_LT(world.objects[can].probability, before);
+}
+
 TEST(Tracker, MoreObjectsThanAllowedAreRefusedAndTheOthersToldOf) {
   TrackerSettings settings;
   settings.most_objects = 2;
