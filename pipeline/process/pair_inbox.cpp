@@ -84,10 +84,19 @@ std::optional<PairedMessages> PairInbox::take(std::chrono::milliseconds timeout)
   Camera* next = nullptr;
   changed_.wait_for(lock, timeout, [&] {
     next = next_camera();
-    return next != nullptr || any_fresh();
+    return next != nullptr || any_fresh() || woken_;
   });
+  woken_ = false;
   if (next == nullptr) return std::nullopt;
   return take_pair(*next);
+}
+
+void PairInbox::wake() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    woken_ = true;
+  }
+  changed_.notify_one();
 }
 
 std::optional<ArrivedFrame> PairInbox::take_fresh() {

@@ -71,6 +71,9 @@ class PairInbox {
   /// The next pair, waiting for one up to `timeout`, or, with `newest_first`, until a frame comes.
   std::optional<PairedMessages> take(std::chrono::milliseconds timeout);
 
+  /// Ends the waiting of take(), now or of the next call: something else has come that its caller waits for.
+  void wake();
+
   /// The newest frame of a camera, where `newest_first`, and where neither it nor its pair has been taken: there is
   /// time to decode it while its detections are on the way. It stays here for them.
   std::optional<ArrivedFrame> take_fresh();
@@ -125,6 +128,7 @@ class PairInbox {
   std::size_t waiting_bytes_ = 0;  // of their detections
   std::int64_t arrivals_ = 0;
   std::int64_t turns_ = 0;
+  bool woken_ = false;
   Dropped dropped_;
 };
 

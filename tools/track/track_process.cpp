@@ -1,6 +1,7 @@
 #include "tools/track/track_process.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <deque>
 #include <mutex>
 
@@ -173,15 +174,15 @@ class TrackProcess {
       const Eigen::Isometry3d T_world_camera = transform_from_message(message);
       const std::lock_guard<std::mutex> lock(mutex_);
       places_.add(arrival.channel.substr(0, arrival.channel.size() - kSuffix), message.utime, T_world_camera);
+      if (frames_wait_) inbox_.wake();
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
   }
 
   bool step(milliseconds timeout) {
-    constexpr milliseconds kTransformsMayCome(3);
-    std::optional<PairedMessages> pair =
-        inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kTransformsMayCome));
+    constexpr milliseconds kPatience(3);  // how long the end of a frame's waiting may go unnoticed
+    std::optional<PairedMessages> pair = inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kPatience));
     if (pair) keep_waiting({std::move(*pair), now_us()});
     count_dropped();
     tell_silence();
@@ -202,6 +203,7 @@ class TrackProcess {
         work_on(now, *place.T_world_camera);
       }
     }
+    frames_wait_ = !waiting_.empty();
     return worked;
   }
 
@@ -369,6 +371,7 @@ class TrackProcess {
   std::map<std::string, std::int64_t> newest_;  // utimes of the frames that came last, by channel
   tracks::CameraPlaces places_;
   std::atomic<std::int64_t> poses_{0};
+  std::atomic<bool> frames_wait_{false};  // for transforms
 };
 
 }  // namespace

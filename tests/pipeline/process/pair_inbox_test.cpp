@@ -89,6 +89,16 @@ TEST(PairInbox, WhoTakesNothingAheadWaitsForPairsOnly) {
   EXPECT_EQ(*inbox.take(kNow)->frame, bytes(11));
 }
 
+TEST(PairInbox, WhoIsWokenWaitsNoLonger) {
+  PairInbox inbox(false);
+  inbox.wake();
+  EXPECT_FALSE(inbox.take(std::chrono::minutes(1)).has_value()) << "returns at once";
+  inbox.put_frame(id(1), arrived_bytes(11));
+  inbox.wake();
+  inbox.put_detections(id(1), bytes(21));
+  EXPECT_TRUE(inbox.take(std::chrono::minutes(1)).has_value()) << "a pair is there all the same";
+}
+
 TEST(PairInbox, ALogIsWorkedOnInTurn) {
   PairInbox inbox(false);
   for (int i = 1; i <= 3; ++i) {
