@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/no_value.hpp"
@@ -25,6 +26,51 @@ struct ClipVertex {
 
   bool in_front() const { return position.z() >= kNear; }
 };
+
+/// Relative to the first pixel of a part of the image.
+Snapped snap(const Camera& camera, const cv::Point& first_px, const Eigen::Vector3d& point) {
+  constexpr double kRounding = kSnapLimit + 0.5;
+  const auto fixed = [](double px) {
+    const double scaled = px * kSubpixels;
+    const double limited = scaled > -kSnapLimit ? std::min(scaled, kSnapLimit) : -kSnapLimit;  // NaN too
+    return static_cast<std::int64_t>(limited + kRounding) - static_cast<std::int64_t>(kSnapLimit);
+  };
+  const Eigen::Vector2d pixel = camera.project(point);
+  return {fixed(pixel.x()) - kSubpixels * first_px.x, fixed(pixel.y()) - kSubpixels * first_px.y};
+}
+
+void place_vertices(const RenderItem& item, const Camera& camera, const cv::Point& first_px,
+                    std::vector<ClipVertex>& vertices) {
+  require(item.mesh != nullptr, "render item without a mesh");
+  vertices.resize(item.mesh->vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i].position = item.T_camera_object * item.mesh->vertices[i].cast<double>();
+    if (vertices[i].in_front()) vertices[i].snapped = snap(camera, first_px, vertices[i].position);
+  }
+}
+
+/// What is covered of an axis that has `size` pixels, from its first to behind its last one, by what is snapped within
+/// these bounds: pixels whose centres lie there.
+std::array<int, 2> covered_pixels(std::int64_t low, std::int64_t high, int size) {
+  const std::int64_t first = std::clamp<std::int64_t>((low + kSubpixels - 1) >> kSubpixelBits, 0, size);
+  const std::int64_t end = std::clamp<std::int64_t>((high >> kSubpixelBits) + 1, first, size);
+  return {static_cast<int>(first), static_cast<int>(end)};
+}
+
+/// The pixels that triangles of these vertices may cover, which are snapped on the whole image.
+cv::Rect covered_part(const std::vector<ClipVertex>& vertices, const Camera& camera) {
+  if (vertices.empty()) return {};
+  Snapped low = vertices.front().snapped;
+  Snapped high = low;
+  for (const ClipVertex& vertex : vertices) {
+    if (!vertex.in_front()) return {0, 0, camera.width, camera.height};
+    low = {std::min(low.x, vertex.snapped.x), std::min(low.y, vertex.snapped.y)};
+    high = {std::max(high.x, vertex.snapped.x), std::max(high.y, vertex.snapped.y)};
+  }
+  const auto [left, right] = covered_pixels(low.x, high.x, camera.width);
+  const auto [top, bottom] = covered_pixels(low.y, high.y, camera.height);
+  return {left, top, right - left, bottom - top};
+}
 
 /// What a visible pixel needs of its triangle: dot products with the pixel's ray.
 struct Surface {
@@ -53,11 +99,12 @@ class Rasteriser {
   Rasteriser(const Camera& camera, const cv::Rect& region, bool with_owners);
 
   void draw(const RenderItem& item);
+  /// Of vertices that are snapped on this part of the image.
+  void draw_placed(const RenderItem& item, std::vector<ClipVertex> vertices);
   cv::Mat depth() const;
   RenderedGeometry geometry() const;
 
  private:
-  Snapped snap(const Eigen::Vector3d& point) const;
   void draw_triangle(const RenderItem& item, std::size_t index);
   void draw_clipped(Triangle& triangle);
   void fill(const std::array<Snapped, 3>& corners, Triangle& triangle);
@@ -87,26 +134,14 @@ Rasteriser::Rasteriser(const Camera& camera, const cv::Rect& region, bool with_o
   for (int y = 0; y < region.height; ++y) ray_y_.push_back(camera.backproject(0.0, y + region.y, 1.0).y());
 }
 
-Snapped Rasteriser::snap(const Eigen::Vector3d& point) const {
-  constexpr double kRounding = kSnapLimit + 0.5;
-  const auto fixed = [](double px) {
-    const double scaled = px * kSubpixels;
-    const double limited = scaled > -kSnapLimit ? std::min(scaled, kSnapLimit) : -kSnapLimit;  // NaN too
-    return static_cast<std::int64_t>(limited + kRounding) - static_cast<std::int64_t>(kSnapLimit);
-  };
-  const Eigen::Vector2d pixel = camera_.project(point);
-  return {fixed(pixel.x()) - kSubpixels * region_.x, fixed(pixel.y()) - kSubpixels * region_.y};
+void Rasteriser::draw(const RenderItem& item) {
+  place_vertices(item, camera_, region_.tl(), vertices_);
+  for (std::size_t i = 0; i < item.mesh->triangles.size(); ++i) draw_triangle(item, i);
 }
 
-void Rasteriser::draw(const RenderItem& item) {
-  require(item.mesh != nullptr, "render item without a mesh");
-  const Mesh& mesh = *item.mesh;
-  vertices_.resize(mesh.vertices.size());
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    vertices_[i].position = item.T_camera_object * mesh.vertices[i].cast<double>();
-    if (vertices_[i].in_front()) vertices_[i].snapped = snap(vertices_[i].position);
-  }
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) draw_triangle(item, i);
+void Rasteriser::draw_placed(const RenderItem& item, std::vector<ClipVertex> vertices) {
+  vertices_ = std::move(vertices);
+  for (std::size_t i = 0; i < item.mesh->triangles.size(); ++i) draw_triangle(item, i);
 }
 
 void Rasteriser::draw_triangle(const RenderItem& item, std::size_t index) {
@@ -141,7 +176,7 @@ void Rasteriser::draw_clipped(Triangle& triangle) {
     const double along = (inner.z() - kNear) / (inner.z() - outer.z());
     Eigen::Vector3d crossing = inner + along * (outer - inner);
     crossing.z() = kNear;
-    polygon[count++] = snap(crossing);
+    polygon[count++] = snap(camera_, region_.tl(), crossing);
   }
   if (count < 3) return;
   fill({polygon[0], polygon[1], polygon[2]}, triangle);
@@ -309,6 +344,19 @@ cv::Mat render_depth(const std::vector<RenderItem>& items, const Camera& camera,
 cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
                      const cv::Rect& region_px) {
   return render_depth({{&mesh, T_camera_object, 1}}, camera, region_px);
+}
+
+RenderedPart render_depth_part(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
+  const RenderItem item{&mesh, T_camera_object, 1};
+  std::vector<ClipVertex> vertices;
+  place_vertices(item, camera, {}, vertices);
+  const cv::Rect region_px = covered_part(vertices, camera);
+  if (region_px.area() == 0) return {};
+  for (ClipVertex& vertex : vertices)
+    vertex.snapped = {vertex.snapped.x - kSubpixels * region_px.x, vertex.snapped.y - kSubpixels * region_px.y};
+  Rasteriser rasteriser(camera, region_px, false);
+  rasteriser.draw_placed(item, std::move(vertices));
+  return {region_px, rasteriser.depth()};
 }
 
 }  // namespace houghstream

@@ -34,8 +34,18 @@ RenderedGeometry render_geometry(const std::vector<RenderItem>& items, const Cam
 /// Depth only, inside `region_px` of the image, in half the time. Returns an image of the region's size, NaN = nothing.
 cv::Mat render_depth(const std::vector<RenderItem>& items, const Camera& camera, const cv::Rect& region_px);
 
-/// Of one mesh (pose verification's fast path).
+/// Of one mesh.
 cv::Mat render_depth(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera,
                      const cv::Rect& region_px);
+
+/// The part of the image that a mesh may cover, and its depth there.
+struct RenderedPart {
+  cv::Rect region_px;  ///< empty where no pixel can show the mesh; the whole image where it reaches the near plane
+  cv::Mat depth;       ///< as render_depth() gives it
+};
+
+/// Finds the part itself, from the vertices that are placed to be drawn: of a dense mesh most of the work is with these
+/// (pose verification's fast path).
+RenderedPart render_depth_part(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera);
 
 }  // namespace houghstream

@@ -1,6 +1,5 @@
 #include "pose/verification/verification.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -8,25 +7,6 @@
 
 namespace houghstream {
 namespace {
-
-/// The part of the image that shows the mesh; the whole image where a vertex is at or behind the camera.
-cv::Rect bounds_px(const Mesh& mesh, const Eigen::Isometry3d& T_camera_object, const Camera& camera) {
-  Eigen::Vector2d low(camera.width, camera.height);
-  Eigen::Vector2d high(-1.0, -1.0);
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    const Eigen::Vector3d point = T_camera_object * vertex.cast<double>();
-    if (!(point.z() > 0.0)) return {0, 0, camera.width, camera.height};
-    const Eigen::Vector2d pixel = camera.project(point);
-    low = low.cwiseMin(pixel);
-    high = high.cwiseMax(pixel);
-  }
-  const auto clip = [](double v, int limit) { return v > 0.0 ? static_cast<int>(std::min<double>(v, limit)) : 0; };
-  const int left = clip(low.x(), camera.width);
-  const int top = clip(low.y(), camera.height);
-  const int right = clip(std::floor(high.x()) + 1.0, camera.width);
-  const int bottom = clip(std::floor(high.y()) + 1.0, camera.height);
-  return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
-}
 
 /// Looks `reach_px` outside the outline, to the left and right of each row's and above and below each column's.
 void compare_outline(const RgbdFrame& frame, const cv::Mat& rendered, const cv::Rect& region,
@@ -86,9 +66,10 @@ Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance) 
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
                          const DepthTolerance& tolerance) {
   Verification result;
-  const cv::Rect region = bounds_px(mesh, T_camera_object, frame.camera);
+  const RenderedPart part = render_depth_part(mesh, T_camera_object, frame.camera);
+  const cv::Rect& region = part.region_px;
   if (region.area() == 0) return result;
-  const cv::Mat rendered = render_depth(mesh, T_camera_object, frame.camera, region);
+  const cv::Mat& rendered = part.depth;
   for (int y = 0; y < region.height; ++y) {
     const float* model = rendered.ptr<float>(y);
     const float* measured = frame.depth.ptr<float>(y + region.y) + region.x;

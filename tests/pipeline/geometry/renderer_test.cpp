@@ -185,6 +185,29 @@ TEST(Renderer, RegionShowsTheSameDepthAsTheWholeImageEveryTime) {
   EXPECT_LT(count, region.area());
 }
 
+TEST(Renderer, ThePartThatShowsAMeshHasTheWholeImagesDepthBitForBit) {
+  const Mesh mesh = square(0.15F, 0.0F);
+  for (const Eigen::Vector3d& place : {Eigen::Vector3d(0.05, -0.1, 1.1), Eigen::Vector3d(-0.6, 0.4, 1.0),
+                                       Eigen::Vector3d(0.0, 0.02, 0.1), Eigen::Vector3d(3.0, 0.0, 1.0)}) {
+    Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
+    T_camera_object.translation() = place;
+    T_camera_object.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+    const cv::Mat whole = render_depth(mesh, T_camera_object, kVga, cv::Rect(0, 0, kVga.width, kVga.height));
+    const RenderedPart part = render_depth_part(mesh, T_camera_object, kVga);
+    ASSERT_EQ(part.depth.size(), part.region_px.size()) << place.transpose();
+    cv::Mat placed(whole.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
+    if (!part.depth.empty()) part.depth.copyTo(placed(part.region_px));
+    EXPECT_TRUE(same_bits(placed, whole)) << place.transpose();
+    EXPECT_EQ(part.region_px.empty(), place.x() == 3.0) << "out of the image";
+    if (place.x() == 0.05) {
+      EXPECT_LT(part.region_px.area(), 250 * 250);
+    }
+    if (place.z() == 0.1) {
+      EXPECT_EQ(part.region_px.size(), whole.size()) << "reaches the near plane";
+    }
+  }
+}
+
 TEST(Renderer, AbsurdInputNeitherCrashesNorShowsAnything) {
   Mesh broken = square(0.1F, 1.0F);
   broken.vertices[0].x() = std::numeric_limits<float>::quiet_NaN();
