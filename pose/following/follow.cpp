@@ -129,7 +129,8 @@ FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, con
     if (i == 0 || here.pose.quality > best.pose.quality) best = std::move(here);
     if (best.pose.status == PoseStatus::kValid) return best;
   }
-  if (is_hidden(frame, model, expected.starts.front(), settings)) best.pose.status = PoseStatus::kOccluded;
+  if (expected.tell_hidden && is_hidden(frame, model, expected.starts.front(), settings))
+    best.pose.status = PoseStatus::kOccluded;
   return best;
 }
 

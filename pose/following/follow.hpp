@@ -19,7 +19,8 @@ struct ExpectedObject {
   std::vector<Eigen::Isometry3d> starts;  ///< T_camera_object, the likeliest first; at least one
   bool settle = false;                    ///< its print may move it a little too, at some cost
   bool is_lost = false;                   ///< it is looked for as far away as a detection's pose is
-  std::optional<Verification> verified;   ///< of an earlier frame: its outline is taken for this one's
+  bool tell_hidden = true;               ///< whether it is hidden where it is expected first: that renders it once more
+  std::optional<Verification> verified;  ///< of an earlier frame: its outline is taken for this one's
 };
 
 /// What came of it.
@@ -33,7 +34,7 @@ struct FollowedPose {
 /// as Stoiber et al. (2022) follow objects, by few points of the view, then verified as any pose is. Rendering the
 /// model costs most: with an outline of an earlier frame, points of the view take its place as long as they suffice.
 /// What is withheld has always been rendered. Where nothing suffices and the object is hidden where it was expected
-/// first, its status is kOccluded.
+/// first, its status is kOccluded (ExpectedObject::tell_hidden).
 FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
                            const PoseSettings& settings);
 

@@ -69,6 +69,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
                         {moved_on(object.T_camera_object, used * object.speed, used * object.turn_rate)},
                         settle,
                         false,
+                        true,
                         settle ? std::nullopt : object.verified});
   }
   std::vector<FollowedPose> poses = estimator.follow(frame, expected);
@@ -93,9 +94,11 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
   for (const std::size_t i : failed) {
     const Followed& object = camera.objects[i];
     const float score = probability(object.log_odds);
-    ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, {}};
+    ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, true, {}};
     const std::optional<Eigen::Isometry3d> carried = carried_along(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
+    // What stands was expected there the first time too, and it has been told whether it is hidden there.
+    again.tell_hidden = carried || !object.speed.isZero(0.0) || !object.turn_rate.isZero(0.0);
     expected.push_back(std::move(again));
   }
   std::vector<FollowedPose> found = estimator.follow(frame, expected);
