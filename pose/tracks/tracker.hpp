@@ -56,7 +56,7 @@ struct FrameSeen {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::function<const RgbdFrame*()> image;  ///< its depth, asked only where that is needed; null where there is none
   /// Of the frame of this camera that has come last: without it, the frame of the poses.
-  std::optional<std::int64_t> newest_utime;
+  std::optional<std::int64_t> newest_utime = std::nullopt;
 };
 
 /// The objects of a world, over time and over all cameras: which measured pose is of which object (class, place,
