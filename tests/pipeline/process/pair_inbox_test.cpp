@@ -69,7 +69,7 @@ TEST(PairInbox, TheNewestFrameMayBeTakenAheadOnce) {
   const std::optional<ArrivedFrame> fresh = inbox.take_fresh();
   ASSERT_TRUE(fresh.has_value());
   EXPECT_EQ(fresh->id, id(2));
-  EXPECT_EQ(fresh->bytes, bytes(12));
+  EXPECT_EQ(*fresh->bytes, bytes(12));
   EXPECT_FALSE(inbox.take_fresh().has_value());
   inbox.put_detections(id(2), bytes(22));
   EXPECT_EQ(*inbox.take(kNow)->frame, bytes(12)) << "it stays for its detections";
