@@ -195,7 +195,7 @@ class TrackProcess {
       }
       const Waiting now = std::move(*it);
       it = waiting_.erase(it);
-      waiting_bytes_ -= now.messages.frame.size();
+      waiting_bytes_ -= now.messages.frame->size();
       worked = true;
       if (!place.T_world_camera) {
         refuse(now.messages.id, place.reason);
@@ -210,11 +210,11 @@ class TrackProcess {
   /// A copy of its frame goes with each pose, and poses may be sent without end.
   void keep_waiting(Waiting waiting) {
     constexpr std::size_t kMost = 1024;
-    waiting_bytes_ += waiting.messages.frame.size();
+    waiting_bytes_ += waiting.messages.frame->size();
     waiting_.push_back(std::move(waiting));
     while (waiting_.size() > 1 && (waiting_.size() > kMost || waiting_bytes_ > PairInbox::kHistoryBytes)) {
       refuse(waiting_.front().messages.id, "too many wait for the transforms of their cameras");
-      waiting_bytes_ -= waiting_.front().messages.frame.size();
+      waiting_bytes_ -= waiting_.front().messages.frame->size();
       waiting_.pop_front();
     }
   }
