@@ -56,14 +56,18 @@ def cpu_name():
 
 @functools.cache
 def commit_name():
-    """The commit that was checked out when this was first asked for, twelve digits; with "-dirty" where files differ from it;
-    "unknown" of an installed Houghstream."""
-    words = ["git", "-C", str(REPOSITORY), "describe", "--always", "--abbrev=12", "--dirty", "--exclude", "*"]
+    """The commit that was checked out when this was first asked for, twelve digits; with "-dirty" where files differ from it,
+    other than the results that are written of it; "unknown" of an installed Houghstream."""
+    git = ["git", "-C", str(REPOSITORY)]
+    written = [":!tools/studies/RESULTS.md", ":!tools/studies/pictures"]
     try:
-        told = subprocess.run(words, capture_output=True, text=True, check=False)
+        told = subprocess.run([*git, "rev-parse", "--short=12", "HEAD"], capture_output=True, text=True, check=False)
+        differs = subprocess.run([*git, "diff", "--quiet", "HEAD", "--", ".", *written], capture_output=True, check=False)
     except FileNotFoundError:  # no git
         return "unknown"
-    return told.stdout.strip() if told.returncode == 0 else "unknown"
+    if told.returncode != 0:
+        return "unknown"
+    return told.stdout.strip() + ("-dirty" if differs.returncode != 0 else "")
 
 
 def today():
