@@ -240,7 +240,7 @@ TEST(PairInbox, LargeDetectionsOfManyCamerasAreKeptWithinABound) {
   }
   constexpr std::size_t kMost = PairInbox::kAllWaitingBytes / PairInbox::kWaitingBytes;
   EXPECT_EQ(inbox.take_dropped().without_frame.size(), kCameras * 60 - kMost);
-  for (int camera = 0; camera < kCameras; ++camera) inbox.put_frame({std::to_string(camera), 59}, {1});
+  for (int camera = 0; camera < kCameras; ++camera) inbox.put_frame({std::to_string(camera), 59}, arrived_bytes(1));
   for (int camera = 0; camera < kCameras; ++camera) EXPECT_TRUE(inbox.take(kNow).has_value());
 }
 
