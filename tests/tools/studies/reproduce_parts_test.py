@@ -136,12 +136,12 @@ class Plan(unittest.TestCase):
         _, full = self.quick_and_full()
         names = ("--threshold", "--min-mass", "--stride")
         for time, auc in (
-            ("original", "gall"),
-            ("fast_engine_one_thread", "gall"),
-            ("final", "paper"),
-            ("realtime", "realtime"),
+            ("time_every_20/original", "gall"),
+            ("time_every_6/fast_engine_one_thread", "gall"),
+            ("time_every_6/final", "paper"),
+            ("time_every_6/realtime", "realtime"),
         ):
-            timed, judged = full[f"time_every_20/{time}"], full[f"evaluate/{auc}/table_small_1/seed1"]
+            timed, judged = full[time], full[f"evaluate/{auc}/table_small_1/seed1"]
             self.assertEqual(self.options(timed, *names), self.options(judged, *names), time)
         detectors = [word for word in full["side_by_side/objects_20_a.json"].command if "=" in word]
         self.assertTrue(all(word.endswith(",min-mass=0.05,threshold=0") for word in detectors), detectors)
