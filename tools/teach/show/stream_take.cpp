@@ -52,8 +52,7 @@ void StreamTake::put(const Arrival& arrival) {
   waiting_.emplace_back(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
   waiting_bytes_ += arrival.bytes.size;
   while (waiting_.size() > kMostWaiting || (waiting_.size() > 1 && waiting_bytes_ > kMostBytes)) {
-    waiting_bytes_ -= waiting_.front().size();
-    waiting_.pop_front();
+    take_first();
     ++passed_over_;
   }
   changed_.notify_all();
@@ -67,7 +66,14 @@ void StreamTake::end() {
 
 void StreamTake::skip_to_newest() {
   const std::lock_guard lock(mutex_);
-  while (waiting_.size() > 1) waiting_.pop_front();
+  while (waiting_.size() > 1) take_first();
+}
+
+std::vector<std::uint8_t> StreamTake::take_first() {
+  std::vector<std::uint8_t> first = std::move(waiting_.front());
+  waiting_.pop_front();
+  waiting_bytes_ -= first.size();
+  return first;
 }
 
 StreamTake::Clock::time_point StreamTake::deadline() const {
@@ -86,10 +92,7 @@ std::optional<std::vector<std::uint8_t>> StreamTake::take() {
   require(first_ || stop_requested(), "no frame within {:.0f} s on {} at {}, expected a stream that runs",
           std::chrono::duration<double>(settings_.patience).count(), settings_.channel, bus_.url());
   if (ended_ || waiting_.empty()) return std::nullopt;
-  std::optional<std::vector<std::uint8_t>> bytes = std::move(waiting_.front());
-  waiting_.pop_front();
-  waiting_bytes_ -= bytes->size();
-  return bytes;
+  return take_first();
 }
 
 std::optional<RgbdFrame> StreamTake::next() {

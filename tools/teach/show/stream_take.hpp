@@ -56,6 +56,7 @@ class StreamTake {
   void put(const Arrival& arrival);
   void receive() noexcept;
   std::optional<std::vector<std::uint8_t>> take();
+  std::vector<std::uint8_t> take_first();
   Clock::time_point deadline() const;
 
   LcmBus& bus_;

@@ -74,6 +74,22 @@ TEST(StreamTake, WhatIsOldIsSkippedWhereOnlyNowCounts) {
   EXPECT_EQ(take.passed_over(), 0) << "nobody was too slow";
 }
 
+TEST(StreamTake, WhatWasSkippedTakesNoRoom) {
+  LcmBus bus("memq://");
+  StreamTake take(bus, quick());
+  images_t large = to_message(make_test_frame(1), WireFormat{}, 1);
+  large.images.front().data.resize(std::size_t{8} << 20U);
+  large.images.front().size = static_cast<std::int32_t>(large.images.front().data.size());
+  for (int i = 0; i < 40; ++i) {  // more than may wait
+    bus.publish(channel::kFrame, large);
+    std::this_thread::sleep_for(milliseconds(10));
+    take.skip_to_newest();
+  }
+  for (std::int64_t i = 2; i <= 4; ++i) send(bus, i);
+  std::this_thread::sleep_for(milliseconds(100));
+  EXPECT_EQ(take.passed_over(), 0);
+}
+
 TEST(StreamTake, WhatComesTooFastGoesWithACount) {
   LcmBus bus("memq://");
   StreamTake take(bus, quick());
