@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fstream>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/packed_trees.hpp"
 #include "detector/profiles.hpp"
+#include "pipeline/base/archive.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 
@@ -56,64 +55,20 @@ static_assert(sizeof(FeatureSettings) == 68 && sizeof(PatchSettings) == 8 &&
               sizeof(TrainedView) == 36 + sizeof(Appearance));
 static_assert(sizeof(TreeNode) == 16 && sizeof(LeafClass) == 16 && sizeof(LeafVote) == 16 && sizeof(LeafView) == 8);
 
-struct Writer {
-  std::string bytes;
-
-  template <typename T>
-  void operator()(const T& value) {
-    static_assert(std::is_standard_layout_v<T>);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  void operator()(const std::string& text) {
-    (*this)(static_cast<std::uint64_t>(text.size()));
-    bytes.append(text);
-  }
+struct Writer : ArchiveWriter {
+  using ArchiveWriter::operator();
   void operator()(const std::vector<ObjectClass>& classes) {
-    (*this)(static_cast<std::uint64_t>(classes.size()));
+    (*this)(std::uint64_t{classes.size()});
     for (const ObjectClass& c : classes) archive_class(*this, c);
-  }
-  template <typename T>
-  void operator()(const std::vector<T>& values) {
-    (*this)(static_cast<std::uint64_t>(values.size()));
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
 };
 
-struct Reader {
-  const std::string& bytes;
-  std::string source;
-  std::size_t at = 0;
-
-  void copy(void* to, std::size_t size) {
-    require(size <= bytes.size() - at, "{}: forest payload ends {} bytes early", source, size - (bytes.size() - at));
-    if (size == 0) return;  // into an empty list, which has no place
-    std::memcpy(to, bytes.data() + at, size);
-    at += size;
-  }
-  std::size_t count(std::size_t item_size) {
-    std::uint64_t n = 0;
-    copy(&n, sizeof n);
-    require(n <= (bytes.size() - at) / item_size, "{}: a list of {} items, expected at most what the file holds",
-            source, n);
-    return static_cast<std::size_t>(n);
-  }
-  template <typename T>
-  void operator()(T& value) {
-    copy(&value, sizeof value);
-  }
-  void operator()(std::string& text) {
-    text.resize(count(1));
-    copy(text.data(), text.size());
-  }
+struct Reader : ArchiveReader {
+  using ArchiveReader::operator();
   void operator()(std::vector<ObjectClass>& classes) {
     constexpr std::size_t kLeast = 4 + 8 + 2 * 4;  // id, the name's length, radius and mass
     classes.resize(count(kLeast));
     for (ObjectClass& c : classes) archive_class(*this, c);
-  }
-  template <typename T>
-  void operator()(std::vector<T>& values) {
-    values.resize(count(sizeof(T)));
-    copy(values.data(), values.size() * sizeof(T));
   }
 };
 
@@ -293,9 +248,9 @@ Forest load_forest(const std::filesystem::path& file) {
           checksum(payload), crc);
 
   Forest forest;
-  Reader reader{payload, source};
+  Reader reader{{payload, source + ": forest payload"}};
   archive_members(reader, forest);
-  require(reader.at == payload.size(), "{}: {} bytes left over after the forest", source, payload.size() - reader.at);
+  require(reader.bytes.empty(), "{}: {} bytes left over after the forest", source, reader.bytes.size());
   check_settings(forest, source);
   require_extensions(forest.features, source);
   check_indices(forest, source);

@@ -2,12 +2,12 @@
 
 #include <fmt/ranges.h>
 #include <sched.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "drivers/store/store_state.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -19,22 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string state_of(const fs::path& file) {
-  struct stat is {};
-  if (stat(file.c_str(), &is) != 0) return file.string() + " missing";
-  return fmt::format("{} {} {} {} {}.{} {}.{}", file.string(), is.st_dev, is.st_ino, is.st_size, is.st_mtim.tv_sec,
-                     is.st_mtim.tv_nsec, is.st_ctim.tv_sec, is.st_ctim.tv_nsec);
-}
-
 /// Differs whenever a file that is loaded has been written or exchanged, without reading any.
 std::string state_of_store(const ObjectStore& store) {
-  std::vector<std::string> states = {state_of(store.folder), state_of(store.json_file()),
-                                     state_of(store.forest_file())};
-  std::error_code error;  // a folder that goes away meanwhile shows in the next state
-  for (fs::directory_iterator entry(store.models_folder(), error), end; !error && entry != end; entry.increment(error))
-    states.push_back(state_of(entry->path()));
-  std::sort(states.begin() + 3, states.end());
-  return fmt::format("{}", fmt::join(states, "\n"));
+  return fmt::format("{}\n{}\n{}", state_of_file(store.folder), state_of_file(store.forest_file()),
+                     state_of_meshes(store));
 }
 
 std::string state_of_store(const fs::path& folder) {

@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "drivers/store/store_state.hpp"
+#include "pipeline/base/archive.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/fnv.hpp"
@@ -51,25 +51,8 @@ void archive_view(Archive& archive, ViewType& view) {
   archive(view.area);
 }
 
-struct ModelWriter {
-  std::string bytes;
-
-  void put(const void* from, std::size_t size) { bytes.append(static_cast<const char*>(from), size); }
-  template <typename T>
-  void operator()(const T& value) {
-    static_assert(sizeof(T) % 4 == 0, "numbers of four bytes, without gaps");
-    put(&value, sizeof value);
-  }
-  void operator()(std::uint64_t count) { put(&count, sizeof count); }
-  void operator()(const std::string& text) {
-    (*this)(std::uint64_t{text.size()});
-    put(text.data(), text.size());
-  }
-  template <typename T>
-  void operator()(const std::vector<T>& values) {
-    (*this)(std::uint64_t{values.size()});
-    put(values.data(), values.size() * sizeof(T));
-  }
+struct ModelWriter : ArchiveWriter {
+  using ArchiveWriter::operator();
   void operator()(const std::vector<ModelView>& views) {
     (*this)(std::uint64_t{views.size()});
     for (const ModelView& view : views) archive_view(*this, view);
@@ -81,34 +64,8 @@ struct ModelWriter {
   }
 };
 
-/// Throws InputError where the bytes do not reach.
-struct ModelReader {
-  std::string_view bytes;
-
-  void take(void* to, std::size_t size) {
-    require(size <= bytes.size(), "cut");
-    if (size > 0) std::memcpy(to, bytes.data(), size);
-    bytes.remove_prefix(size);
-  }
-  std::size_t count(std::size_t item_bytes) {
-    std::uint64_t count = 0;
-    take(&count, sizeof count);
-    require(count <= bytes.size() / item_bytes, "a list of {} entries", count);
-    return static_cast<std::size_t>(count);
-  }
-  template <typename T>
-  void operator()(T& value) {
-    take(static_cast<void*>(&value), sizeof value);
-  }
-  void operator()(std::string& text) {
-    text.resize(count(1));
-    take(text.data(), text.size());
-  }
-  template <typename T>
-  void operator()(std::vector<T>& values) {
-    values.resize(count(sizeof(T)));
-    take(static_cast<void*>(values.data()), values.size() * sizeof(T));
-  }
+struct ModelReader : ArchiveReader {
+  using ArchiveReader::operator();
   void operator()(std::vector<ModelView>& views) {
     views.resize(count(sizeof(float)));
     for (ModelView& view : views) archive_view(*this, view);
@@ -139,13 +96,6 @@ void check_model(const ObjectModel& model) {
   }
 }
 
-std::string state_of_file(const fs::path& file) {
-  struct stat is {};
-  if (stat(file.c_str(), &is) != 0) return file.string() + " missing\n";
-  return fmt::format("{} {} {} {} {}.{} {}.{}\n", file.string(), is.st_dev, is.st_ino, is.st_size, is.st_mtim.tv_sec,
-                     is.st_mtim.tv_nsec, is.st_ctim.tv_sec, is.st_ctim.tv_nsec);
-}
-
 int add_library(dl_phdr_info* info, std::size_t /*size*/, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(info->dlpi_name);
   return 0;
@@ -154,9 +104,9 @@ int add_library(dl_phdr_info* info, std::size_t /*size*/, void* names) {
 std::string state_of_program() {
   std::vector<std::string> libraries;
   dl_iterate_phdr(add_library, &libraries);
-  std::string state = state_of_file("/proc/self/exe");
+  std::string state = store::state_of_file("/proc/self/exe") + '\n';
   for (const std::string& library : libraries) {
-    if (!library.empty() && library.front() == '/') state += state_of_file(library);
+    if (!library.empty() && library.front() == '/') state += store::state_of_file(library) + '\n';
   }
   return state;
 }
@@ -189,13 +139,7 @@ void forget_oldest(const fs::path& folder) {
 KeptModels::KeptModels(fs::path folder) : folder_(std::move(folder)), program_(state_of_program()) {}
 
 std::string KeptModels::state_of(const store::ObjectStore& store, const ModelSettings& settings) const {
-  std::string state = program_ + state_of_file(store.json_file());
-  std::vector<std::string> files;
-  std::error_code error;  // a folder that goes away meanwhile is another state
-  for (fs::directory_iterator entry(store.models_folder(), error), end; !error && entry != end; entry.increment(error))
-    files.push_back(state_of_file(entry->path()));
-  std::sort(files.begin(), files.end());
-  for (const std::string& file : files) state += file;
+  std::string state = fmt::format("{}{}\n", program_, state_of_meshes(store));
   state += fmt::format("{} {} {} {} {}\n", settings.views_per_edge, settings.points_per_view, settings.view_distance_m,
                        settings.pixels_per_diameter, settings.least_facing);
   for (const auto& [name, centre] : settings.vote_centres)
@@ -215,7 +159,7 @@ std::optional<std::map<std::string, ObjectModel>> KeptModels::find(const store::
     const fs::path file = file_of(store);
     if (!is_own(file)) return std::nullopt;
     const std::string content = read_file(file, "kept models");
-    ModelReader reader{content};
+    ModelReader reader{{content, "kept models"}};
     std::string start(kStart.size(), ' ');
     std::uint32_t crc = 0;
     std::string its_state;

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "drivers/store/object_store.hpp"
+
+namespace houghstream::store {
+
+/// Differs whenever the file has been written or exchanged, without reading it.
+std::string state_of_file(const std::filesystem::path& file);
+
+/// The same of a store's list and all that lies beside its meshes, a line each.
+std::string state_of_meshes(const ObjectStore& store);
+
+}  // namespace houghstream::store

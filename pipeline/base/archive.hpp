@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "pipeline/base/checks.hpp"
+
+// Values as they lie in memory, one after another, for files that the machine that wrote them reads again. Who keeps a
+// struct lists its members once, in a template that a writer and a reader are given alike.
+
+namespace houghstream {
+
+/// Values must have no gaps, whose bytes nobody has set.
+struct ArchiveWriter {
+  std::string bytes;
+
+  void put(const void* from, std::size_t size) { bytes.append(static_cast<const char*>(from), size); }
+  template <typename T>
+  void operator()(const T& value) {
+    static_assert(std::is_standard_layout_v<T>);
+    put(&value, sizeof value);
+  }
+  void operator()(const std::string& text) {
+    (*this)(std::uint64_t{text.size()});
+    bytes.append(text);
+  }
+  template <typename T>
+  void operator()(const std::vector<T>& values) {
+    (*this)(std::uint64_t{values.size()});
+    put(values.data(), values.size() * sizeof(T));
+  }
+};
+
+/// Throws InputError, naming `source`, where the bytes end early, before it makes room for what they cannot hold.
+struct ArchiveReader {
+  std::string_view bytes;  ///< what is left
+  std::string source;
+
+  void take(void* to, std::size_t size) {
+    require(size <= bytes.size(), "{} ends {} bytes early", source, size - bytes.size());
+    if (size == 0) return;  // into an empty list, which has no place
+    std::memcpy(to, bytes.data(), size);
+    bytes.remove_prefix(size);
+  }
+  /// Of a list whose items take at least so many bytes each.
+  std::size_t count(std::size_t item_bytes) {
+    std::uint64_t items = 0;
+    take(&items, sizeof items);
+    require(items <= bytes.size() / item_bytes, "{}: a list of {} items, expected at most what is left", source, items);
+    return static_cast<std::size_t>(items);
+  }
+  template <typename T>
+  void operator()(T& value) {
+    take(static_cast<void*>(&value), sizeof value);
+  }
+  void operator()(std::string& text) {
+    text.resize(count(1));
+    take(text.data(), text.size());
+  }
+  template <typename T>
+  void operator()(std::vector<T>& values) {
+    values.resize(count(sizeof(T)));
+    take(static_cast<void*>(values.data()), values.size() * sizeof(T));
+  }
+};
+
+}  // namespace houghstream
