@@ -3,7 +3,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/messages/wire_check.hpp"
+#include "pipeline/messages/wire_values.hpp"
 
 namespace houghstream {
 namespace {
@@ -12,15 +12,6 @@ void set_pose(const Eigen::Isometry3d& T, double* trans, double* quat) {
   const rigid_transform_t transform = to_message(0, T);
   std::copy_n(transform.trans, 3, trans);
   std::copy_n(transform.quat, 4, quat);
-}
-
-Eigen::Isometry3d pose_from(const double* trans, const double* quat, const std::string& of) {
-  const Eigen::Map<const Eigen::Vector3d> translation(trans);
-  const Eigen::Quaterniond q(quat[0], quat[1], quat[2], quat[3]);
-  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kFarthestM,
-          "{} at ({}, {}, {}), expected metres within {}", of, trans[0], trans[1], trans[2], kFarthestM);
-  require(std::abs(q.norm() - 1.0) < kUnitTolerance, "{} with a quaternion of length {}, expected 1", of, q.norm());
-  return Eigen::Translation3d(translation) * q.normalized();
 }
 
 tracked_object_t object_to_message(const TrackedObject& object) {
@@ -59,7 +50,7 @@ TrackedObject object_from_message(const tracked_object_t& message) {
   out.state = static_cast<TrackState>(message.state);
   out.probability = message.probability;
   out.moving = message.moving != 0;
-  out.T_world_object = pose_from(message.trans, message.quat, name);
+  out.T_world_object = pose_from_wire(message.trans, message.quat, name);
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column) out.covariance(row, column) = message.covariance[row][column];
   }
@@ -98,7 +89,7 @@ WorldObjects world_from_message(const objects_t& message) {
     out.frame = {message.source_channel, message.utime};
     out.world = message.world;
     out.world_number = message.world_number;
-    out.T_world_camera = pose_from(message.camera_trans, message.camera_quat, "camera");
+    out.T_world_camera = pose_from_wire(message.camera_trans, message.camera_quat, "camera");
     for (const tracked_object_t& object : message.objects) out.objects.push_back(object_from_message(object));
     for (const stage_time_t& stage : message.stages) out.stages.push_back({stage.stage, stage.duration_us});
     return out;
@@ -108,7 +99,7 @@ WorldObjects world_from_message(const objects_t& message) {
 }
 
 Eigen::Isometry3d transform_from_message(const rigid_transform_t& message) {
-  return pose_from(message.trans, message.quat, "transform");
+  return pose_from_wire(message.trans, message.quat, "transform");
 }
 
 }  // namespace houghstream

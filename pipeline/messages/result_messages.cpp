@@ -5,7 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/messages/wire_check.hpp"
+#include "pipeline/messages/wire_values.hpp"
 
 namespace houghstream {
 namespace {
@@ -67,10 +67,7 @@ Detection detection_from_message(const detection_t& message) {
   require(message.class_id != detection_t::INVALID_CLASS && !message.class_name.empty(),
           "detection of class {} '{}', expected a class with a name", message.class_id, message.class_name);
   const cv::Rect2f box(message.box_x, message.box_y, message.box_width, message.box_height);
-  const bool box_ok = std::abs(box.x) <= kFarthestPx && std::abs(box.y) <= kFarthestPx && box.width > 0.0F &&
-                      box.width <= kFarthestPx && box.height > 0.0F && box.height <= kFarthestPx;  // not NaN either
-  require(box_ok, "{}: box at ({}, {}) of {}x{} pixels, expected positive sizes, all within {}", message.class_name,
-          box.x, box.y, box.width, box.height, kFarthestPx);
+  check_wire_box(box, message.class_name + ": box");
   const Eigen::Vector3f centre(message.centre_camera);
   const bool has_centre = centre.allFinite() && static_cast<double>(centre.cwiseAbs().maxCoeff()) <= kFarthestM;
   require(has_centre || centre.array().isNaN().all(), "{}: centre ({}, {}, {}), expected metres within {}, or NaN",
@@ -119,17 +116,6 @@ object_pose_t pose_to_message(const ObjectPose& pose) {
   return message;
 }
 
-Eigen::Isometry3d transform_from(const object_pose_t& message) {
-  const Eigen::Vector3d translation(message.trans);
-  const Eigen::Quaterniond q(message.quat[0], message.quat[1], message.quat[2], message.quat[3]);
-  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kFarthestM,
-          "{}: valid pose at ({}, {}, {}), expected metres within {}", message.class_name, translation.x(),
-          translation.y(), translation.z(), kFarthestM);
-  require(std::abs(q.norm() - 1.0) < kUnitTolerance, "{}: valid pose with a quaternion of length {}, expected 1",
-          message.class_name, q.norm());
-  return Eigen::Translation3d(translation) * q.normalized();
-}
-
 ObjectPose pose_from_message(const object_pose_t& message) {
   require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::OCCLUDED,
           "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
@@ -144,7 +130,8 @@ ObjectPose pose_from_message(const object_pose_t& message) {
   out.detection_score = message.detection_score;
   out.detection_index = message.detection_index;
   out.status = static_cast<PoseStatus>(message.status);
-  if (out.status == PoseStatus::kValid) out.T_camera_object = transform_from(message);
+  if (out.status == PoseStatus::kValid)
+    out.T_camera_object = pose_from_wire(message.trans, message.quat, message.class_name + ": valid pose");
   out.converged = message.converged != 0;
   out.iterations = message.iterations;
   out.inliers = message.n_inliers;

@@ -5,7 +5,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/no_value.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "pipeline/messages/wire_check.hpp"
+#include "pipeline/messages/wire_values.hpp"
 
 namespace houghstream {
 namespace {
@@ -13,10 +13,7 @@ namespace {
 std::optional<cv::Rect2f> box_from(const teaching_t& message) {
   const cv::Rect2f box(message.box_x, message.box_y, message.box_width, message.box_height);
   if (std::isnan(box.x) && std::isnan(box.y) && std::isnan(box.width) && std::isnan(box.height)) return std::nullopt;
-  const bool is_box = std::abs(box.x) <= kFarthestPx && std::abs(box.y) <= kFarthestPx && box.width > 0.0F &&
-                      box.width <= kFarthestPx && box.height > 0.0F && box.height <= kFarthestPx;
-  require(is_box, "box at ({}, {}) of {}x{} pixels, expected positive sizes, all within {}, or NaN", box.x, box.y,
-          box.width, box.height, kFarthestPx);
+  check_wire_box(box, "box", ", or NaN");
   return box;
 }
 
@@ -24,12 +21,7 @@ std::optional<Eigen::Isometry3d> pose_from(const teaching_t& message) {
   const Eigen::Vector3d translation(message.trans);
   const Eigen::Vector4d wxyz(message.quat);
   if (translation.array().isNaN().all() && wxyz.array().isNaN().all()) return std::nullopt;
-  require(translation.allFinite() && translation.cwiseAbs().maxCoeff() <= kFarthestM,
-          "pose at ({}, {}, {}), expected metres within {}, or NaN", translation.x(), translation.y(), translation.z(),
-          kFarthestM);
-  require(std::abs(wxyz.norm() - 1.0) < kUnitTolerance, "pose with a quaternion of length {}, expected 1, or NaN",
-          wxyz.norm());
-  return Eigen::Translation3d(translation) * Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+  return pose_from_wire(message.trans, message.quat, "pose", ", or NaN");
 }
 
 SeenDirection direction_from(const std::vector<float>& xyz, std::int8_t seen) {

@@ -13,14 +13,6 @@
 
 namespace houghstream {
 
-/// A unit vector or quaternion in single precision, rounded by another sender, is this close to length 1.
-inline constexpr double kUnitTolerance = 1e-3;
-
-/// Beyond the Moon: no camera's world is larger, and no box reaches so many pixels. Who draws or adds up places need
-/// not mind overflows.
-inline constexpr double kFarthestM = 1e9;
-inline constexpr float kFarthestPx = 1e6F;
-
 /// A frame of 4K (kMaxPixels), uncompressed, has less. Whoever keeps encoded frames can count on it.
 inline constexpr std::size_t kMostFrameBytes = std::size_t{64} << 20U;
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <string>
+
+// What a pose or a box off the wire may be.
+
+namespace houghstream {
+
+/// A unit vector or quaternion in single precision, rounded by another sender, is this close to length 1.
+inline constexpr double kUnitTolerance = 1e-3;
+
+/// Beyond the Moon: no camera's world is larger, and no box reaches so many pixels. Who draws or adds up places need
+/// not mind overflows.
+inline constexpr double kFarthestM = 1e9;
+inline constexpr float kFarthestPx = 1e6F;
+
+/// The rigid motion of a translation, metres, and a quaternion, w first. Throws InputError that begins with `of` where
+/// it is none or lies beyond kFarthestM; `or_else` says what else would have done.
+Eigen::Isometry3d pose_from_wire(const double* trans, const double* quat, const std::string& of,
+                                 const char* or_else = "");
+
+/// Throws InputError that begins with `of` for a box that is empty, or not within kFarthestPx.
+void check_wire_box(const cv::Rect2f& box, const std::string& of, const char* or_else = "");
+
+}  // namespace houghstream
