@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -31,9 +32,13 @@ template <typename Visit>
 void walk_jpeg(const std::uint8_t* jpeg, std::size_t size, const Visit& visit) {
   std::size_t at = 2;  // behind the start of the image
   while (at + 4 <= size) {
+    // Nearly all bytes are a scan's, of which few are 0xFF.
+    const void* next = std::memchr(jpeg + at, 0xFF, size - at);
+    if (next == nullptr) return;
+    at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(next) - jpeg);
+    if (at + 4 > size) return;
     const std::uint8_t marker = jpeg[at + 1];
-    const bool is_data = jpeg[at] != 0xFF || marker == 0;
-    if (is_data || marker == 0xFF) {  // of a scan, or bytes that fill up
+    if (marker == 0 || marker == 0xFF) {  // of a scan, or bytes that fill up
       ++at;
       continue;
     }
@@ -92,6 +97,7 @@ cv::Mat decode_image(const std::uint8_t* bytes, std::size_t size, int mode) {
 
 cv::Mat decode_image_file(const std::filesystem::path& file, int mode) {
   const std::vector<std::uint8_t> bytes = bytes_to_judge(file);
+  if (is_jpeg(bytes.data(), bytes.size())) return decode_image(bytes.data(), bytes.size(), mode);  // all of it is here
   if (!is_modest(bytes.data(), bytes.size())) return {};
   try {
     return cv::imread(file.string(), mode);
