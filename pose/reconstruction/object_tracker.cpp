@@ -117,7 +117,6 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   }
   chosen_ = std::move(*choice.object);
   map_.settings().middle = {0.0, 0.0, 0.5 * chosen_.height_m};
-  first_frame_ = frame;
   first_number_ = state_.frames - 1;
   FrameLevels levels = make_levels(frame, levels_);
   const cv::Mat on_it = object_pixels(levels.levels[0], chosen_.T_camera_stand);
@@ -336,14 +335,15 @@ void ObjectTracker::follow_object_only() {
   const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
   levels_.region_px =
       cv::Rect(box.x - more.width, box.y - more.height, box.width + 2 * more.width, box.height + 2 * more.height) &
-      cv::Rect({0, 0}, first_frame_.depth.size());
+      cv::Rect({0, 0}, first_flow_.frame.depth.size());
   map_ = KeyframeMap(map);
   tie_to_first_keyframe();
   state_.seen = {};
   T_last_ = T_before_ = chosen_.T_camera_stand;
-  Landmarks landmarks = find_landmarks(first_frame_, landmark_mask(first_frame_, T_last_));
-  add_keyframe({first_frame_, first_number_, make_levels(first_frame_, levels_), {}, std::move(landmarks), T_last_},
-               {});
+  Landmarks landmarks = find_landmarks(first_flow_.frame, landmark_mask(first_flow_.frame, T_last_));
+  add_keyframe(
+      {first_flow_.frame, first_number_, make_levels(first_flow_.frame, levels_), {}, std::move(landmarks), T_last_},
+      {});
 }
 
 /// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
@@ -493,7 +493,7 @@ void ObjectTracker::describe() {
     return;
   }
   state_.T_camera_object = T_last_;
-  state_.box_px = box_of(chosen_, first_frame_.camera, T_last_);
+  state_.box_px = box_of(chosen_, first_flow_.frame.camera, T_last_);
   state_.message = describe_seen(state_.seen, chosen_.T_camera_stand.inverse().translation());
   if (state_.frames - first_number_ <= kTold)
     state_.message = describe_choice(chosen_) + "; move the camera once around it, or turn it";

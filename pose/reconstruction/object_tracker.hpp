@@ -136,7 +136,6 @@ class ObjectTracker {
   cv::Mat first_light_, about_object_, away_from_object_;  ///< of the first keyframe's finest level
   LevelPoints first_rest_;                                 ///< points away from the object, world frame
   cv::Size size_;                                          ///< of all frames, pixels
-  RgbdFrame first_frame_;
   FlowFrame first_flow_;
   std::vector<cv::Point2f> first_corners_;  ///< of it, away from the object
   FlowFrame last_flow_;                     ///< of the frame that T_last_ is of, while the object is not seen to turn
