@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "pipeline/base/printable.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {

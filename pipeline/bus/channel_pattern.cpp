@@ -3,8 +3,8 @@
 #include <regex>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/printable.hpp"
 #include "pipeline/bus/channels.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/printable.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/log_seal.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {

@@ -12,15 +12,15 @@
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/base/printable.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/bus/lcm_url.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
+#include "pipeline/text/limited_lines.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {

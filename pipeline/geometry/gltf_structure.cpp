@@ -8,8 +8,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/base/printable.hpp"
 #include "pipeline/geometry/mesh_structure.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {

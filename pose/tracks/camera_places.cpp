@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/base/printable.hpp"
+#include "pipeline/text/printable.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/motion_filter.hpp"
 

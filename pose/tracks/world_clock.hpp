@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/text/limited_lines.hpp"
 #include "pipeline/types/frame_id.hpp"
 
 namespace houghstream::tracks {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "pipeline/base/printable.hpp"
+#include "pipeline/text/printable.hpp"
 #include "tools/common/nearest_word.hpp"
 
 namespace houghstream {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/base/printable.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream::stream {
 namespace {

@@ -6,7 +6,6 @@
 #include <mutex>
 
 #include "pipeline/base/host_clock.hpp"
-#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/status_reporter.hpp"
@@ -14,6 +13,7 @@
 #include "pipeline/messages/wire_check.hpp"
 #include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/process_loop.hpp"
+#include "pipeline/text/limited_lines.hpp"
 #include "pose/tracks/camera_places.hpp"
 
 namespace houghstream::track {

@@ -1,4 +1,4 @@
-#include "pipeline/base/printable.hpp"
+#include "pipeline/text/printable.hpp"
 
 #include <gtest/gtest.h>
 

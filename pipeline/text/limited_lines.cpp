@@ -1,4 +1,4 @@
-#include "pipeline/base/limited_lines.hpp"
+#include "pipeline/text/limited_lines.hpp"
 
 #include <fmt/format.h>
 
