@@ -2,11 +2,14 @@
 
 #include <fmt/ranges.h>
 
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <houghstream/drake_image_array_t.hpp>
 #include <houghstream/kinect_frame_msg_t.hpp>
 #include <memory>
 #include <set>
+#include <string_view>
 
 #include "drivers/frame_source.hpp"
 #include "drivers/openni/camera_source.hpp"
@@ -36,6 +39,27 @@ std::optional<std::string> file_of(const std::string& source, const std::string&
 /// KIND:WHERE, as open_frame_source() takes it; the names of files may hold a colon too.
 bool is_frame_source(const std::string& source) {
   return source.find(':') != std::string::npos && !std::filesystem::exists(source);
+}
+
+/// What somebody may take for a recording that can be read, by its first bytes.
+struct OtherKind {
+  std::string_view begin;
+  const char* name;
+};
+constexpr std::array<OtherKind, 4> kOtherKinds = {{{"#ROSBAG", "a ROS bag, as RealSense's SDK records"},
+                                                   {"SQLite format 3", "an SQLite database, as rosbag2 records"},
+                                                   {"\x89MCAP", "an MCAP file"},
+                                                   {"\x1A\x45\xDF\xA3", "Matroska, as Azure Kinect's SDK records"}}};
+
+void refuse_other_kinds(const std::string& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown)) return;
+  std::string begin(16, '\0');
+  std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  for (const OtherKind& kind : kOtherKinds) {
+    require(!starts_with(begin, std::string(kind.begin)),
+            "{}: {}, expected an LCM log; let its SDK play it into a publisher (tools/examples/cpp)", file, kind.name);
+  }
 }
 
 images_t images_of(ByteView bytes) {
@@ -175,6 +199,7 @@ NextFrame open_recording(const RecordingSettings& settings, LossAccount& losses)
   if (is_frame_source(settings.source)) {
     return reading(std::make_shared<SourceRecording>(open_frame_source(settings.source, "LOG, FILE.klg, FILE.oni, ")));
   }
+  refuse_other_kinds(settings.source);
   return reading(std::make_shared<LogRecording>(settings, losses));
 }
 

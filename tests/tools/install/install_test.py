@@ -209,7 +209,8 @@ for number in range(100):
             import lcm  # noqa: F401
         except ImportError:
             said = run("/usr/bin/python3", self.source / "python/subscribe.py", status=1, env=python_of_installation())
-            self.assertIn("no Python module 'lcm': install it with", said)
+            self.assertIn("no Python module 'lcm': ", said)
+            self.assertIn("pip install lcm", said)
 
     def test_java_prints_poses(self):
         jars = [HOME / "share/java/houghstream_types.jar", pathlib.Path("/usr/share/java/lcm.jar")]

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "pipeline/base/checks.hpp"
 #include "tests/drivers/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
@@ -49,6 +51,27 @@ TEST(Recording, WhatIsNotThereIsAnErrorThatNamesIt) {
       ADD_FAILURE() << source;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("/no/such"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Recording, OtherMakersRecordingsAreNamed) {
+  const fs::path folder = fresh_folder("recording_others");
+  const std::vector<std::pair<std::string, std::string>> kinds = {{"#ROSBAG V2.0\n", "a ROS bag"},
+                                                                  {"SQLite format 3", "rosbag2"},
+                                                                  {"\x89MCAP0\r\n", "an MCAP file"},
+                                                                  {"\x1A\x45\xDF\xA3", "Azure Kinect"}};
+  for (const auto& [begin, name] : kinds) {
+    RecordingSettings settings;
+    settings.source = (folder / "taken.bag").string();
+    write_text(settings.source, begin + std::string(100, 'x'));
+    LossAccount losses;
+    try {
+      open_recording(settings, losses);
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(settings.source + ": ", 0), 0U) << error.what();
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
     }
   }
 }

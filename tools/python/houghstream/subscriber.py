@@ -13,7 +13,8 @@ def subscribe(channels, handler, url=None):
         import lcm
     except ImportError as error:
         raise ImportError(
-            "no Python module 'lcm': install it with `pip install lcm`, or read a log with houghstream.event_log"
+            "no Python module 'lcm': `python3 -m venv --system-site-packages ~/lcm && ~/lcm/bin/pip install lcm` makes a "
+            "Python that has it, ~/lcm/bin/python; logs need none (houghstream.event_log)"
         ) from error
     bus = lcm.LCM(url or os.environ.get("LCM_DEFAULT_URL") or URL)
     # LCM puts ^ and $ around it, which would belong to the first and the last alternative only.
