@@ -144,6 +144,7 @@ class Examples(unittest.TestCase):
         cls.folder = HOME.parent / "examples"
         cls.source = HOME / "share/doc/libhoughstream-dev/examples"
         run("cmake", "-S", cls.source / "cpp", "-B", cls.folder, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={HOME}",
+            f"-Drealsense2_DIR={SOURCE}/tests/tools/install/realsense",
             "-DCMAKE_BUILD_TYPE=Debug", f"-DCMAKE_EXE_LINKER_FLAGS={os.environ.get('EXAMPLE_LINK_FLAGS', '')}")  # fmt: skip
         run("cmake", "--build", cls.folder)
         cls.log = cls.folder / "poses.lcmlog"
@@ -221,30 +222,34 @@ for number in range(100):
         )
         self.assertIn("mug at 0.100 0.200 1.500 m, quality 0.90", said)
 
-    def test_frames_of_ones_own_camera_arrive_and_are_numpy_arrays(self):
+    def frames_of(self, *words):
+        """What a program that sends frames has sent: channel, shapes, first and middle depth, first pixel and fx of each."""
         log = self.folder / "frames.lcmlog"
+        log.unlink(missing_ok=True)
         start = 'lcm-logger -f "$LOG" > /dev/null 2>&1 & sleep 1; "$@"; sleep 1; kill -INT %1; wait; true'
-        run(
-            *PRIVATE,
-            "bash",
-            "-c",
-            start,
-            "bash",
-            self.folder / "own_camera",
-            "10",
-            env={**python_of_installation(), "LOG": str(log)},
-        )
+        run(*PRIVATE, "bash", "-c", start, "bash", *words, env={**python_of_installation(), "LOG": str(log)})
         script = """
 import sys
 from houghstream.event_log import read_log
 from houghstream.frames import decode_frame
 for event in read_log(sys.argv[1]):
     frame = decode_frame(event.data)
-    print(event.channel, frame.colour.shape, frame.colour.dtype, round(float(frame.depth[0, 0]), 3), round(float(frame.depth[240, 320]), 3), frame.camera.fx)
+    middle = frame.depth[frame.depth.shape[0] // 2, frame.depth.shape[1] // 2]
+    print(event.channel, frame.colour.shape, frame.colour.dtype, round(float(frame.depth[0, 0]), 3), round(float(middle), 3),
+          [int(value > 200) for value in frame.colour[0, 0]], frame.camera.fx)
 """
-        lines = run("/usr/bin/python3", "-c", script, log, env=python_of_installation()).splitlines()
+        return run("/usr/bin/python3", "-c", script, log, env=python_of_installation()).splitlines()
+
+    def test_frames_of_ones_own_camera_arrive_and_are_numpy_arrays(self):
+        lines = self.frames_of(self.folder / "own_camera", "10")
         self.assertGreaterEqual(len(lines), 8)
-        self.assertRegex(lines[-1], r"^OPENNI_FRAME \(480, 640, 3\) uint8 1.0 0.89\d? 525.0$")
+        self.assertRegex(lines[-1], r"^OPENNI_FRAME \(480, 640, 3\) uint8 1.0 0.89\d? \[0, 0, 0\] 525.0$")
+
+    def test_frames_of_an_sdk_arrive_from_its_camera_and_from_its_recording(self):
+        for words in ((), ("taken.bag",)):
+            lines = self.frames_of(self.folder / "realsense_camera", *words)
+            self.assertGreaterEqual(len(lines), 8)
+            self.assertEqual(lines[-1], "OPENNI_FRAME (48, 64, 3) uint8 nan 0.9 [1, 0, 0] 58.0")
 
 
 if __name__ == "__main__":
