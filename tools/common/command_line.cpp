@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <sstream>
 #include <type_traits>
 
 #include "pipeline/base/checks.hpp"
@@ -214,7 +215,15 @@ void CommandLine::add_config_file() {
 }
 
 std::string CommandLine::config_template() const {
-  return app_->config_to_str(true, true);
+  const std::string unset = "=\"\"";
+  std::istringstream lines(app_->config_to_str(true, true));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_unset = line.size() > unset.size() && line.front() != '#' &&
+                          line.compare(line.size() - unset.size(), unset.size(), unset) == 0;
+    text += (is_unset ? "# " : "") + line + "\n";
+  }
+  return text;
 }
 
 CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& words) {

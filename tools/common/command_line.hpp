@@ -56,7 +56,7 @@ class CommandLine {
   /// `--config FILE`: the long names of all options as keys of a TOML file, `key = value`; what stands on the command
   /// line goes before. A key that is no option is refused with the nearest that is; a fault names the file.
   void add_config_file();
-  /// Such a file with every option, its default and what it does.
+  /// Such a file with every option, its default and what it does; what has no default stands behind a '#'.
   std::string config_template() const;
 
   /// What stands behind the subcommand and is no option of it may be one of this line: -v.

@@ -27,12 +27,17 @@ struct Pace {
 };
 
 void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
-  app.add_option("--source", options.source, "as of hs-capture; without it others send frames");
+  app.add_option(
+      "--source", options.source,
+      "as of hs-capture; without it others send frames. Several cameras: 'LEFT=openni2:#1 RIGHT=openni2:#2'");
   app.add_option("--objects", options.objects, "object store of hs-teach");
   app.add_option("--forest", options.forest, "forest file of hs-train, instead of --objects");
   app.add_option("--models", options.models, "with --forest: models folder, for poses");
   app.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy where frames carry none");
+  app.add_option("--cameras", options.cameras, "YAML file of where cameras stand, as of hs-track");
   app.add_option("-c,--channel", options.channel, "channel of the frames").capture_default_str();
+  app.add_option("--threshold", options.threshold, "smallest score that is reported").range(0.0, 1.0);
+  app.add_option("--min-quality", options.min_quality, "smallest quality of a valid pose").range(0.0, 1.0);
   app.add_clearing_flag("--no-view", options.view, "no window");
   app.add_flag("--follow", options.follow,
                "poses for each frame at once: hs-pose --follow, and hs-detect --looks-per-second 5 unless "

@@ -1,5 +1,12 @@
 #include "tools/stream/stream_plan.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "pipeline/base/checks.hpp"
 #include "tools/stream/shell_words.hpp"
 
 namespace houghstream::stream {
@@ -19,9 +26,64 @@ ChildPlan plan(const StreamOptions& options, const std::string& name, const Word
   return plan;
 }
 
+/// A source of frames, and the channel that it sends them on.
+struct NamedSource {
+  std::string channel;
+  std::string source;
+};
+
+/// CHANNEL of CHANNEL=SOURCE. "" where there is none: the name of a file may hold a '=' too.
+std::string channel_of(const std::string& words) {
+  const std::string name = words.substr(0, words.find('='));
+  const auto is_of_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  return name.size() < words.size() && std::all_of(name.begin(), name.end(), is_of_name) ? name : "";
+}
+
+std::vector<NamedSource> sources_of(const StreamOptions& options) {
+  if (options.source.empty()) return {};
+  if (channel_of(options.source).empty()) return {{options.channel, options.source}};
+  std::vector<NamedSource> sources;
+  for (const std::string& word : shell_words(options.source, "--source")) {
+    const std::string channel = channel_of(word);
+    require(!channel.empty(), "--source: '{}', expected CHANNEL=SOURCE, as for the first camera", word);
+    const bool is_taken =
+        std::any_of(sources.begin(), sources.end(), [&](const NamedSource& other) { return other.channel == channel; });
+    require(!is_taken, "--source: two cameras for channel {}, expected one", channel);
+    sources.push_back({channel, word.substr(channel.size() + 1)});
+  }
+  return sources;
+}
+
+/// All of its channels, as a regular expression.
+std::string pattern_of(const std::vector<NamedSource>& sources) {
+  std::string pattern;
+  for (const NamedSource& each : sources) pattern += (pattern.empty() ? "" : "|") + each.channel;
+  return pattern;
+}
+
+void add_number(const std::string& option, const std::optional<double>& value, Words& words) {
+  if (value) words.insert(words.end(), {option, fmt::format("{}", *value)});
+}
+
+std::vector<ChildPlan> plan_captures(const StreamOptions& options, const std::vector<NamedSource>& sources) {
+  std::vector<ChildPlan> plans;
+  for (const NamedSource& each : sources) {
+    StreamOptions own = options;
+    own.channel = each.channel;
+    plans.push_back(plan(own, "capture", {"--source", each.source}, options.capture_options));
+    if (sources.size() > 1) plans.back().name += " " + each.channel;
+    plans.back().ends_stream = true;
+    plans.back().awaits_others = true;
+  }
+  return plans;
+}
+
 }  // namespace
 
-std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
+std::vector<ChildPlan> plan_stream(const StreamOptions& given) {
+  StreamOptions options = given;
+  const std::vector<NamedSource> sources = sources_of(given);
+  if (!sources.empty()) options.channel = pattern_of(sources);
   const Words camera = options.camera.empty() ? Words() : Words{"--camera", options.camera};
   const bool has_store = !options.objects.empty();
   const Words store = {"--objects", options.objects};
@@ -34,21 +96,23 @@ std::vector<ChildPlan> plan_stream(const StreamOptions& options) {
   const bool own_looks = options.detect_options.find("--looks-per-second") != std::string::npos;
   const std::string looks = options.follow && !own_looks ? "--looks-per-second 5 " : "";
   const std::string follow = options.follow ? "--follow " : "";
+  Words detected = with_camera(has_store ? store : forest);
+  Words posed = with_camera(has_store ? store : models);
+  Words tracked = posed;
+  const Words viewed = posed;
+  add_number("--threshold", options.threshold, detected);
+  add_number("--min-quality", options.min_quality, posed);
+  if (!options.cameras.empty()) tracked.insert(tracked.end(), {"--cameras", options.cameras});
   std::vector<ChildPlan> plans;
-  plans.push_back(plan(options, "detect", with_camera(has_store ? store : forest), looks + options.detect_options));
-  if (has_store || !models.empty())
-    plans.push_back(plan(options, "pose", with_camera(has_store ? store : models), follow + options.pose_options));
-  if (options.track)
-    plans.push_back(plan(options, "track", with_camera(has_store ? store : models), options.track_options));
+  plans.push_back(plan(options, "detect", detected, looks + options.detect_options));
+  if (has_store || !models.empty()) plans.push_back(plan(options, "pose", posed, follow + options.pose_options));
+  if (options.track || !options.cameras.empty())
+    plans.push_back(plan(options, "track", tracked, options.track_options));
   if (options.view) {
-    plans.push_back(plan(options, "view", with_camera(has_store ? store : models), options.view_options));
+    plans.push_back(plan(options, "view", viewed, options.view_options));
     plans.back().ends_stream = true;
   }
-  if (!options.source.empty()) {
-    plans.push_back(plan(options, "capture", {"--source", options.source}, options.capture_options));
-    plans.back().ends_stream = true;
-    plans.back().awaits_others = true;
-  }
+  for (ChildPlan& capture : plan_captures(options, sources)) plans.push_back(std::move(capture));
   return plans;
 }
 

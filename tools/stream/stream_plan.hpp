@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,15 +12,20 @@ namespace houghstream::stream {
 /// What hs-stream starts.
 struct StreamOptions {
   std::filesystem::path executables;  ///< folder of hs-capture, hs-detect, hs-pose, hs-track, hs-view
-  std::string source;                 ///< of hs-capture; "" = the frames come from somebody else's driver
+  /// Of hs-capture; "" = the frames come from somebody else's driver. Of several cameras CHANNEL=SOURCE for each, with
+  /// quotes as in a shell.
+  std::string source;
   std::string objects;                ///< object store for all of them; "" = forest and models
   std::string forest;                 ///< of hs-detect
   std::string models;                 ///< folder for hs-pose and hs-view; "" = no poses
   std::string camera;                 ///< for frames without a camera of their own
+  std::string cameras;                ///< of hs-track: file of where they stand
+  std::optional<double> threshold;    ///< of hs-detect: smallest score reported
+  std::optional<double> min_quality;  ///< of hs-pose: poses of a lower one are withheld
   std::string channel = "OPENNI_FRAME";
   std::string lcm_url;  ///< "" = LCM's default
   bool view = true;
-  bool track = false;           ///< hs-track too
+  bool track = false;           ///< hs-track too; so it is where `cameras` is given
   bool follow = false;          ///< hs-pose follows known objects, hs-detect looks a few times a second
   std::string capture_options;  ///< further options, with quotes as in a shell
   std::string detect_options;
@@ -29,7 +35,8 @@ struct StreamOptions {
 };
 
 /// The processes with their command lines, in the order of the stream. Without models or store there is no hs-pose.
-/// Throws InputError where further options have a quote without an end.
+/// Throws InputError where further options have a quote without an end, or the sources of several cameras lack a
+/// channel of their own.
 std::vector<ChildPlan> plan_stream(const StreamOptions& options);
 
 }  // namespace houghstream::stream

@@ -236,12 +236,14 @@ struct Configured {
   CommandLine line{"words", "tool"};
   int count = 3;
   std::string objects = "none";
+  std::optional<double> share;
   bool loud = false;
   std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "command_line_test.toml";
 
   explicit Configured(const std::string& text) {
     line.add_option("--count", count, "how many").capture_default_str();
     line.add_option("--objects", objects, "which");
+    line.add_option("--share", share, "how much").range(0.0, 1.0);
     line.add_flag("--loud", loud, "how");
     line.set_version("tool 1");
     line.add_config_file();
@@ -254,6 +256,13 @@ TEST(CommandLine, OptionsComeFromAFileAndTheCommandLineGoesBefore) {
   EXPECT_EQ(given.line.parse({"--config", given.file.string(), "--count", "7"}), std::nullopt);
   EXPECT_EQ(given.objects, "my.store");
   EXPECT_EQ(given.count, 7);
+}
+
+TEST(CommandLine, BlanksOfAnyKindStandAboutKeysAndValues) {
+  Configured given("\tcount\t=\t5\t# tabs\r\n  share = 0.5\n");
+  EXPECT_EQ(given.line.parse({"--config", given.file.string()}), std::nullopt);
+  EXPECT_EQ(given.count, 5);
+  EXPECT_EQ(given.share, 0.5);
 }
 
 TEST(CommandLine, AnUnknownKeyOfAFileIsRefusedWithTheNearestOne) {
@@ -274,6 +283,7 @@ std::string fault_of_file(const std::string& text) {
 
 TEST(CommandLine, AFaultOfAFileNamesIt) {
   EXPECT_EQ(fault_of_file("count = \"many\"\n"), "--count: many, expected a whole number\n");
+  EXPECT_EQ(fault_of_file("\tcount\t=\t5 s\n"), "--count: 5 s, expected a whole number\n");
   EXPECT_EQ(fault_of_file("loud = perhaps\n"), "--loud: perhaps, expected true or false\n");
   EXPECT_EQ(fault_of_file("# one\n\n[section]\n"), "line 3: [section], expected key = value: there are no sections\n");
   EXPECT_EQ(fault_of_file("count = 1\nobjects = a\ncount = 2\n"), "line 3: 'count' is in line 1 already\n");
@@ -315,6 +325,8 @@ TEST(CommandLine, ATemplateOfAFileIsSuchAFile) {
   Configured second(text);
   EXPECT_EQ(second.line.parse({"--config", second.file.string()}), std::nullopt);
   EXPECT_EQ(second.count, 3);
+  EXPECT_EQ(second.objects, "none") << text;
+  EXPECT_EQ(second.share, std::nullopt) << text;
 }
 
 }  // namespace

@@ -93,5 +93,52 @@ TEST(StreamPlan, TrackingIsAskedForAndTakesTheModels) {
                                                         "--cameras", "c.yaml"}));
 }
 
+TEST(StreamPlan, ThresholdsAndPlacesOfCamerasGoToThoseThatTakeThem) {
+  StreamOptions options;
+  options.objects = "store";
+  options.threshold = 0.6;
+  options.min_quality = 0.25;
+  options.cameras = "my cameras.yaml";
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 4U) << "where cameras stand is for hs-track";
+  const Words all = {"--channel", "OPENNI_FRAME", "--objects", "store"};
+  const std::vector<Words> own = {
+      {"--threshold", "0.6"}, {"--min-quality", "0.25"}, {"--cameras", "my cameras.yaml"}, {}};
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    Words expected = {"hs-" + plans[i].name};
+    expected.insert(expected.end(), all.begin(), all.end());
+    expected.insert(expected.end(), own[i].begin(), own[i].end());
+    EXPECT_EQ(plans[i].command, expected);
+  }
+}
+
+TEST(StreamPlan, EachOfSeveralCamerasHasACaptureOfItsOwn) {
+  StreamOptions options;
+  options.objects = "store";
+  options.view = false;
+  options.source = "LEFT=openni2:#1 RIGHT='bop:my scene=1'";
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 4U);
+  EXPECT_EQ(plans[0].command, (Words{"hs-detect", "--channel", "LEFT|RIGHT", "--objects", "store"}));
+  EXPECT_EQ(plans[2].name, "capture LEFT");
+  EXPECT_EQ(plans[2].command, (Words{"hs-capture", "--channel", "LEFT", "--source", "openni2:#1"}));
+  EXPECT_EQ(plans[3].command, (Words{"hs-capture", "--channel", "RIGHT", "--source", "bop:my scene=1"}));
+  EXPECT_TRUE(plans[2].awaits_others && plans[3].awaits_others);
+  for (const std::string wrong : {"LEFT=openni2 openni2:#2", "LEFT=openni2:#1 LEFT=openni2:#2"}) {
+    options.source = wrong;
+    EXPECT_THROW(plan_stream(options), InputError) << wrong;
+  }
+}
+
+TEST(StreamPlan, ASourceWithBlanksOrAnEqualsSignInItsNameIsOne) {
+  StreamOptions options;
+  options.objects = "store";
+  options.view = false;
+  options.source = "bop:my folder/a=b";
+  const std::vector<ChildPlan> plans = plan_stream(options);
+  ASSERT_EQ(plans.size(), 3U);
+  EXPECT_EQ(plans[2].command, (Words{"hs-capture", "--channel", "OPENNI_FRAME", "--source", "bop:my folder/a=b"}));
+}
+
 }  // namespace
 }  // namespace houghstream::stream
