@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tools/doctor/camera_checks.hpp"
+#include "tools/doctor/installation_checks.hpp"
 #include "tools/doctor/network_checks.hpp"
 #include "tools/doctor/tool_checks.hpp"
 
@@ -34,7 +35,8 @@ Findings examine(const Machine& machine, const ExaminationSettings& settings) {
   const auto raw_frame =
       static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height) * kBytesPerPixel;
   Findings all = check_network(machine, {url_in_use(machine, settings.lcm_url), settings.frame_channel, raw_frame});
-  for (const Findings& part : {check_camera(machine, settings.live), check_tools(machine, settings.types_jar)}) {
+  for (const Findings& part : {check_camera(machine, settings.live), check_tools(machine, settings.types_jar),
+                               check_installation(machine, settings.programs)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -15,6 +15,7 @@ struct ExaminationSettings {
   int height = 480;                            ///< pixels
   bool live = false;                           ///< a camera is needed
   std::filesystem::path types_jar;             ///< our types for lcm-spy
+  std::filesystem::path programs;              ///< folder of our programs
 };
 
 /// Looks at everything the stream needs. Changes nothing.

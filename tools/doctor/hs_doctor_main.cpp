@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
     hush_log();  // the bus would warn of small buffers itself
     std::error_code unknown;
     const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+    settings.programs = own;
     settings.types_jar = own / "houghstream_types.jar";
     if (!std::filesystem::exists(settings.types_jar)) settings.types_jar = own / "../share/java/houghstream_types.jar";
     const Findings findings = examine(this_machine(), settings);

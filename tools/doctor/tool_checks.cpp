@@ -81,7 +81,7 @@ Finding check_display(const Machine& machine) {
     const std::string value = machine.environment(name);
     if (!value.empty()) return ok("display", fmt::format("{}={}", name, value));
   }
-  return note("display", "none: hs-view opens no window", "build/bin/hs-view --snapshot FILE.png");
+  return note("display", "none: hs-view opens no window", "hs-view --http 8080, or --snapshot FILE.png");
 }
 
 }  // namespace

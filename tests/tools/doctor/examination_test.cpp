@@ -111,6 +111,13 @@ const std::vector<Fault> kFaults = {
      "lcm-spy", "sudo apt-get install liblcm-java"},
     {"no types for Java", [](HealthyMachine& m) { fs::remove(m.settings.types_jar); }, Level::kNote, "lcm-spy",
      "default-jdk-headless"},
+    {"an old installation", [](HealthyMachine& m) { plant(m.machine.root / "usr/bin/hs-detect"); }, Level::kNote,
+     "programs", "sudo apt-get remove houghstream"},
+    {"no Python package",
+     [](HealthyMachine& m) { fs::remove_all(m.machine.root / "usr/lib/python3/dist-packages/houghstream"); },
+     Level::kNote, "Python", "python3-houghstream"},
+    {"no numpy", [](HealthyMachine& m) { fs::remove_all(m.machine.root / "usr/lib/python3/dist-packages/numpy"); },
+     Level::kNote, "Python", "sudo apt-get install python3-numpy"},
     {"no display",
      [](HealthyMachine& m) {
        m.machine.environment = [](const std::string& name) { return name == "PATH" ? "/usr/bin" : ""; };

@@ -36,6 +36,9 @@ struct HealthyMachine {
     for (const char* name : {"lcm.jar", "jchart2d.jar"}) plant(root / "usr/share/java" / name);
     settings.types_jar = root / "build/bin/houghstream_types.jar";
     plant(settings.types_jar);
+    settings.programs = root / "build/bin";
+    for (const char* module : {"houghstream/event_log.py", "numpy/__init__.py", "PIL/__init__.py", "lcm/__init__.py"})
+      plant(root / "usr/lib/python3/dist-packages" / module);
     machine.environment = [](const std::string& name) -> std::string {
       return name == "PATH" ? "/usr/local/bin:/usr/bin" : name == "DISPLAY" ? ":0" : "";
     };
