@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <mutex>
 #include <set>
 
@@ -98,12 +99,17 @@ std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, c
   std::vector<Forest> trees(static_cast<std::size_t>(settings.trees));
   std::mutex progress_mutex;
   int done = 0;
+  const auto begin = std::chrono::steady_clock::now();
   parallel_for(settings.threads, settings.trees, [&](int t) {
     Forest& tree = trees[static_cast<std::size_t>(t)];
     tree = old != nullptr ? regrow_tree(set, profile.patch, settings, t, *old)
                           : grow_tree(set, profile.patch, settings, t);
     const std::lock_guard lock(progress_mutex);
-    progress(fmt::format("tree {} of {}: {} leaves", ++done, settings.trees, tree.leaves.size() - 1));
+    ++done;
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    const double left_s = taken.count() / done * (settings.trees - done);
+    progress(fmt::format("tree {} of {}: {} leaves{}", done, settings.trees, tree.leaves.size() - 1,
+                         left_s > 0.0 ? fmt::format(", about {:.0f} s for those that are left", left_s) : ""));
   });
   return trees;
 }

@@ -54,6 +54,9 @@ class LogReader {
   explicit LogReader(const std::filesystem::path& file);
   /// The next event, or nothing at the end. Throws InputError where the log is cut or damaged.
   std::optional<LogEvent> next();
+  /// Bytes before the next event, and of the whole file.
+  std::uint64_t position() const { return position_; }
+  std::uint64_t size() const { return size_; }
   /// Whether a seal has come so far.
   bool is_sealed() const { return is_sealed_; }
 

@@ -57,7 +57,8 @@ std::vector<std::uint32_t> decode_seal(ByteView bytes, const std::string& source
   return checksums;
 }
 
-std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file) {
+std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
+                      const std::function<void(double share)>& tell) {
   require_other_file(out_file, log_file);
   LogReader log(log_file);
   LogWriter out(out_file);
@@ -68,6 +69,7 @@ std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesyst
     bytes += event->data.size();
     block.push_back(std::move(*event));
     ++events;
+    if (tell) tell(static_cast<double>(log.position()) / static_cast<double>(log.size()));
     if (block.size() < kSealedBlock && bytes < kBlockBytes) continue;
     write_block(block, out);
     block.clear();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +23,9 @@ constexpr std::size_t kSealedBlock = 256;  ///< events, at most
 /// Copies a whole log and seals it: from then on every reader of ours refuses an event of which a bit has changed, and
 /// a log of which events are missing. Returns the number of events. Throws InputError where the log is damaged: what
 /// cannot be trusted is not sealed.
-std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file);
+/// `tell`, if any, hears after each event which share of the log is sealed.
+std::int64_t seal_log(const std::filesystem::path& log_file, const std::filesystem::path& out_file,
+                      const std::function<void(double share)>& tell = {});
 
 std::uint32_t checksum_of(const LogEvent& event);
 

@@ -7,6 +7,7 @@
 #include "detector/stages.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/pose_estimator.hpp"
+#include "tools/common/progress_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -111,6 +112,7 @@ InProcess::InProcess(Forest forest, const DetectionSettings& settings, const Eng
 InProcess::~InProcess() = default;
 
 void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) {
+  ProgressLine progress("search", static_cast<double>(frames.size()));
   for (EvaluatedFrame& out : frames) {
     const RgbdFrame frame = scene.read_frame(out.image);
     Detections all = state_->detect(frame);
@@ -126,6 +128,7 @@ void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) 
     for (Detection& detection : all.detections) detection.rotations = {};
     log_debug("{} image {}: {} detections", out.scene, out.image_id, all.detections.size());
     out.detections = std::move(all);
+    progress.add(1.0);
   }
 }
 

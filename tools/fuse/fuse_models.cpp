@@ -10,6 +10,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "tools/common/progress_line.hpp"
 #include "tools/fuse/model_picture.hpp"
 
 namespace houghstream {
@@ -64,6 +65,7 @@ void check_outputs(const FuseOutputs& outputs, const std::vector<std::string>& v
 
 void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings settings, const FuseOutputs& outputs) {
   std::vector<NamedModel> models;
+  ProgressLine progress("objects fused", static_cast<double>(objects.size()));
   for (const ObjectViews& object : objects) {
     if (!object.unused.empty()) {
       log_warning("{}: fused from {} only, a model has one frame; left out: {}", object.class_name,
@@ -79,6 +81,7 @@ void fuse_models(const std::vector<ObjectViews>& objects, fusion::FusionSettings
       write_png(draw_model(model.mesh), outputs.pictures / (object.class_name + ".png"));
     }
     models.push_back({object.class_id, object.class_name, std::move(model.mesh), {}});
+    progress.add(1.0);
   }
   write_bop_models(models, outputs.models);
 }

@@ -30,7 +30,8 @@ std::string LossAccount::line() const {
   return line;
 }
 
-GoodEvents::GoodEvents(const std::filesystem::path& file, LossAccount& losses) : log_(file), losses_(losses) {}
+GoodEvents::GoodEvents(const std::filesystem::path& file, LossAccount& losses)
+    : log_(file), losses_(losses), progress_(file.filename().string(), static_cast<double>(log_.size())) {}
 
 std::optional<LogEvent> GoodEvents::read() {
   while (!ended_) {
@@ -43,6 +44,7 @@ std::optional<LogEvent> GoodEvents::read() {
       losses_.note_damage(damage.bytes, error.what());
       if (damage.last_event_too) ready.reset();
     }
+    progress_.at(static_cast<double>(log_.position()));
     if (ready) return ready;
   }
   return std::nullopt;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pipeline/bus/event_log.hpp"
+#include "tools/common/progress_line.hpp"
 
 namespace houghstream::log_tools {
 
@@ -33,7 +34,7 @@ class LossAccount {
   std::string oddities_;
 };
 
-/// Reads the events of a log that are whole, and goes on behind damage.
+/// Reads the events of a log that are whole, and goes on behind damage. Says on stderr how far it is.
 class GoodEvents {
  public:
   /// `losses` must outlive it. Throws InputError when the file cannot be read or is empty.
@@ -47,6 +48,7 @@ class GoodEvents {
 
   LogReader log_;
   LossAccount& losses_;
+  ProgressLine progress_;
   std::optional<LogEvent> held_;  // handed out once the next event has begun where this one ends
   bool ended_ = false;
   std::int64_t count_ = 0;

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/log_seal.hpp"
+#include "tools/common/progress_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export/export_frames.hpp"
 #include "tools/log/export/export_objects.hpp"
@@ -83,6 +86,11 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
   return part;
 }
 
+std::int64_t seal_with_progress(const Options& options) {
+  ProgressLine progress(std::filesystem::path(options.in).filename().string(), 1.0);
+  return seal_log(options.in, options.out, [&](double share) { progress.at(share); });
+}
+
 }  // namespace
 }  // namespace houghstream::log_tools
 
@@ -126,7 +134,7 @@ int main(int argc, char** argv) {
       fmt::print("{}", to_text(read_log_info(options.in, losses)));
     } else {
       const std::int64_t count = filter.given()   ? filter_log(options.in, options.filter, options.out, losses)
-                                 : seal.given()   ? seal_log(options.in, options.out)
+                                 : seal.given()   ? seal_with_progress(options)
                                  : import.given() ? import_log(options.recording, options.channel, options.out, losses)
                                  : bop.given()    ? export_bop(options.recording, options.out, losses)
                                  : png.given()    ? export_pngs(options.recording, options.out, losses)

@@ -17,6 +17,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "tools/common/progress_line.hpp"
 #include "tools/log/foreign_frames.hpp"
 #include "tools/log/klg_file.hpp"
 #include "tools/log/message_types.hpp"
@@ -129,10 +130,13 @@ class KlgRecording {
   KlgRecording(const std::string& file, const RecordingSettings& settings, LossAccount& losses)
       : settings_(settings),
         losses_(losses),
-        klg_(file, settings.camera ? settings.camera->width : 640, settings.camera ? settings.camera->height : 480) {}
+        klg_(file, settings.camera ? settings.camera->width : 640, settings.camera ? settings.camera->height : 480),
+        whole_(static_cast<double>(klg_.bytes_left())),
+        progress_(std::filesystem::path(file).filename().string(), whole_) {}
 
   std::optional<RecordedFrame> next() {
     while (std::optional<images_t> message = read()) {
+      progress_.at(whole_ - static_cast<double>(klg_.bytes_left()));
       try {
         complete(*message, settings_, sequence_++);
         return RecordedFrame{message->utime, std::move(*message), ""};
@@ -158,6 +162,8 @@ class KlgRecording {
   RecordingSettings settings_;
   LossAccount& losses_;
   KlgFile klg_;
+  double whole_;  // bytes
+  ProgressLine progress_;
   std::int64_t sequence_ = 0;
   bool ended_ = false;
 };
@@ -169,6 +175,7 @@ class SourceRecording {
   std::optional<RecordedFrame> next() {
     const std::optional<RgbdFrame> frame = source_->next();
     if (!frame) return std::nullopt;
+    progress_.add(1.0);
     WireFormat lossless;
     lossless.jpeg = false;
     return RecordedFrame{frame->id.utime, to_message(*frame, lossless, sequence_++), ""};
@@ -176,6 +183,7 @@ class SourceRecording {
 
  private:
   std::unique_ptr<FrameSource> source_;
+  ProgressLine progress_{"frames", 0.0};
   std::int64_t sequence_ = 0;
 };
 

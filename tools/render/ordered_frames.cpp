@@ -1,12 +1,10 @@
 #include "tools/render/ordered_frames.hpp"
 
-#include <fmt/format.h>
-
 #include <condition_variable>
-#include <cstdio>
 #include <mutex>
 
 #include "pipeline/base/parallel.hpp"
+#include "tools/common/progress_line.hpp"
 
 namespace houghstream::render {
 namespace {
@@ -39,24 +37,19 @@ class Gate {
   bool failed_ = false;
 };
 
-void show_progress(const std::string& title, int done, int count) {
-  if (done % 10 == 0 || done == count)
-    fmt::print(stderr, "\r{} {}/{}{}", title, done, count, done == count ? "\n" : "");
-  std::fflush(stderr);
-}
-
 }  // namespace
 
 void render_in_order(const std::string& title, int threads, int count,
                      const std::function<world::SceneFrame(int)>& render,
                      const std::function<void(const world::SceneFrame&)>& write) {
   Gate gate;
+  ProgressLine progress(title, count);
   parallel_for(threads, count, [&](int index) {
     try {
       const world::SceneFrame frame = render(index);
       gate.pass(index, [&] {
         write(frame);
-        show_progress(title, index + 1, count);
+        progress.at(index + 1);
       });
     } catch (...) {
       gate.fail_all();

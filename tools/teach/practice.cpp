@@ -12,6 +12,7 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
 #include "pose/verification/quality_training.hpp"
+#include "tools/common/progress_line.hpp"
 #include "tools/teach/quality_examples.hpp"
 
 namespace houghstream::teach {
@@ -29,6 +30,7 @@ std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>&
   const world::PracticeScenes scenes(std::move(in_room), settings.seed);
   constexpr int kEach = world::PracticeScenes::kFramesPerRoom;
   std::vector<world::SceneFrame> frames(static_cast<std::size_t>(settings.rooms * kEach));
+  ProgressLine progress("practice rooms", settings.rooms);
   parallel_for(settings.threads, settings.rooms, [&](int room) {
     int index = room * kEach;
     for (world::SceneFrame& frame : scenes.render(room)) {
@@ -43,6 +45,7 @@ std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>&
       frames[static_cast<std::size_t>(index)] = std::move(frame);
       ++index;
     }
+    progress.add(1.0);
   });
   return frames;
 }
@@ -114,6 +117,7 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
   found.terms.resize(practised.frames.size());
   PerWorker<DetectorWorkspace> workspaces;
   workspaces.make_room(practised.threads);
+  ProgressLine progress("search in practice rooms", static_cast<double>(practised.frames.size()));
   for (int half = 0; half < kHalves; ++half) {
     fit_scores_without(half, practised, forest);
     Detector detector(std::move(forest), detection);
@@ -126,6 +130,7 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
         frame.objects.push_back({names.at(object.object_id), object, std::nullopt});
       frame.detections = detector.detect(seen.frame, workspaces[worker]);
       found.terms[index] = finder.find_in(seen.frame, frame);
+      progress.add(1.0);
     });
     forest = std::move(detector).take_forest();
   }

@@ -11,6 +11,7 @@
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
+#include "tools/common/progress_line.hpp"
 #include "tools/teach/contact_sheet.hpp"
 
 namespace houghstream::teach {
@@ -89,6 +90,7 @@ std::vector<NamedModel> models_of(const std::vector<TaughtMesh>& meshes) {
 std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, const TeachOptions& options,
                                      ObjectStore& made, const std::function<void(const std::string&)>& report) {
   std::vector<TrainingView> all;
+  ProgressLine line("objects rendered", static_cast<double>(meshes.size()));
   for (const TaughtMesh& taught : meshes) {
     std::vector<TrainingView> views = render_views(taught, options, views_of_each(meshes.size()));
     for (const TrainingView& own : options.own_views) {
@@ -110,6 +112,7 @@ std::vector<TrainingView> make_views(const std::vector<TaughtMesh>& meshes, cons
     vote_for(object.vote_centre, views);
     made.objects.push_back(object);
     std::move(views.begin(), views.end(), std::back_inserter(all));
+    line.add(1.0);
   }
   if (!options.dump_views.empty()) write_bop_models(models_of(meshes), options.dump_views / "models");
   return all;

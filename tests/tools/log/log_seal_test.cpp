@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <vector>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
@@ -23,7 +25,7 @@ class SealLog : public testing::Test {
     for (int i = 0; i < 20; ++i) log.add("OPENNI_FRAME", to_message(numbered_frame(i), {}, i));
     for (std::size_t i = 0; i < kSealedBlock; ++i) log.add_bytes("SMALL", {static_cast<std::uint8_t>(i), 2, 3});
     log.close();
-    seal_log(original, sealed);
+    seal_log(original, sealed, [this](double share) { shares.push_back(share); });
   }
 
   /// Events of a log that can be read, and what is said of the rest.
@@ -38,6 +40,7 @@ class SealLog : public testing::Test {
   fs::path folder;
   fs::path original;
   fs::path sealed;
+  std::vector<double> shares;  // that were told of
 };
 
 TEST_F(SealLog, KeepsEveryEvent) {
@@ -51,6 +54,13 @@ TEST_F(SealLog, KeepsEveryEvent) {
     EXPECT_EQ(same->data, event->data);
   }
   EXPECT_FALSE(after.next().has_value()) << "seals are not among them";
+}
+
+TEST_F(SealLog, TellsHowFarItIs) {
+  ASSERT_EQ(shares.size(), 20 + kSealedBlock);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_GT(shares.front(), 0.0);
+  EXPECT_DOUBLE_EQ(shares.back(), 1.0);
 }
 
 TEST_F(SealLog, EveryFlippedBitIsFound) {

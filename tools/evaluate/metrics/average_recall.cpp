@@ -6,6 +6,7 @@
 
 #include "pipeline/base/parallel.hpp"
 #include "pose/model/symmetry.hpp"
+#include "tools/common/progress_line.hpp"
 
 namespace houghstream {
 namespace {
@@ -100,9 +101,11 @@ std::map<std::string, BopModel> make_bop_models(const std::map<std::string, Mesh
 ClassErrors measure_poses(const std::vector<EvaluatedFrame>& frames, const BopScene& scene,
                           const std::map<std::string, BopModel>& models, int threads) {
   std::vector<std::map<std::string, FrameErrors>> measured(frames.size());
+  ProgressLine progress("errors of poses", static_cast<double>(frames.size()));
   parallel_for(threads, static_cast<int>(frames.size()), [&](int index) {
     const auto i = static_cast<std::size_t>(index);
     measured[i] = measure_frame(frames[i], scene, models);
+    progress.add(1.0);
   });
   ClassErrors by_class;
   for (std::map<std::string, FrameErrors>& frame : measured) {
