@@ -14,6 +14,7 @@
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/status_reporter.hpp"
+#include "tools/common/progress_line.hpp"
 
 namespace houghstream::capture {
 namespace {
@@ -146,6 +147,7 @@ double seconds_since(Clock::time_point start) {
 CaptureResult write_frames(FrameFeed& feed, const CaptureSettings& settings, LogWriter& log) {
   CaptureResult result;
   const Clock::time_point start = Clock::now();
+  ProgressLine progress("frames", static_cast<double>(settings.frames.value_or(0)));
   while (const std::optional<RgbdFrame> frame = feed.next()) {
     const std::vector<std::uint8_t> bytes = encode_message(to_message(*frame, settings.format, feed.count() - 1));
     const std::int64_t since_first = std::llround(static_cast<double>(result.frames) * feed.period_us());
@@ -153,6 +155,7 @@ CaptureResult write_frames(FrameFeed& feed, const CaptureSettings& settings, Log
               {bytes.data(), bytes.size()});
     ++result.frames;
     result.bytes += static_cast<std::int64_t>(bytes.size());
+    progress.add(1.0);
   }
   result.seconds = seconds_since(start);
   return result;
