@@ -133,7 +133,8 @@ void run_stream(StreamOptions options, const Pace& pace) {
   require(options.objects.empty() || options.models.empty(), "--models goes with --forest; --objects has its own");
   options.executables = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   if (options.view && options.view_options.empty() && !has_display()) {
-    log_warning("no display: without hs-view; --view-options '--video FILE.mp4' writes what it would show");
+    log_warning(
+        "no display: without hs-view; --view-options '--http 8080' serves a page, '--video FILE.mp4' writes a video");
     options.view = false;
   }
   catch_stop_signals();
