@@ -1,4 +1,4 @@
-# Debian packages, with cpack in the build folder: houghstream, libhoughstream-dev, python3-houghstream, houghstream-java.
+# Debian packages, with the target `package`: houghstream, libhoughstream-dev, python3-houghstream, houghstream-java.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME houghstream)
 set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
@@ -8,7 +8,10 @@ set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL programs development python java)
+set(CPACK_COMPONENTS_ALL programs development python)
+if(TARGET houghstream_types_jar)
+  list(APPEND CPACK_COMPONENTS_ALL java)
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
