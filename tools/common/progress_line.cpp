@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "pipeline/base/printable.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {
