@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,14 +31,6 @@ std::string modes_text(const std::vector<CameraMode>& modes);
 
 /// Parses WIDTHxHEIGHT or WIDTHxHEIGHT@RATE, the form of the option --mode; 30 Hz without a rate. Throws InputError.
 CameraMode parse_camera_mode(const std::string& text);
-
-/// Reads a calibration file as ROS' camera_calibration writes it (YAML: image_width, image_height, camera_matrix with
-/// nine numbers, row by row). Distortion is not corrected: where the file states some, a warning says so.
-/// Throws InputError.
-Camera read_camera_info(const std::filesystem::path& file);
-
-/// The value of an option --camera: a calibration file, or "WIDTHxHEIGHT,fx,fy,cx,cy". Throws InputError.
-Camera camera_of_option(const std::string& text);
 
 /// How a camera is to be run.
 struct CameraOptions {

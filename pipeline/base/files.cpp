@@ -196,19 +196,4 @@ void check_json_nesting(std::string_view text, const std::string& source) {
   }
 }
 
-void check_yaml_nesting(std::string_view text, const std::string& source) {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
-  constexpr std::size_t kLongestLine = 512;
-  constexpr std::ptrdiff_t kMostBrackets = 600;
-  require(text.size() <= kMostBytes, "{}: {} bytes of YAML, expected at most {}", source, text.size(), kMostBytes);
-  const std::ptrdiff_t brackets = std::count_if(text.begin(), text.end(), [](char c) { return c == '[' || c == '{'; });
-  require(brackets <= kMostBrackets, "{}: {} brackets, expected at most {}", source, brackets, kMostBrackets);
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
-    require(end - begin <= kLongestLine, "{}: a line of {} bytes, expected at most {}", source, end - begin,
-            kLongestLine);
-    begin = end + 1;
-  }
-}
-
 }  // namespace houghstream

@@ -21,11 +21,6 @@ std::string read_file(const std::filesystem::path& file, const char* expected);
 /// prints it goes down as deep as it goes.
 void check_json_nesting(std::string_view text, const std::string& source);
 
-/// Throws InputError for YAML that OpenCV's reader would go down into too deep: it takes 5 kB of the stack for each
-/// level. A level takes a bracket, or begins further to the right than the one above it, so that brackets and the
-/// length of lines are what is limited, and the length of all.
-void check_yaml_nesting(std::string_view text, const std::string& source);
-
 /// What the name of a file that is being written ends with.
 inline constexpr const char* kPartialEnding = ".partial";
 

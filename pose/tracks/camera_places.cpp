@@ -9,6 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/text/printable.hpp"
+#include "pipeline/text/yaml_text.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/motion_filter.hpp"
 
@@ -94,19 +95,8 @@ Eigen::Isometry3d chained(const Links& links, const std::string& camera, const s
   return T;
 }
 
-// OpenCV reads YAML that starts with its own header, holds one document, and indents the entries of a list; ROS prints
-// none, ends with a line of ---, and does not.
 cv::FileStorage parse_yaml(const std::filesystem::path& file) {
-  const std::string given = read_file(file, "a YAML file of camera poses");
-  check_yaml_nesting(given, file.string());
-  std::istringstream in(given);
-  std::string text = "%YAML:1.0\n---\n";
-  bool in_list = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line.rfind("---", 0) == 0 || line.rfind("%YAML", 0) == 0) continue;
-    if (line[0] != ' ') in_list = line[0] == '-';
-    text += (in_list ? "  " : "") + line + "\n";
-  }
+  const std::string text = yaml_for_opencv(read_file(file, "a YAML file of camera poses"), file.string());
   return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
 }
 

@@ -10,9 +10,9 @@
 #include "detector/forest/forest_file.hpp"
 #include "detector/profiles.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/files/camera_info.hpp"
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/mat_file.hpp"
-#include "drivers/openni/camera_options.hpp"
 #include "drivers/openni/recording/oni_times.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
@@ -179,7 +179,7 @@ std::vector<Bytes> stores() {
 }
 
 void read_calibration(ByteView input) {
-  openni::read_camera_info(as_file(input, "yaml"));
+  read_camera_info(as_file(input, "yaml"));
 }
 
 std::vector<Bytes> calibrations() {

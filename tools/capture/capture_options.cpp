@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "drivers/files/camera_info.hpp"
 #include "drivers/openni/camera_options.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "drivers/openni/openni_device.hpp"
@@ -25,7 +26,7 @@ openni::CameraOptions camera_options(const SourceOptions& options) {
   if (options.mode) live.mode = openni::parse_camera_mode(*options.mode);
   live.auto_exposure = !options.fixed_exposure;
   live.auto_white_balance = !options.fixed_white_balance;
-  if (!options.camera.empty()) live.camera = openni::camera_of_option(options.camera);
+  if (!options.camera.empty()) live.camera = camera_of_option(options.camera);
   return live;
 }
 

@@ -3,6 +3,7 @@
 #include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/stages.hpp"
+#include "drivers/files/camera_info.hpp"
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
@@ -92,7 +93,7 @@ int main(int argc, char** argv) {
   app.add_option("--objects", options.objects,
                  "object store of hs-teach; it may be made, and changed, while this runs");
   app.add_option("--forest", options.forest_file, "forest file of hs-train, instead of --objects");
-  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--camera", camera, kCameraOptionHelp);
   add_search_options(app, options.search);
   options.search.candidates_from = kCandidatesFrom;
   app.add_option("--candidates", options.search.candidates_from,
@@ -112,7 +113,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-detect --forest out/demo/data/forest -l file://IN.lcmlog --output-log OUT.lcmlog");
 
   return run_tool(app, argc, argv, [&] {
-    if (!camera.empty()) options.process.camera = parse_camera(camera);
+    if (!camera.empty()) options.process.camera = camera_of_option(camera);
     if (options.process.looks_per_second > 0.0) give_way();
     require(options.forest_file.empty() != options.objects.empty(), "expected either --objects STORE or --forest FILE");
     require_output_log(options.url, options.output_log);

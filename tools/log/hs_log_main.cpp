@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "drivers/files/camera_info.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/log_seal.hpp"
@@ -64,7 +65,7 @@ CommandLine add_import(CommandLine& app, Options& options) {
   CommandLine import = app.add_subcommand("import", "makes a log of images_t of other recordings");
   import.add_option("source", options.in, kSources).required();
   import.add_option("out", options.out, "LCM log to write").required();
-  import.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  import.add_option("--camera", options.camera, kCameraOptionHelp);
   import.add_option("--from-channel", options.recording.channel,
                     "the one channel to read; default: the first with frames");
   import.add_option("-c,--channel", options.channel, "the one channel to write").capture_default_str();
@@ -80,7 +81,7 @@ CommandLine add_export(CommandLine& app, const std::string& name, const std::str
   part.add_example(fmt::format("hs-log export {} {}", name,
                                frames ? "IN.lcmlog FOLDER" : "RESULTS.lcmlog OUT." + name.substr(name.rfind('-') + 1)));
   if (!frames) return part;
-  part.add_option("--camera", options.camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  part.add_option("--camera", options.camera, kCameraOptionHelp);
   part.add_option("--from-channel", options.recording.channel,
                   "the one channel to read; default: the first with frames");
   return part;
@@ -129,7 +130,7 @@ int main(int argc, char** argv) {
   return run_tool(app, argc, argv, [&] {
     LossAccount losses;
     options.recording.source = options.in;
-    if (!options.camera.empty()) options.recording.camera = parse_camera(options.camera);
+    if (!options.camera.empty()) options.recording.camera = camera_of_option(options.camera);
     if (info.given()) {
       fmt::print("{}", to_text(read_log_info(options.in, losses)));
     } else {

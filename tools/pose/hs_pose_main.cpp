@@ -1,4 +1,5 @@
 #include "drivers/datasets/bop_dataset.hpp"
+#include "drivers/files/camera_info.hpp"
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
@@ -145,7 +146,7 @@ int main(int argc, char** argv) {
       "--cache", options.cache,
       "where what is made of a store's meshes is kept for the next start; default ~/.cache/houghstream/models");
   add_model_options(app, options.models, options.model_unit_m);
-  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--camera", camera, kCameraOptionHelp);
   app.add_option("--threads", options.settings.threads, "threads").range(1, 64).capture_default_str();
   app.add_option("--min-score", options.settings.min_score, "poses are looked for from this score of the detection on")
       .range(0.0, 1.0)
@@ -168,7 +169,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-pose --models out/demo/data/training/models");
 
   return run_tool(app, argc, argv, [&] {
-    if (!camera.empty()) options.process.camera = parse_camera(camera);
+    if (!camera.empty()) options.process.camera = camera_of_option(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
     require(options.cache.empty() || !options.objects.empty(), "--cache goes with --objects");
     require_output_log(options.url, options.output_log);

@@ -1,3 +1,4 @@
+#include "drivers/files/camera_info.hpp"
 #include "drivers/store/store_watch.hpp"
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
@@ -74,7 +75,7 @@ void add_options(CommandLine& app, TrackOptions& options, std::string& camera) {
   app.add_option("--objects", options.objects,
                  "object store of hs-teach, instead of --models; it may be made, and changed, while this runs");
   add_model_options(app, options.models, options.model_unit_m);
-  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--camera", camera, kCameraOptionHelp);
   app.add_option("--cameras", options.cameras_file,
                  "YAML file of where cameras stand: cameras: {CHANNEL: {translation: [x, y, z], rotation: [w, x, y, "
                  "z]}}, or static transforms as ROS prints them");
@@ -107,7 +108,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-track --objects my.store -c 'CAMERA_[12]' --cameras cameras.yaml");
   return run_tool(app, argc, argv, [&] {
     catch_stop_signals();
-    if (!camera.empty()) options.process.camera = parse_camera(camera);
+    if (!camera.empty()) options.process.camera = camera_of_option(camera);
     require(options.objects.empty() || options.models.empty(), "expected either --objects STORE or --models FOLDER");
     require(!options.process.check || options.output_log.empty(),
             "--output-log {}: --check publishes nothing, expected one of the two", options.output_log);

@@ -1,3 +1,4 @@
+#include "drivers/files/camera_info.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/view/viewer.hpp"
 
@@ -7,7 +8,7 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
   houghstream::view::ShowSettings& show = settings.show;
   houghstream::view::OutputSettings& outputs = show.outputs;
   houghstream::add_frame_channels_option(app, settings.frame_channels);
-  app.add_option("--camera", camera, "WIDTHxHEIGHT,fx,fy,cx,cy for frames without a camera of their own");
+  app.add_option("--camera", camera, houghstream::kCameraOptionHelp);
   app.add_option("--objects", show.objects,
                  "object store of hs-teach with the models; it may be made, and changed, while this runs");
   houghstream::add_model_options(app, show.models, show.model_unit_m);
@@ -52,7 +53,7 @@ int main(int argc, char** argv) {
   app.add_example("hs-view --objects my.store");
   app.add_example("hs-view --models out/demo/data/training/models --snapshot seen.png --after 30");
   return houghstream::run_tool(app, argc, argv, [&] {
-    if (!camera.empty()) settings.show.camera = houghstream::parse_camera(camera);
+    if (!camera.empty()) settings.show.camera = houghstream::camera_of_option(camera);
     houghstream::view::run_viewer(settings);
   });
 }

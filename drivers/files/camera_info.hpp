@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pipeline/types/camera.hpp"
+
+namespace houghstream {
+
+/// Reads the intrinsics of a camera from a file of ROS: a calibration as camera_calibration writes it (image_width,
+/// image_height, camera_matrix with nine numbers, row by row), or a camera_info message as `ros2 topic echo --once`
+/// prints it (width, height, k). Distortion is not corrected: where the file states some, a warning says so. Throws
+/// InputError.
+Camera read_camera_info(const std::filesystem::path& file);
+
+/// The value of an option --camera: such a file, or "WIDTHxHEIGHT,fx,fy,cx,cy". Throws InputError.
+Camera camera_of_option(const std::string& text);
+
+/// What an option --camera for frames says of itself.
+inline constexpr const char* kCameraOptionHelp =
+    "a ROS camera_info YAML file or WIDTHxHEIGHT,fx,fy,cx,cy, for frames without a camera of their own";
+
+}  // namespace houghstream
