@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 

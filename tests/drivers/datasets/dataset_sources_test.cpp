@@ -4,7 +4,7 @@
 
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {

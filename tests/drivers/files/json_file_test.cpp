@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {

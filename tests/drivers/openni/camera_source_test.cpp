@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
 #include "tests/drivers/openni/virtual_camera.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::openni {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "drivers/openni/openni_device.hpp"
 #include "drivers/virtual_camera/camera_pictures.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::openni {
 

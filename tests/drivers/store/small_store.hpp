@@ -5,8 +5,8 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/store/object_store.hpp"
 #include "drivers/store/store_build.hpp"
-#include "tests/drivers/test_files.hpp"
 #include "tests/pipeline/geometry/tetrahedron.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::store {
 

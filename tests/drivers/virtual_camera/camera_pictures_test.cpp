@@ -4,7 +4,7 @@
 
 #include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::virtual_camera {
 namespace {

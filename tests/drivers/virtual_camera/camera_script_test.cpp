@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::virtual_camera {
 namespace {

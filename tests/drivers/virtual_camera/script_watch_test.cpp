@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::virtual_camera {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/drivers/test_files.hpp"
 #include "tests/drivers/virtual_camera/taken_images.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::virtual_camera {
 namespace {

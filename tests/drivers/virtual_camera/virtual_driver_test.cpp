@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "drivers/virtual_camera/virtual_device.hpp"
-#include "tests/drivers/test_files.hpp"
 #include "tests/drivers/virtual_camera/taken_images.hpp"
+#include "tests/test_files.hpp"
 
 // What OpenNI2 asks of a driver library, by its names.
 // NOLINTBEGIN(readability-identifier-naming)

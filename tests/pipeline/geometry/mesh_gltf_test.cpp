@@ -6,18 +6,12 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/mesh.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path fresh_folder(const std::string& name) {
-  fs::path folder = fs::temp_directory_path() / ("houghstream_mesh_gltf_test_" + name);
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
-}
 
 void append_number(std::uint32_t number, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);

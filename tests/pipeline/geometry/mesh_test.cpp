@@ -6,18 +6,12 @@
 #include <fstream>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path fresh_folder(const std::string& name) {
-  fs::path folder = fs::temp_directory_path() / ("houghstream_mesh_test_" + name);
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
-}
 
 /// A box 0.1 x 0.2 x 0.3 m around the origin; two triangles a side, counter-clockwise from outside.
 Mesh box_mesh() {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <limits>
 
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::tracks {
 namespace {

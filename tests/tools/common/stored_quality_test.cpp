@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tools/doctor/examination.hpp"
 
 namespace houghstream::doctor {

@@ -5,7 +5,7 @@
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tools/evaluate/report.hpp"
 #include "tools/evaluate/result_log.hpp"
 

@@ -8,7 +8,7 @@
 #include "detector/training/forest_trainer.hpp"
 #include "drivers/datasets/bop_writer.hpp"
 #include "tests/detector/toy_data.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {

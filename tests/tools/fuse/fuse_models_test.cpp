@@ -7,8 +7,8 @@
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
 #include "tests/pose/fusion/turntable_views.hpp"
+#include "tests/test_files.hpp"
 #include "tools/fuse/model_picture.hpp"
 
 namespace houghstream {

@@ -4,7 +4,7 @@
 
 #include <houghstream/status_t.hpp>
 
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/message_types.hpp"
 

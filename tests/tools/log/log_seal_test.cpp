@@ -8,7 +8,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/good_events.hpp"
 

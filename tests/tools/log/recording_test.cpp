@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 
 namespace houghstream::log_tools {

@@ -5,7 +5,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/export/export_frames.hpp"
 #include "tools/log/import_log.hpp"

@@ -5,7 +5,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 #include "tools/teach/mesh_checks.hpp"
 

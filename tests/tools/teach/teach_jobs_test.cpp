@@ -9,7 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tests/drivers/store/small_store.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/teach/store_rename.hpp"

@@ -5,7 +5,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::view {
 namespace {

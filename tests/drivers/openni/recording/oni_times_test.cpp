@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "pipeline/base/checks.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::openni {
 namespace {

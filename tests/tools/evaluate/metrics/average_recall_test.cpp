@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "drivers/datasets/bop_writer.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {

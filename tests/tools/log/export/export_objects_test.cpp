@@ -12,7 +12,7 @@
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::log_tools {
 namespace {

@@ -10,7 +10,7 @@
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/types/frame_results.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 
 namespace houghstream::log_tools {

@@ -8,7 +8,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/geometry/renderer.hpp"
-#include "tests/drivers/test_files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::studies {
 namespace {

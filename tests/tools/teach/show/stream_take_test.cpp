@@ -7,8 +7,8 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/messages/messages.hpp"
-#include "tests/drivers/test_files.hpp"
 #include "tests/pipeline/test_frame.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::teach {
 namespace {
