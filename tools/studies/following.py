@@ -9,6 +9,7 @@ import argparse
 import json
 import pathlib
 import statistics
+from typing import NamedTuple
 
 from houghstream.event_log import read_log, write_event
 from studies.command import call, step
@@ -21,6 +22,14 @@ RATES = (30, 60, 90)  # Hz
 LOOKS = 5  # of the detector, a second
 SECONDS, ROUNDS = 20, 3  # a minute at each rate in all
 FIRST_UTIME = 1_500_000_000_000_000
+
+
+class Replays(NamedTuple):
+    """How often, and for how long, the scene is played."""
+
+    rates: tuple  # Hz
+    seconds: int  # of each
+    rounds: int
 
 
 def figures(folder, frames):
@@ -70,10 +79,11 @@ def make_log(programs, scene, rate, seconds, log):
     return log
 
 
-def measure(programs, data, out, rates=RATES, seconds=SECONDS, rounds=ROUNDS):
+def measure(programs, data, out, replays):
     """`data`: {"scene", "forest", "models"}. Interleaved: each round plays each rate once, so that what else the machine does
     falls on all. Returns {"hz30": medians over the rounds, ...}, each with "looks_per_second" and "runs"."""
     programs, out = pathlib.Path(programs), pathlib.Path(out)
+    rates, seconds, rounds = replays
     out.mkdir(parents=True, exist_ok=True)
     logs = {rate: make_log(programs, data["scene"], rate, seconds, out / f"following_{rate}.lcmlog") for rate in rates}
     runs = {rate: [] for rate in rates}
@@ -99,8 +109,8 @@ def main():
     options = parser.parse_args()
     enter_private_network()
     data = {name: getattr(options, name) for name in ("scene", "forest", "models")}
-    rates = [int(rate) for rate in options.rates.split(",")]
-    measured = measure(options.programs, data, options.out, rates, options.seconds, options.rounds)
+    rates = tuple(int(rate) for rate in options.rates.split(","))
+    measured = measure(options.programs, data, options.out, Replays(rates, options.seconds, options.rounds))
     write_json(options.out / "following.json", {**measured, **about("studies.following")})
     print(json.dumps({name: {key: value for key, value in rate.items() if key != "runs"} for name, rate in measured.items()},
                      indent=2))  # fmt: skip

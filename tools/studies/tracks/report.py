@@ -8,7 +8,7 @@ import subprocess
 from houghstream import objects_t
 from houghstream.event_log import read_log
 from studies.command import step
-from studies.following import RATES, measure
+from studies.following import RATES, Replays, measure
 from studies.measured import about, read_json, write_json
 from studies.report.page import render, show
 from studies.tracks import hosts
@@ -123,7 +123,7 @@ def summarise(options, plan, store):
 def rates(options, plan, store):
     scene = store.path("rendered/walk") / "walk" / "000001"
     data = {"scene": scene, "forest": plan.path(store, plan.forest), "models": plan.path(store, plan.models)}
-    return measure(options.programs, data, options.out / "tracks_rates", RATES, options.seconds, 1)
+    return measure(options.programs, data, options.out / "tracks_rates", Replays(RATES, options.seconds, 1))
 
 
 def write_page(options, summary):
