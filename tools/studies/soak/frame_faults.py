@@ -5,7 +5,7 @@ import time
 
 from studies.soak.faults import HEARD, RESULTS, SENT, Faults, account, adds_up, said
 from studies.soak.frames import FrameSender
-from studies.soak.relay import Relay
+from studies.soak.relay import Chances, Relay
 from studies.soak.wire import Listener, rubbish
 
 FRAME_US = 33_333
@@ -15,14 +15,14 @@ HOUR_US = 3_600_000_000
 class FrameFaults(Faults):
     """Each function is one fault; it returns what it saw, with "good"."""
 
-    def counted(self, name, meanwhile=None, restarts=1, **faults):
+    def counted(self, name, chances, meanwhile=None, restarts=1):
         """Frames through the relay: those that were sent are those that are accounted for."""
         folder = self.folder(name)
         detector = self.worker(folder, "hs-detect")
         passed = {}
         try:
             for run in range(restarts):
-                relay = Relay(SENT, HEARD, self.frames, seed=run + 1, **faults)
+                relay = Relay(SENT, HEARD, self.frames, chances, seed=run + 1)
                 try:
                     capture = self.capture(folder, f"capture{run}", SENT)
                     if meanwhile:
@@ -49,7 +49,7 @@ class FrameFaults(Faults):
             rubbish(HEARD, "HOUGHSTREAM_STATUS", payloads)
             rubbish(HEARD, "OPENNI_FRAME", payloads)
 
-        seen = self.counted("forged", meanwhile=send)
+        seen = self.counted("forged", Chances(), meanwhile=send)
         seen["sent"] += len(payloads)
         seen["good"] = seen["refused"] >= len(payloads) and adds_up(seen["sent"], seen)
         return seen
@@ -89,7 +89,7 @@ class FrameFaults(Faults):
         detector = self.worker(folder, "hs-detect", "-c", "CAMERA_[12]")
         pose = self.worker(folder, "hs-pose", "-c", "CAMERA_[12]")
         listener = Listener(HEARD, [*RESULTS.values(), *cameras])
-        relay = Relay(SENT, HEARD, self.frames, lose=0.05, swap=0.05)
+        relay = Relay(SENT, HEARD, self.frames, Chances(lose=0.05, swap=0.05))
         try:
             FrameSender(self.recording, SENT).send(
                 [first + FRAME_US * number for number in range(self.frames)], cameras, rate=15.0)  # fmt: skip
@@ -135,13 +135,13 @@ class FrameFaults(Faults):
         return {**counts, "hs-pose": of_poses, "reported": said(started[1], "ends:"), "good": good}
 
     def all(self):
-        yield "nothing", lambda: self.counted("nothing")
-        yield "5 % of the frames lost", lambda: self.counted("lost", lose=0.05)
-        yield "10 % overtaken", lambda: self.counted("overtaken", swap=0.1)
-        yield "10 % doubled", lambda: self.counted("doubled", double=0.1)
-        yield "5 % with forged sequence numbers", lambda: self.counted("forged_numbers", forge=0.05)
+        yield "nothing", lambda: self.counted("nothing", Chances())
+        yield "5 % of the frames lost", lambda: self.counted("lost", Chances(lose=0.05))
+        yield "10 % overtaken", lambda: self.counted("overtaken", Chances(swap=0.1))
+        yield "10 % doubled", lambda: self.counted("doubled", Chances(double=0.1))
+        yield "5 % with forged sequence numbers", lambda: self.counted("forged_numbers", Chances(forge=0.05))
         yield "all of it, and the camera started three times", lambda: self.counted(
-            "mixed", restarts=3, lose=0.05, swap=0.1, double=0.1, forge=0.03)
+            "mixed", Chances(lose=0.05, swap=0.1, double=0.1, forge=0.03), restarts=3)
         yield "rubbish and forged statuses", self.forged
         yield "the camera's clock jumps an hour ahead and back", self.clock_jumps
         yield "two cameras with equal stamps, 5 % lost, 5 % overtaken", self.equal_stamps

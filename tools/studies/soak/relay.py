@@ -5,9 +5,11 @@ Whole messages are lost, swapped and doubled, not their fragments: LCM gives up 
 a lost fragment is a lost message, and what is counted stays exact.
 """
 
+import itertools
 import random
 import socket
 import threading
+from typing import NamedTuple
 
 from studies.soak.frames import FORGED, with_number
 from studies.soak.wire import GROUP, LONG, LONG_HEADER, SHORT, SHORT_HEADER, datagrams, receiving_socket
@@ -15,16 +17,25 @@ from studies.soak.wire import GROUP, LONG, LONG_HEADER, SHORT, SHORT_HEADER, dat
 SPARED = 3  # messages of a camera at the beginning and the end of a run: what is lost there nobody can know
 
 
+class Chances(NamedTuple):
+    """What becomes of a message, as probabilities; most are passed on as they are."""
+
+    lose: float = 0.0
+    swap: float = 0.0  # the next one overtakes it
+    double: float = 0.0
+    forge: float = 0.0  # another follows it, with a forged sequence number
+
+
 class Relay:
     """Passes on `expected` frames of each camera from port to port, with faults, until stop()."""
 
-    def __init__(self, from_port, to_port, expected, seed=1, *, lose=0.0, swap=0.0, double=0.0, forge=0.0):
+    def __init__(self, from_port, to_port, expected, chances, seed=1):
         self.listener = receiving_socket(from_port)
         self.sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.to = (GROUP, to_port)
         self.expected = expected
         self.random = random.Random(seed)
-        self.lose, self.swap, self.double, self.forge = lose, swap, double, forge
+        self.chances = chances
         self.parts = {}  # of messages that are not whole yet, by (sender, number)
         self.held = {}  # by channel, a frame that the next one overtakes
         self.number = 0xF0000000  # of what it sends a second time: LCM takes a number for the same message
@@ -66,8 +77,7 @@ class Relay:
         channel, payload = content(message)
         self.seen[channel] = self.seen.get(channel, 0) + 1
         spared = self.seen[channel] <= SPARED or self.seen[channel] > self.expected - SPARED
-        bounds = [self.lose, self.lose + self.swap, self.lose + self.swap + self.double]
-        bounds.append(bounds[-1] + self.forge)
+        bounds = list(itertools.accumulate(self.chances))
         draw = 1.0 if spared else self.random.random()
         if draw < bounds[0]:
             self.counts["lost"] += 1
