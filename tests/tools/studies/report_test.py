@@ -14,7 +14,7 @@ def words_of(svg):
 
 class Charts(unittest.TestCase):
     def test_axes_have_few_round_ticks_and_names_stay_text(self):
-        chart = charts.Chart("x <unit>", "y", 47.0, 1.0, "title & more")
+        chart = charts.Chart(("x <unit>", 47.0), ("y", 1.0), "title & more")
         chart.line("a & b", [(0, 0), (40, 1)])
         words = words_of(chart.svg())
         for text in ("x <unit>", "title & more", "a & b", "0", "10", "40", "0.2", "1.0"):
@@ -22,17 +22,17 @@ class Charts(unittest.TestCase):
 
     def test_the_same_chart_is_the_same_text(self):
         def drawn():
-            chart = charts.Chart("x", "y", 1.0, 1.0)
+            chart = charts.Chart(("x", 1.0), ("y", 1.0))
             chart.dots("dots", [(0.5, 0.5)])
             return chart.svg()
 
         self.assertEqual(drawn(), drawn())
 
     def test_a_chart_without_points_is_whole(self):
-        self.assertIn("nothing", words_of(charts.Chart("nothing", "y", 0.0, 0.0).svg()))
+        self.assertIn("nothing", words_of(charts.Chart(("nothing", 0.0), ("y", 0.0)).svg()))
 
     def test_a_label_near_the_right_edge_stands_on_the_points_left(self):
-        chart = charts.Chart("score", "share", 1.0, 1.0)
+        chart = charts.Chart(("score", 1.0), ("share", 1.0))
         chart.label(0.5, 0.5, "3692")
         chart.label(1.0, 0.5, "3693")
         self.assertEqual([text.get_ha() for text in chart.axes.texts], ["left", "right"])

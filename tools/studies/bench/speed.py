@@ -190,7 +190,8 @@ def growth_charts(summary):
         points = [(count * (1e-6 if name == "pixels" else 1), ms) for count, ms in summary[name]]
         if len(points) < 2:
             continue
-        chart = Chart(label, "ms a frame", max(x for x, _ in points) * 1.05, max(y for _, y in points) * 1.1, name)
+        last, most = max(x for x, _ in points) * 1.05, max(y for _, y in points) * 1.1
+        chart = Chart((label, last), ("ms a frame", most), name)
         chart.line("median", points)
         chart.axes.lines[-1].set_marker("o")
         charts.append(chart.svg())

@@ -65,7 +65,7 @@ def cut(options, run):
 
 
 def reliability(calibration, title):
-    chart = Chart("mean of what was said", "share that is right", 1.0, 1.0, title)
+    chart = Chart(("mean of what was said", 1.0), ("share that is right", 1.0), title)
     chart.dashes([(0, 0), (1, 1)])
     for name, found in calibration.items():
         if found:

@@ -80,7 +80,7 @@ def summarise(options, store, sent):
 
 
 def precision_recall_chart(curves):
-    chart = Chart("recall", "precision", 1.0, 1.0)
+    chart = Chart(("recall", 1.0), ("precision", 1.0))
     for name in dict.fromkeys(row["object"] for row in curves):
         chart.line(name, [(float(row["recall"]), float(row["precision"])) for row in curves if row["object"] == name])
     return chart.svg()
@@ -95,8 +95,8 @@ def latency_points(times, key):
 def latency_chart(times):
     points = {name: latency_points(times, f"t_{name}") for name in ("detections", "poses")}
     everything = points["detections"] + points["poses"] or [(1.0, 1.0)]
-    most = max(x for x, _ in everything), 1.1 * max(y for _, y in everything)
-    chart = Chart("stream time, s", "after the frame's arrival, ms", *most)
+    last, most = max(x for x, _ in everything), 1.1 * max(y for _, y in everything)
+    chart = Chart(("stream time, s", last), ("after the frame's arrival, ms", most))
     for name, line in points.items():
         chart.dots(name, line)
     return chart.svg()

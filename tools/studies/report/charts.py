@@ -46,10 +46,12 @@ class Drawing:
 
 
 class Chart(Drawing):
-    """Axes from (0, 0) to (x_max, y_max); series are added, each in the next colour."""
+    """Axes from (0, 0) on; series are added, each in the next colour."""
 
-    def __init__(self, x_label, y_label, x_max, y_max, title="", size=NARROW):
+    def __init__(self, x, y, title="", size=NARROW):
+        """`x`, `y`: (label, largest value)."""
         super().__init__(size, title)
+        (x_label, x_max), (y_label, y_max) = x, y
         self.axes.set(xlabel=x_label, ylabel=y_label, xlim=(0.0, max(x_max, 1e-9)), ylim=(0.0, max(y_max, 1e-9)))
         for axis in (self.axes.xaxis, self.axes.yaxis):
             axis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))

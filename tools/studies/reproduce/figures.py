@@ -32,7 +32,7 @@ def one_object(curve, name):
 def precision_recall(results, feature):
     """One line an object; the first training run is drawn strongly, the others faintly."""
     what = forest_of(feature)
-    chart = Chart("recall", "precision", 1.0, 1.0, FEATURE_NAMES[feature], SMALL)
+    chart = Chart(("recall", 1.0), ("precision", 1.0), FEATURE_NAMES[feature], SMALL)
     curves = results.curve_files(what, FEATURE_SCENE)
     for name in results.objects(what, FEATURE_SCENE):
         lines = [line for line in (one_object(curve, name) for curve in curves) if line] or [[(0.0, 0.0)]]
@@ -75,7 +75,7 @@ def stride_chart(rows):
     if not known:
         return None
     top = max([1.0] + [1.0 + row["auc_change"] for row in known])
-    chart = Chart("stride, pixels", "percent of stride 1", 9.0, 112.0 * top)
+    chart = Chart(("stride, pixels", 9.0), ("percent of stride 1", 112.0 * top))
     chart.dashes([(0.0, 100.0), (9.0, 100.0)])
     for name, key in (("AUC", "auc_change"), ("time from classification on", "time_change")):
         points = [(row["stride"], 100.0 * (1.0 + row[key])) for row in known]
@@ -98,7 +98,7 @@ def final_bars(results):
 def reliability_chart(bins):
     if not bins:
         return None
-    chart = Chart("predicted score", "share of detections that are true", 1.0, 1.0)
+    chart = Chart(("predicted score", 1.0), ("share of detections that are true", 1.0))
     chart.dashes([(0.0, 0.0), (1.0, 1.0)])
     for row in bins:
         chart.whisker(row["score"], max(row["low"], 0.0), min(row["high"], 1.0))
