@@ -15,7 +15,8 @@ from studies.tracks.plan import Plan
 from studies.tracks.report import longest, pooled, tracks_are_equal
 
 
-def figures(name, required, recall, wrong, switches=0, counts=(1, 0, 0, 1)):
+def figures(name, required_and_recall, wrong, switches, counts):
+    required, recall = required_and_recall
     return {"name": name, "required": required, "recall": recall, "wrong": wrong, "id_switches": switches,
             "hota_counts": [counts, counts], "kept": 10, "error": {"moving": {"mm_p95": None}}}  # fmt: skip
 
@@ -67,7 +68,7 @@ class HostsTest(unittest.TestCase):
 
 class TracksTest(unittest.TestCase):
     def test_shares_follow_the_counts(self):
-        both = pooled([figures("pushed", 300, 0.9, {"can": 10}, 1, (90, 10, 0, 81)), figures("cans", 100, 0.5, {}, 2, (0, 60, 40, 0))])
+        both = pooled([figures("pushed", (300, 0.9), {"can": 10}, 1, (90, 10, 0, 81)), figures("cans", (100, 0.5), {}, 2, (0, 60, 40, 0))])
         self.assertEqual(both["sequences"], ["pushed", "cans"])
         self.assertAlmostEqual(both["recall"], (270 + 50) / 400)
         self.assertAlmostEqual(both["precision"], 340 / 350)
