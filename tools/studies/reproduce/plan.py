@@ -49,6 +49,16 @@ def every_nth(folder, every):
     return folder if every == 1 else f"{folder}_every_{every}"
 
 
+@dataclasses.dataclass(frozen=True)
+class Frames:
+    """Of a source's scene, and the figure for which they are looked at."""
+
+    source: sources.Source
+    scene: str
+    figure: str
+    every: int = 0  # Nth of them; 0: as the protocol says
+
+
 class Planner:
     """The kinds of work: training, evaluation, timing, pictures."""
 
@@ -64,39 +74,43 @@ class Planner:
         facts = {"what": prefix + forest, "seed": seed}
         return self.units.add(name, figure, variants.trainer(forest), *options, "--out", "{out}", **facts)
 
-    def evaluate(self, what, source, scene, seed, figure, prefix="", every=None):
+    def evaluate(self, what, frames, seed, prefix=""):
         """Trains the forest where no other figure has, and measures it; nothing where the protocol leaves it out."""
         if prefix + what in self.protocol.left_out:
             return
         what = forest_of(what)
-        forest = self.train(what, source, seed, figure, prefix)
-        every = (every or self.protocol.every) * (self.protocol.gall_every if is_gall(what) else 1)
-        self.measure(prefix + what, what, forest, source, scene, figure, every)
+        forest = self.train(what, frames.source, seed, frames.figure, prefix)
+        every = (frames.every or self.protocol.every) * (self.protocol.gall_every if is_gall(what) else 1)
+        self.measure(prefix + what, what, forest, dataclasses.replace(frames, every=every))
 
     def stride(self, source, stride, seed):
         forest = self.train("paper", source, seed, "5")
-        self.measure(f"stride_{stride}", "paper", forest, source, FEATURE_SCENE, "5", self.protocol.every, stride)
+        self.measure(f"stride_{stride}", "paper", forest, Frames(source, FEATURE_SCENE, "5"), stride)
 
-    def measure(self, name, what, forest, source, scene, figure, every, stride=None):
+    def measure(self, name, what, forest, frames, stride=None):
         """`name`: in the report; `what`: the kind of detector; `forest`: the unit that trains it."""
         seed = self.units.by_name[forest].seed
-        command = (variants.evaluator(what), *self._files(forest, source, scene, every))
+        every = frames.every or self.protocol.every
+        command = (variants.evaluator(what), *self._files(forest, frames.source, frames.scene, every))
         options = (*variants.detection_options(what, stride), *self.threads)
-        unit = f"{every_nth('evaluate', every)}/{name}/{scene}/seed{seed}"
-        self.units.add(unit, figure, *command, *options, what=name, scene=scene, seed=seed)
+        unit = f"{every_nth('evaluate', every)}/{name}/{frames.scene}/seed{seed}"
+        self.units.add(unit, frames.figure, *command, *options, what=name, scene=frames.scene, seed=seed)
 
     def _files(self, forest, source, scene, every):
         files = ("--scene", source.scenes[scene], "--forest", f"{{{forest}}}")
         models = ("--models", source.models) if source.models else ()
         return (*files, *models, "--every", every, "--out", "{out}")
 
-    def linemod(self, what, source, scenes, figure, every, extra=()):
-        """Learns its templates without chance: one run stands for all. As evaluate() where it is left out."""
-        if what in self.protocol.left_out:
-            return
+    def linemod(self, source, scenes, figure, every, prefix=""):
+        """With and without its check of depth. Learns its templates without chance: one run stands for all. As evaluate()
+        where it is left out."""
         listed = [word for scene in scenes for word in ("--scene", source.scenes[scene])]
-        command = ("hs-linemod", *source.training, *source.distances, *listed, "--every", every, *extra, *self.threads)
-        self.units.add(f"{every_nth('linemod', every)}/{what}", figure, *command, "--out", "{out}", what=what)
+        for name, check in (("linemod", CHECK_DEPTH), ("linemod_no_check", ())):
+            what = prefix + name
+            if what in self.protocol.left_out:
+                continue
+            command = ("hs-linemod", *source.training, *source.distances, *listed, "--every", every, *check, *self.threads)
+            self.units.add(f"{every_nth('linemod', every)}/{what}", figure, *command, "--out", "{out}", what=what)
 
     def timings(self, source):
         """On one scene, few frames: the original takes long for each. What is fast takes longest for its first one."""
@@ -139,20 +153,20 @@ class Planner:
 def add_profiles(planner, source, seed):
     for scene in SCENES:
         for what in PROFILES:
-            planner.evaluate(what, source, scene, seed, "6")
+            planner.evaluate(what, Frames(source, scene, "6"), seed)
 
 
 def add_features(planner, source, seed):
     for what in (name for name in FEATURES if name not in OTHER_KERNELS):
-        planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
+        planner.evaluate(what, Frames(source, FEATURE_SCENE, "1, 2"), seed)
 
 
 def add_single_studies(planner, source, seed):
     for what in OTHER_KERNELS:
-        planner.evaluate(what, source, FEATURE_SCENE, seed, "1, 2")
+        planner.evaluate(what, Frames(source, FEATURE_SCENE, "1, 2"), seed)
     for scene in SCALE_SCENES:
         for what in ("five", *SCALE_HANDLING):
-            planner.evaluate(what, source, scene, seed, "4")
+            planner.evaluate(what, Frames(source, scene, "4"), seed)
     for stride in STRIDES:
         planner.stride(source, stride, seed)
 
@@ -162,7 +176,7 @@ def add_other_sensor(planner, source, seed):
     forest = planner.train("realtime", source, seed, "sensor")
     other = sources.other_sensor(planner.units, source)
     for scene in other.scenes:
-        planner.measure(f"{OTHER_SENSOR}_realtime", "realtime", forest, other, scene, "sensor", planner.protocol.every)
+        planner.measure(f"{OTHER_SENSOR}_realtime", "realtime", forest, Frames(other, scene, "sensor"))
 
 
 def add_twenty_objects(planner, few):
@@ -173,8 +187,8 @@ def add_twenty_objects(planner, few):
         "objects_20_realtime": planner.train("realtime", twenty, 1, "objects", "objects_20_"),
     }
     for scene in SCENES_20:
-        planner.evaluate("realtime", source, scene, 1, "objects")
-        planner.evaluate("realtime", twenty, scene, 1, "objects", prefix="objects_20_")
+        planner.evaluate("realtime", Frames(source, scene, "objects"), 1)
+        planner.evaluate("realtime", Frames(twenty, scene, "objects"), 1, prefix="objects_20_")
         planner.side_by_side(forests, source, scene, "objects")
 
 
@@ -187,17 +201,15 @@ def add_attitudes(planner, usual):
     }
     for scene in upright.scenes:
         for name, forest in forests.items():
-            planner.measure(name, "realtime", forest, upright, scene, "attitudes", ATTITUDES_EVERY)
+            planner.measure(name, "realtime", forest, Frames(upright, scene, "attitudes", ATTITUDES_EVERY))
 
 
 def add_comparison(planner, source):
     """One run of everything."""
     first = planner.protocol.seeds[0]
-    every = planner.protocol.every
     add_profiles(planner, source, first)
     add_features(planner, source, first)
-    planner.linemod("linemod", source, SCENES, "6", every, CHECK_DEPTH)
-    planner.linemod("linemod_no_check", source, SCENES, "6", every)
+    planner.linemod(source, SCENES, "6", planner.protocol.every)
     add_single_studies(planner, source, first)
     planner.hough_pictures(source)
     planner.failure_pictures(source, SCENES)
@@ -207,17 +219,15 @@ def add_comparison(planner, source):
 def add_real(planner, source):
     """Few pictures: even a quick run looks at all."""
     first = planner.protocol.seeds[0]
-    planner.evaluate("realtime", source, "scenes", first, "real", prefix="real_", every=1)
-    planner.evaluate("realtime", source, "clutter", first, "real", prefix="real_", every=1)
-    planner.linemod("real_linemod", source, ["scenes"], "real", 1, CHECK_DEPTH)
-    planner.linemod("real_linemod_no_check", source, ["scenes"], "real", 1)
+    add_real_runs(planner, source, first)
+    planner.linemod(source, ["scenes"], "real", 1, prefix="real_")
     for what in ("gall", "paper"):
-        planner.evaluate(what, source, "scenes", first, "real", prefix="real_", every=1)
+        planner.evaluate(what, Frames(source, "scenes", "real", every=1), first, prefix="real_")
 
 
 def add_real_runs(planner, source, seed):
     for scene in ("scenes", "clutter"):
-        planner.evaluate("realtime", source, scene, seed, "real", prefix="real_", every=1)
+        planner.evaluate("realtime", Frames(source, scene, "real", every=1), seed, prefix="real_")
 
 
 def make_plan(dataset, folder, real, protocol):
