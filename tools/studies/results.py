@@ -9,9 +9,28 @@ import shutil
 
 from studies.command import die
 from studies.measured import REPOSITORY, commit_name, read_json_if_any
+from studies.result_tables import (
+    bop_rivals,
+    bop_table,
+    bop_words,
+    demo_frames,
+    demo_table,
+    growth_table,
+    live_frames,
+    live_table,
+    pose_table,
+    pose_words,
+    recorded_pose_words,
+    show,
+    small_speed_table,
+    speed_gains,
+    speed_table,
+    stage_table,
+    stream_table,
+    table,
+)
 
 HERE = pathlib.Path(__file__).resolve().parent
-NOT_MEASURED = "not measured"
 FAILURES = "files/failures/realtime.png"  # below out/reproduce
 
 HEAD = """# Results
@@ -20,23 +39,6 @@ Written by `tools/reproduce --results` of what `tools/demo`, `tools/bench` and `
 All of commit `{commit}`. What the figures mean, and what was chosen on which data: [README.md](README.md).
 Rendered training views and test scenes share one model of the sensor, but for the table that names another.
 """
-
-
-def show(value, form="{:.3f}"):
-    return NOT_MEASURED if value is None else form.format(value)
-
-
-def ms(value):
-    return show(value, "{:.1f}")
-
-
-def table(rows):
-    """Markdown; rows: the header first."""
-    lines = [
-        "| " + " | ".join(str(cell).replace("|", "\\|").replace("–", NOT_MEASURED) for cell in row) + " |"
-        for row in rows
-    ]
-    return "\n".join([lines[0], "|" + "---|" * len(rows[0]), *lines[1:]])
 
 
 class Source:
@@ -56,177 +58,6 @@ def section(title, source, command, *content):
         return f"## {title}\n\nNot measured of this commit: `{command}`.\n"
     parts = [part for part in (make(source.summary) for make in content) if part]
     return "\n\n".join([f"## {title}", source.origin, *parts]) + "\n"
-
-
-def demo_table(summary):
-    names = list(summary["auc"])
-    recall, processed = "pose_recall_add_s_10", summary["processed"]
-    listed = [("AUC", summary["auc"]), ("recall at the defaults", summary["recall"])]
-    if summary["bop19_ar"]:
-        listed += [
-            ("ADD-S recall", summary[recall]),
-            ("BOP average recall", summary["bop19_ar"] | {"mean": summary["bop19_ar"]["all"]}),
-        ]
-    listed += [
-        ("AUC, processed frames alone", processed["auc"]),
-        ("recall, processed frames alone", processed["recall"]),
-    ]
-    if summary["bop19_ar"]:
-        listed.append(("ADD-S recall, processed frames alone", processed[recall]))
-
-    def cell(found, name):
-        return "" if name == "mean" and name not in found else show(found.get(name))
-
-    return table([("", *names), *((words, *(cell(found, name) for name in names)) for words, found in listed)])
-
-
-def demo_frames(summary):
-    latency = "; ".join(
-        f"{stage} {ms(found['p50'])}, {ms(found['p99'])}" for stage, found in summary["latency_ms"].items()
-    )
-    text = ("{frames_sent} frames sent, {frames_detected} detected, {frames_skipped} passed over for newer ones, {frames_lost} "
-            "lost; {frames_with_poses} with poses; {rate_hz:.1f} results a second; false detections at the "
-            "defaults: {false_detections}; training {train_seconds:.0f} s. ").format(**summary)  # fmt: skip
-    clutter = summary.get("clutter")
-    if clutter:
-        text += "Clutter: {false_detections} detections, all false, in {frames_processed} frames. ".format(**clutter)
-    return text + f"Latency, median and 99 %, ms: {latency}."
-
-
-def live_table(summary):
-    rows = [("from the shutter to, ms", "p50", "p95", "p99")]
-    return table(
-        rows
-        + [(name, *(ms(found[p]) for p in ("p50", "p95", "p99"))) for name, found in summary["glass_to_ms"].items()]
-    )
-
-
-def live_frames(summary):
-    return ("{frames_sent} frames, {frames_lost_from_camera} lost between camera and hs-capture, {frames_lost_on_bus} on the "
-            "bus; {frames_detected} detected, {frames_skipped} passed over, {frames_with_poses} with poses.").format(**summary)  # fmt: skip
-
-
-def speed_table(summary):
-    from studies.bench import speed
-
-    return table([("", "ms a frame", "AUC", "settings of both"), *speed.detection_rows(summary)])
-
-
-def speed_gains(summary):
-    default = summary["at_default"]
-    return (
-        f"`realtime` against the original, same fast engine, one thread each: "
-        f"{show(summary['speedup_over_gall_same_engine'], '{:.0f}')}-fold. Whole systems, the original in its reference engine "
-        f"on one thread against `realtime` on all, both ranking every maximum: {show(summary['speedup_over_gall_whole_system'], '{:.0f}')}-fold. As it "
-        f"runs, from its default score on: {show(default['ms'], '{:.2f}')} ms, precision {show(default['precision'])}, recall "
-        f"{show(default['recall'])}."
-    )
-
-
-def stage_table(summary):
-    from studies.bench import speed
-
-    return table(speed.stage_rows(summary))
-
-
-def small_speed_table(summary):
-    rows = [("`realtime`, default settings", "ms a frame")]
-    rows += [
-        (f"{count} thread{'s' if count > 1 else ''}", show(value, "{:.2f}")) for count, value in summary["threads"]
-    ]
-    return table(rows + [(f"one thread, {name}", show(value, "{:.2f}")) for name, value in summary["simd"].items()])
-
-
-def stream_table(summary):
-    from studies.bench import speed
-
-    header = (
-        "frames",
-        "p50 ms",
-        "p95 ms",
-        "p99 ms",
-        "sent",
-        "lost",
-        "skipped",
-        "with poses",
-        "cores in use",
-        "memory, MB",
-    )
-    return table([header, *speed.stream_rows(summary)])
-
-
-def growth_table(summary):
-    series = {"objects": "objects", "trees": "trees", "pixels": "pixels"}
-    parts = []
-    for name, words in series.items():
-        if summary[name]:
-            rows = [(words, *(count for count, _ in summary[name])), ("ms", *(ms(value) for _, value in summary[name]))]
-            parts.append(
-                table(rows) + f"\n\nTime goes with the power {show(summary['exponents'][name], '{:.2f}')} of {words}."
-            )
-    return "\n\n".join(parts)
-
-
-def pose_table(summary):
-    rows = [
-        ("", "ms a pose, median", "ADD-S recall", "ADD(-S) recall", "AR", f"AR on {summary['rival_frames']} frames")
-    ]
-    ours = f"{show(summary['ms_per_pose_median'], '{:.2f}')} (99 %: {show(summary['ms_per_pose_p99'], '{:.2f}')})"
-    rows.append(("ours, all detections from score 0.1 on", ours, show(summary["add_s_recall"]), show(summary["add_recall"]),
-                 show(summary["bop_ar"]), show(summary["bop_ar_on_rival_frames"])))  # fmt: skip
-    strong = (show(summary["add_s_recall_from_0.5"]), show(summary["add_recall_from_0.5"]))
-    rows.append(("ours, detections from score 0.5 on", "", *strong, "", ""))
-    pcl = (show(summary["pcl_add_s_recall"]), show(summary["pcl_add_recall"]), show(summary["bop_ar_pcl"]))
-    rows.append(("PCL's point-to-plane ICP from the same starts", ms(summary["pcl_ms_median"]), *pcl, ""))
-    for name, words in (
-        ("prerejective", "FPFH, prerejective sampling, ICP (PCL)"),
-        ("ppf", "point pair features, ICP (OpenCV)"),
-    ):
-        rows.append((words, ms(summary[f"{name}_ms_median"]), "", "", "", show(summary[f"bop_ar_{name}"])))
-    return table(rows)
-
-
-def pose_words(summary):
-    return (
-        f"{summary['frames']} frames; of all published poses {show(summary['published_good_fraction'])} are right; errors "
-        f"(medians): {show(summary['translation_mm_median_at_1m'], '{:.2f}')} mm at 1 m, "
-        f"{show(summary['rotation_deg_median'], '{:.2f}')} degrees."
-    )
-
-
-def recorded_pose_words(summary):
-    real = summary["real"]
-    if real["frames"] is None:
-        return None
-    return (
-        f"Camera-recorded: of {real['frames']} frames with a reliable pseudo pose {real['with_pose']} have a pose, "
-        f"{real['within_5mm_5deg']} within 5 mm and 5 degrees; median {show(real['median_mm'], '{:.2f}')} mm, "
-        f"{show(real['median_deg'], '{:.2f}')} degrees."
-    )
-
-
-def bop_table(summary):
-    from studies.bop import report
-
-    columns = (*report.TABLE, ("teach_seconds", "teaching, s"))
-    return table([report.header(columns, "set"), *report.rows(summary["datasets"], columns)])
-
-
-def bop_rivals(summary):
-    from studies.bop import report
-
-    if not summary["settings"]["rivals"]:
-        return None
-    cut = [f"{name}: {run['rivals_cut']}." for name, run in summary["datasets"].items() if run["rivals_cut"]]
-    rows = [report.header(report.RIVALS, "set"), *report.rows(summary["datasets"], report.RIVALS)]
-    return "\n\n".join([table(rows), *cut])
-
-
-def bop_words(summary):
-    settings = summary["settings"]
-    words = f"Every {settings['every']}th image" if settings["every"] > 1 else "All images"
-    taught = f"the store {settings['objects']}" if settings["objects"] else f"{settings['seeds']} teaching(s) a set"
-    return f"{words} of the sets' targets, split `{settings['split']}`; {taught}."
 
 
 def reproduce_tables(folder):
