@@ -10,7 +10,7 @@ from unittest import mock
 
 from houghstream import status_t, teaching_t
 from studies import command
-from studies.demo import live, report, teach
+from studies.demo import live, pose_scatter, report, teach
 from studies.measured import write_json
 
 
@@ -159,27 +159,27 @@ class Report(unittest.TestCase):
 class Teach(unittest.TestCase):
     def test_the_camera_plays_its_scene_forwards_then_backwards(self):
         taken = [(1_000_000 + 66_667 * number, number) for number in range(9)]
-        seen = [teach.picture_at(taken, utime + 500, 4) for utime, _ in taken]
+        seen = [pose_scatter.picture_at(taken, utime + 500, 4) for utime, _ in taken]
         self.assertEqual(seen, [0, 1, 2, 3, 3, 2, 1, 0, 0])
-        self.assertIsNone(teach.picture_at(taken, 5_000_000, 4))
-        self.assertIsNone(teach.picture_at([], 5_000_000, 4))
+        self.assertIsNone(pose_scatter.picture_at(taken, 5_000_000, 4))
+        self.assertIsNone(pose_scatter.picture_at([], 5_000_000, 4))
 
     def test_poses_of_another_frame_on_the_object_scatter_by_their_errors_alone(self):
         def about_z(degrees):
-            return teach.rotation_of((math.cos(math.radians(degrees) / 2), 0, 0, math.sin(math.radians(degrees) / 2)))
+            return pose_scatter.rotation_of((math.cos(math.radians(degrees) / 2), 0, 0, math.sin(math.radians(degrees) / 2)))
 
         relative = []
         for i in range(20):
             true = (about_z(18 * i), (0.1, 0.01 * i, 0.7))
             off = 0.003 if i == 0 else 0.0  # one is 3 mm and 5 degrees off
             turn = 95 if i == 0 else 90
-            moved = [a + b for a, b in zip(teach.turned(true[0], (0.0, 0.0, 0.05 + off)), true[1])]
-            relative.append(teach.seen_from_truth(true, (teach.product(true[0], about_z(turn)), moved)))
-        found = teach.scatter(relative)
+            moved = [a + b for a, b in zip(pose_scatter.turned(true[0], (0.0, 0.0, 0.05 + off)), true[1])]
+            relative.append(pose_scatter.seen_from_truth(true, (pose_scatter.product(true[0], about_z(turn)), moved)))
+        found = pose_scatter.scatter(relative)
         self.assertEqual((found["mm_50"], found["deg_50"]), (0.0, 0.0))
         self.assertAlmostEqual(found["mm_95"], 3.0, places=1)
         self.assertAlmostEqual(found["deg_95"], 5.0, places=1)
-        self.assertEqual(teach.scatter([]), {})
+        self.assertEqual(pose_scatter.scatter([]), {})
 
     def test_what_is_found_may_have_a_pose_a_reason_or_nothing(self):
         def mug(pose):
