@@ -72,6 +72,7 @@ class TrackedScene {
   std::vector<std::pair<std::string, Eigen::Isometry3d>> posed;     ///< what poses tell
   std::optional<Eigen::Isometry3d> obstacle;                        ///< a block between
   Eigen::Isometry3d T_world_camera = camera_in_front();
+  Camera camera = kSmall;
   std::string channel = "CAMERA";
   double noise_m = 0.0;
   double quality = 0.9;
@@ -130,9 +131,9 @@ class TrackedScene {
     if (obstacle) items.push_back({&block_, T_world_camera.inverse() * *obstacle, 3});
     RgbdFrame frame;
     frame.id = {channel, utime};
-    frame.camera = kSmall;
-    frame.depth = render_geometry(items, kSmall).depth;
-    frame.colour = cv::Mat(kSmall.height, kSmall.width, CV_8UC3, cv::Scalar::all(128));
+    frame.camera = camera;
+    frame.depth = render_geometry(items, camera).depth;
+    frame.colour = cv::Mat(camera.height, camera.width, CV_8UC3, cv::Scalar::all(128));
     return frame;
   }
 

@@ -109,6 +109,28 @@ TEST(Tracker, WhatMovedBeforeItWasHiddenIsGoneAndSaysWhy) {
   EXPECT_EQ(world.objects[0].reason, "something stands before it in CAMERA; it moved when it was seen last");
 }
 
+TEST(Tracker, WhenACamerasResolutionChangesWhatStandsIsStillThereAndWhatIsTakenAwayIsGone) {
+  for (const double scale : {0.5, 2.0}) {
+    TrackedScene scene;
+    scene.show({{"can", on_table(-0.1, 0)}, {"mug", on_table(0.2, 0)}});
+    scene.frames(30);
+    scene.posed.clear();
+    EXPECT_EQ(scene.frame().objects.at(0).state, TrackState::kUnrecognised);
+    scene.camera = test::kSmall.scaled(scale);
+    const WorldObjects unseen = scene.frames(10);
+    ASSERT_EQ(unseen.objects.size(), 2U) << scale;
+    for (const TrackedObject& object : unseen.objects)
+      EXPECT_EQ(object.state, TrackState::kUnrecognised) << scale << ": " << object.reason;
+    scene.show({{"mug", on_table(0.2, 0)}});
+    const WorldObjects world = scene.frames(29);
+    ASSERT_EQ(world.objects.size(), 2U) << scale;
+    EXPECT_EQ(world.objects[0].track_id, 1);
+    EXPECT_EQ(world.objects[0].state, TrackState::kGone) << scale << ": " << world.objects[0].reason;
+    EXPECT_EQ(world.objects[1].track_id, 2);
+    EXPECT_EQ(world.objects[1].state, TrackState::kVisible);
+  }
+}
+
 TEST(Tracker, WhatIsOutOfViewIsKept) {
   TrackedScene scene;
   scene.show({{"can", on_table(0, 0)}});
