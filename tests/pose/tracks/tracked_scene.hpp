@@ -56,6 +56,15 @@ inline Eigen::Isometry3d on_table(double x, double y, double turn_rad = 0.0) {
   return Eigen::Translation3d(x, y, 0.06) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ());
 }
 
+/// Of a block that hides from the camera what stands in the middle of the table.
+inline Eigen::Isometry3d before_the_middle() {
+  return Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.22, 0.22));
+}
+
+inline double distance(const TrackedObject& object, const Eigen::Isometry3d& T) {
+  return (object.T_world_object.translation() - T.translation()).norm();
+}
+
 /// A world that is told to a tracker frame by frame.
 class TrackedScene {
  public:

@@ -8,23 +8,16 @@
 namespace houghstream::tracks {
 namespace {
 
+using test::before_the_middle;
 using test::block;
 using test::block_on_foot;
 using test::camera_in_front;
+using test::distance;
 using test::foot;
 using test::half_turn;
 using test::models_on_foot;
 using test::on_table;
 using test::TrackedScene;
-
-/// Between the camera and the middle of the table.
-Eigen::Isometry3d before_the_middle() {
-  return Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.22, 0.22));
-}
-
-double distance(const TrackedObject& object, const Eigen::Isometry3d& T) {
-  return (object.T_world_object.translation() - T.translation()).norm();
-}
 
 TEST(Tracker, AnObjectIsPublishedAfterAFewFramesAFalseOneOfOneFrameNever) {
   TrackedScene scene;
@@ -143,37 +136,6 @@ TEST(Tracker, WhatIsOutOfViewIsKept) {
   EXPECT_GT(world.objects[0].probability, 0.9F);
 }
 
-TEST(Tracker, WhatIsCarriedToAnotherPlaceKeepsItsNumber) {
-  TrackedScene scene;
-  scene.show({{"can", on_table(-0.2, 0)}, {"mug", on_table(0.25, 0.1)}});
-  scene.frames(60);
-  scene.show({{"mug", on_table(0.25, 0.1)}});
-  scene.frames(60);
-  scene.show({{"can", on_table(0.1, -0.1)}, {"mug", on_table(0.25, 0.1)}});
-  const WorldObjects world = scene.frames(15);
-  ASSERT_EQ(world.objects.size(), 2U);
-  EXPECT_EQ(world.objects[0].class_name, "can");
-  EXPECT_EQ(world.objects[0].track_id, 1);
-  EXPECT_LT(distance(world.objects[0], on_table(0.1, -0.1)), 0.001);
-}
-
-TEST(Tracker, OfTwoThatComeTogetherOneIsThatWhichHadGone) {
-  TrackedScene scene;
-  scene.show({{"can", on_table(-0.2, 0)}});
-  scene.frames(60);
-  scene.show({});
-  ASSERT_TRUE(scene.frames(120).objects.empty());
-  scene.show({{"can", on_table(0, 0)}, {"can", on_table(0.2, 0)}});
-  WorldObjects world;
-  for (int i = 0; i < 10; ++i) {
-    world = scene.frame();
-    EXPECT_NE(world.objects.size(), 1U) << i;  // both have been seen as often
-  }
-  ASSERT_EQ(world.objects.size(), 2U);
-  EXPECT_EQ(world.objects[0].track_id, 1);
-  EXPECT_EQ(world.objects[1].track_id, 2);
-}
-
 TEST(Tracker, APoseThatLooksTheSameIsOfTheSameObjectWhereverItsOriginIs) {
   TrackedScene scene;
   scene.tracker.set_models(models_on_foot());
@@ -212,24 +174,6 @@ TEST(Tracker, WhereAnotherClassIsRecognisedAnObjectGoesWhereverTheirOriginsAre) 
   EXPECT_EQ(world.objects[0].state, TrackState::kGone);
   EXPECT_NE(world.objects[0].reason.find("something else"), std::string::npos) << world.objects[0].reason;
   EXPECT_EQ(world.objects[1].class_name, "mug");
-}
-
-TEST(Tracker, TwoEqualOnesSideBySideKeepTheirNumbersWhileOneIsPushedPastTheOther) {
-  TrackedScene scene;
-  scene.show({{"can", on_table(-0.1, 0)}, {"can", on_table(0, 0)}});
-  const WorldObjects before = scene.frames(60);
-  ASSERT_EQ(before.objects.size(), 2U);
-  const std::int64_t left = distance(before.objects[0], on_table(-0.1, 0)) < 0.01 ? 1 : 2;
-  WorldObjects world;
-  for (int i = 0; i <= 60; ++i) {
-    const double along = -0.1 + 0.3 * i / 60.0;
-    scene.show({{"can", on_table(along, -0.09)}, {"can", on_table(0, 0)}});
-    world = scene.frame();
-  }
-  world = scene.frames(20);
-  ASSERT_EQ(world.objects.size(), 2U);
-  EXPECT_LT(distance(world.objects[static_cast<std::size_t>(left - 1)], on_table(0.2, -0.09)), 0.003);
-  EXPECT_LT(distance(world.objects[static_cast<std::size_t>(2 - left)], on_table(0, 0)), 0.003);
 }
 
 TEST(Tracker, WhatMovesIsFollowedWithItsVelocityAndStandsAgain) {
