@@ -12,7 +12,7 @@ import unittest
 from houghstream import detection_t, detections_t, teaching_t
 from houghstream.event_log import read_log, write_event
 from studies.encoded import utime_of
-from studies.teach.joined_log import FIRST_UTIME, frames_of, write_joined
+from studies.teach.joined_log import FIRST_UTIME, Camera, frames_of, write_joined
 from studies.teach.live_teaching import events, times_of
 from studies.teach.report import faults
 from studies.teach.taught_truth import in_taught_frame
@@ -133,7 +133,7 @@ class Parts(unittest.TestCase):
         one = self.write_log([(i, "OPENNI_FRAME", struct.pack(">qq", 7, i) + bytes([i])) for i in range(3)])
         frames = frames_of(one, "OPENNI_FRAME")
         joined = self.folder / "joined"
-        write_joined(joined, frames[:2], frames, 6, 30.0, "OPENNI_FRAME")
+        write_joined(joined, frames[:2], frames, 6, Camera("OPENNI_FRAME", 30.0))
         found = list(read_log(joined))
         self.assertEqual([data[16] for _, _, data in found], [0, 1, 0, 1, 2, 1, 0, 1])
         utimes = [utime_of(data) for _, _, data in found]

@@ -15,7 +15,7 @@ from houghstream import detections_t, teaching_t
 from houghstream.event_log import DamagedLog, read_log
 from studies.measured import read_csv, read_json, threads
 from studies.stream import ProcessFailed, Processes, Stream
-from studies.teach.joined_log import FIRST_UTIME, frames_of, write_joined
+from studies.teach.joined_log import FIRST_UTIME, Camera, frames_of, write_joined
 
 CHANNEL, RATE_HZ = "OPENNI_FRAME", 30.0
 LONGEST_S = 180.0  # after the take
@@ -128,7 +128,7 @@ def main():
     joined = options.out / "joined.lcmlog"
     take = frames_of(options.take, CHANNEL)
     options.take_seconds = len(take) / RATE_HZ
-    write_joined(joined, take, frames_of(options.after, CHANNEL), round(LONGEST_S * RATE_HZ), RATE_HZ, CHANNEL)
+    write_joined(joined, take, frames_of(options.after, CHANNEL), round(LONGEST_S * RATE_HZ), Camera(CHANNEL, RATE_HZ))
     try:
         teach(options, joined)
     except ProcessFailed as error:
