@@ -1,8 +1,10 @@
-"""Finds what a newcomer would trip over: crowded folders, folders that do not say what they are, a long front page, scratch memory without an owner.
+"""Finds what a newcomer would trip over: crowded folders, folders that do not say what they are, a long front page, scratch memory without an owner,
+Python functions of many parameters (those of C++ are clang-tidy's).
 
 Prints one line per fault and exits with 1 when there is any. Usage: house_rules.py REPOSITORY
 """
 
+import ast
 import collections
 import pathlib
 import re
@@ -11,6 +13,7 @@ import sys
 
 MOST_FILES = 25  # side by side; more only where the folder's README says why ("More than 25 files")
 MOST_README_LINES = 200
+MOST_PARAMETERS = 5  # as readability-function-size in .clang-tidy
 FOLDERS_WITH_README = ("lcmtypes", "pipeline", "drivers", "detector", "pose", "tools", "tests", "tools/studies")
 TOP = {"CMakeLists.txt", "README.md", "lcmtypes", "pipeline", "drivers", "detector", "pose", "tools", "tests"}
 COMMIT_HASH = re.compile(r"\b(?=[0-9a-f]*[0-9])(?=[0-9a-f]*[a-f])[0-9a-f]{7}\b")
@@ -58,9 +61,26 @@ def text_faults(root, files):
                 yield f"{name}:{number}: scratch memory that no workspace owns"
 
 
+def parameters(function):
+    """Names, but for that of the object or class itself."""
+    found = function.args
+    named = [*found.posonlyargs, *found.args, *found.kwonlyargs, *filter(None, (found.vararg, found.kwarg))]
+    return [one.arg for one in named if one.arg not in ("self", "cls")]
+
+
+def python_faults(root, files):
+    for name in (name for name in files if name.endswith(".py")):
+        for node in ast.walk(ast.parse((root / name).read_text(), name)):
+            if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                continue
+            count = len(parameters(node))
+            if count > MOST_PARAMETERS:
+                yield f"{name}:{node.lineno}: {node.name} takes {count} parameters, expected at most {MOST_PARAMETERS}"
+
+
 def find_faults(root):
     files = tracked_files(root)
-    return [*folder_faults(root, files), *text_faults(root, files)]
+    return [*folder_faults(root, files), *text_faults(root, files), *python_faults(root, files)]
 
 
 def main():

@@ -19,6 +19,7 @@ WRONG = {
     "a stranger at the top": {"notes.txt": ""},
     "memory without an owner": {"pose/region.cpp": "static thread_local int x = 0;\n"},
     "something unfinished": {"tools/view/viewer.cpp": "// TO" "DO: the rest\n"},
+    "a function of many parameters": {"tools/studies/soak/relay.py": "def pass_on(a, b, c, d, e=1, *, f=2):\n    return a\n"},
 }
 
 
@@ -35,6 +36,11 @@ class HouseRules(unittest.TestCase):
         for what, extra in WRONG.items():
             with self.subTest(what):
                 self.assertEqual(len(faults_with(extra)), 1, faults_with(extra))
+
+    def test_the_object_itself_is_no_parameter(self):
+        for first in ("self", "cls"):
+            method = f"class Relay:\n    def pass_on({first}, a, b, c, d, *e):\n        return a\n"
+            self.assertEqual(faults_with({"tools/studies/soak/relay.py": method}), [])
 
     def test_a_folder_without_readme_is_named(self):
         self.assertEqual(len(faults_with({}, left_out=["pose/README.md"])), 1)
