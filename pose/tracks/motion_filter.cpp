@@ -1,6 +1,8 @@
 #include "pose/tracks/motion_filter.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/types/frame_id.hpp"
 
@@ -36,6 +38,14 @@ Eigen::Isometry3d interpolated(const Eigen::Isometry3d& T_first, const Eigen::Is
 MotionFilter::MotionFilter(const PoseMeasurement& first, const MotionSettings& settings)
     : settings_(settings), utime_(first.utime), measured_utime_(first.utime), T_(first.T_world_object) {
   P_.topLeftCorner<6, 6>() = first.covariance;
+  common_.topRows<6>() = common_error(first);
+}
+
+/// A root of the common part of its covariance: the symmetric one, so that it turns with the line of sight.
+Covariance6 MotionFilter::common_error(const PoseMeasurement& measured) const {
+  const Eigen::SelfAdjointEigenSolver<Covariance6> solver(settings_.common_share * measured.covariance);
+  const Vector6 deviations = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return solver.eigenvectors() * deviations.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 void MotionFilter::predict(std::int64_t utime) {
@@ -52,6 +62,7 @@ void MotionFilter::predict(std::int64_t utime) {
   Matrix12 F = Matrix12::Identity();
   F.topRightCorner<6, 6>().diagonal().setConstant(dt);
   P_ = F * P_ * F.transpose();
+  common_ = F * common_;
   const Vector6 density = both(settings_.acceleration, settings_.angular_acceleration);
   P_.diagonal().head<6>() += dt * dt * dt / 3.0 * density;
   P_.topRightCorner<6, 6>().diagonal() += dt * dt / 2.0 * density;
@@ -62,9 +73,11 @@ void MotionFilter::predict(std::int64_t utime) {
 void MotionFilter::update(const PoseMeasurement& measured) {
   measured_utime_ = std::max(measured_utime_, measured.utime);
   const Covariance6 S = P_.topLeftCorner<6, 6>() + measured.covariance;
-  const Eigen::Matrix<double, 12, 6> gain = P_.leftCols<6>() * S.inverse();
+  const Matrix12x6 gain = P_.leftCols<6>() * S.inverse();
   const Eigen::Matrix<double, 12, 1> step = gain * difference(measured.T_world_object, T_);
   T_ = moved(T_, step.head<6>());
+  const Covariance6 unlike = common_error(measured) - common_.topRows<6>();
+  common_ += gain * unlike;
   P_ -= gain * P_.topRows<6>();
   P_ = 0.5 * (P_ + P_.transpose()).eval();
   if (moving_) velocity_ += step.tail<6>();
@@ -80,6 +93,8 @@ void MotionFilter::start_moving(const PoseMeasurement& measured, const Vector6& 
   velocity_ = velocity;
   P_.setZero();
   P_.topLeftCorner<6, 6>() = measured.covariance;
+  common_.setZero();
+  common_.topRows<6>() = common_error(measured);
   P_.diagonal().tail<6>() = both(kVelocity * kVelocity, kAngularVelocity * kAngularVelocity);
 }
 
@@ -89,6 +104,7 @@ void MotionFilter::stop() {
   const Covariance6 pose = P_.topLeftCorner<6, 6>();
   P_.setZero();
   P_.topLeftCorner<6, 6>() = pose;
+  common_.bottomRows<6>().setZero();
 }
 
 }  // namespace houghstream::tracks
