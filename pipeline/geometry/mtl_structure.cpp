@@ -68,7 +68,7 @@ void check_mtl_line(const Words& words, bool& has_material, const std::string& w
 /// What the library looks for: what stands behind the word in its line, and where that is not there, the OBJ's own
 /// name.
 std::vector<std::filesystem::path> material_files(std::string_view obj, const std::filesystem::path& file) {
-  const std::string folder = file.parent_path().string();
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() + "/" : std::string();
   std::vector<std::filesystem::path> found;
   Lines lines(obj);
   while (const std::optional<std::string_view> line = lines.next()) {
@@ -80,7 +80,7 @@ std::vector<std::filesystem::path> material_files(std::string_view obj, const st
     if (words.size() < 2) continue;
     std::string name(words[1].data(), line->data() + line->size());
     name = name.substr(0, name.find('\f'));
-    found.emplace_back(folder.empty() ? name : folder + "/" + name);  // also of a name that begins with /
+    found.emplace_back(folder + name);  // also of a name that begins with /
   }
   return found;
 }
