@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "pipeline/process/byte_count.hpp"
+
 namespace houghstream {
 
 /// Holds the newest item of each channel between two threads. LCM's own queue would keep the oldest instead, and a slow
@@ -28,11 +30,7 @@ class NewestOfEach {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       if (is_full_for(channel, bytes)) return true;
-      const auto known = items_.find(channel);
-      is_first = known == items_.end();
-      if (!is_first) bytes_ -= known->second.bytes;
-      bytes_ += bytes;
-      items_.insert_or_assign(channel, Waiting{std::move(item), bytes});
+      is_first = items_.insert_or_assign(channel, Waiting{std::move(item), bytes_.hold(bytes)}).second;
       if (is_first) turns_.push_back(channel);
     }
     filled_.notify_one();
@@ -43,8 +41,8 @@ class NewestOfEach {
   bool put_late(const std::string& channel, T item, std::size_t bytes = 0) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (is_full_for(channel, bytes) || !items_.emplace(channel, Waiting{std::move(item), bytes}).second) return true;
-      bytes_ += bytes;
+      if (is_full_for(channel, bytes)) return true;
+      if (!items_.emplace(channel, Waiting{std::move(item), bytes_.hold(bytes)}).second) return true;
       turns_.push_back(channel);
     }
     filled_.notify_one();
@@ -57,7 +55,6 @@ class NewestOfEach {
     if (!filled_.wait_for(lock, timeout, [this] { return !turns_.empty(); })) return std::nullopt;
     Waiting taken = std::move(items_.extract(turns_.front()).mapped());
     turns_.pop_front();
-    bytes_ -= taken.bytes;
     return std::move(taken.item);
   }
 
@@ -70,7 +67,7 @@ class NewestOfEach {
  private:
   struct Waiting {
     T item;
-    std::size_t bytes = 0;
+    ByteCount::Held held;
   };
 
   bool is_full_for(const std::string& channel, std::size_t bytes) const {
@@ -78,13 +75,13 @@ class NewestOfEach {
     const bool is_known = known != items_.end();
     if (!is_known && items_.size() >= kChannels) return true;
     const std::size_t others = items_.size() - (is_known ? 1 : 0);
-    return others > 0 && bytes_ - (is_known ? known->second.bytes : 0) + bytes > kBytes;
+    return others > 0 && bytes_.total() - (is_known ? known->second.held.bytes() : 0) + bytes > kBytes;
   }
 
   mutable std::mutex mutex_;
   std::condition_variable filled_;
+  ByteCount bytes_;
   std::map<std::string, Waiting> items_;
-  std::size_t bytes_ = 0;
   std::deque<std::string> turns_;  // channels with an item, the longest waiting first
 };
 

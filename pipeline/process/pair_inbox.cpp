@@ -21,9 +21,9 @@ void PairInbox::put_frame(const FrameId& id, SharedBytes bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     if (camera.find_frame(id) != nullptr) detectors_.forget(id);
-    frame_bytes_ += bytes->size();
-    camera.frames.push_back({id, std::move(bytes)});
-    if (camera.frames.size() > kHistory) forget_oldest(camera);
+    ByteCount::Held held = frame_bytes_.hold(bytes->size());
+    camera.frames.push_back({{id, std::move(bytes)}, std::move(held)});
+    if (camera.frames.size() > kHistory) camera.frames.pop_front();
     keep_within_bytes();
     ++camera.frames_seen;
     camera.fresh = newest_first_ && ahead_;
@@ -39,8 +39,9 @@ void PairInbox::put_detections(const FrameId& id, std::vector<std::uint8_t> byte
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
     detectors_.note_result(id);
-    waiting_bytes_ += bytes.size();
-    camera.waiting.push_back({id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen});
+    ByteCount::Held held = waiting_bytes_.hold(bytes.size());
+    camera.waiting.push_back(
+        {id, std::move(bytes), std::chrono::steady_clock::now(), ++arrivals_, camera.frames_seen, std::move(held)});
     drop_hopeless(camera);
     keep_waiting_within_bytes();
   }
@@ -53,25 +54,20 @@ PairInbox::Camera& PairInbox::camera_of(const std::string& channel) {
   return cameras_[channel];
 }
 
-void PairInbox::forget_oldest(Camera& camera) {
-  frame_bytes_ -= camera.frames.front().bytes->size();
-  camera.frames.pop_front();
-}
-
 // The newest frame of each camera stays.
 void PairInbox::keep_within_bytes() {
-  while (frame_bytes_ > kHistoryBytes) {
+  while (frame_bytes_.total() > kHistoryBytes) {
     Camera* most = nullptr;
     for (auto& [channel, camera] : cameras_) {
       if (most == nullptr || camera.frames.size() > most->frames.size()) most = &camera;
     }
     if (most->frames.size() < 2) return;
-    forget_oldest(*most);
+    most->frames.pop_front();
   }
 }
 
 void PairInbox::keep_waiting_within_bytes() {
-  while (waiting_bytes_ > kAllWaitingBytes) {
+  while (waiting_bytes_.total() > kAllWaitingBytes) {
     const auto most = std::max_element(cameras_.begin(), cameras_.end(), [](const auto& a, const auto& b) {
       return a.second.waiting.size() < b.second.waiting.size();
     });
@@ -102,7 +98,7 @@ void PairInbox::wake() {
 std::optional<ArrivedFrame> PairInbox::take_fresh() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (auto& [channel, camera] : cameras_) {
-    if (std::exchange(camera.fresh, false)) return camera.frames.back();
+    if (std::exchange(camera.fresh, false)) return camera.frames.back().frame;
   }
   return std::nullopt;
 }
@@ -126,13 +122,13 @@ void PairInbox::give_up_first(Camera& camera) {
   } else {
     ++dropped_.skipped;
   }
-  waiting_bytes_ -= camera.waiting.front().bytes.size();
   camera.waiting.pop_front();
 }
 
 const ArrivedFrame* PairInbox::Camera::find_frame(const FrameId& id) const {
-  const auto found = std::find_if(frames.rbegin(), frames.rend(), [&](const ArrivedFrame& f) { return f.id == id; });
-  return found == frames.rend() ? nullptr : &*found;
+  const auto found =
+      std::find_if(frames.rbegin(), frames.rend(), [&](const Kept& kept) { return kept.frame.id == id; });
+  return found == frames.rend() ? nullptr : &found->frame;
 }
 
 std::optional<std::size_t> PairInbox::Camera::first_complete() const {
@@ -170,7 +166,6 @@ void PairInbox::pass_over_older(const std::string& channel, Camera& camera) {
   }
   if (left > 0) return;
   dropped_.skipped += oldest - camera.waiting.begin();
-  for (auto it = camera.waiting.begin(); it != oldest; ++it) waiting_bytes_ -= it->bytes.size();
   camera.waiting.erase(camera.waiting.begin(), oldest);
 }
 
@@ -185,8 +180,7 @@ void PairInbox::drop_hopeless(Camera& camera) {
 
 PairedMessages PairInbox::take_pair(Camera& camera) {
   const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
-  if (chosen->id == camera.frames.back().id) camera.fresh = false;
-  waiting_bytes_ -= chosen->bytes.size();
+  if (chosen->id == camera.frames.back().frame.id) camera.fresh = false;
   PairedMessages pair{chosen->id, camera.find_frame(chosen->id)->bytes, std::move(chosen->bytes), chosen->arrival};
   camera.turn = ++turns_;
   camera.waiting.erase(chosen);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pipeline/messages/wire_reader.hpp"
+#include "pipeline/process/byte_count.hpp"
 #include "pipeline/process/detector_count.hpp"
 #include "pipeline/types/frame_id.hpp"
 
@@ -89,16 +90,21 @@ class PairInbox {
   void give_up_waiting();
 
  private:
+  struct Kept {
+    ArrivedFrame frame;
+    ByteCount::Held held;
+  };
   struct Waiting {
     FrameId id;
     std::vector<std::uint8_t> bytes;
     std::chrono::steady_clock::time_point arrival;
     std::int64_t number = 0;         // in the order of arrival, of all cameras
     std::int64_t frames_before = 0;  // frames of the camera that had arrived when it did
+    ByteCount::Held held;
   };
   struct Camera {
-    std::deque<ArrivedFrame> frames;  // the last ones
-    std::deque<Waiting> waiting;      // detections in the order of arrival
+    std::deque<Kept> frames;      // the last ones
+    std::deque<Waiting> waiting;  // detections in the order of arrival
     std::int64_t frames_seen = 0;
     bool fresh = false;     // the last frame may be taken ahead
     std::int64_t turn = 0;  // when it was served last
@@ -108,7 +114,6 @@ class PairInbox {
   };
 
   Camera& camera_of(const std::string& channel);
-  void forget_oldest(Camera& camera);
   void keep_within_bytes();
   void keep_waiting_within_bytes();
   Camera* next_camera();
@@ -122,10 +127,10 @@ class PairInbox {
   bool ahead_;
   std::mutex mutex_;
   std::condition_variable changed_;
+  ByteCount frame_bytes_;                  // of all cameras
+  ByteCount waiting_bytes_;                // of their detections
   std::map<std::string, Camera> cameras_;  // by channel
   DetectorCount detectors_;
-  std::size_t frame_bytes_ = 0;    // of all cameras
-  std::size_t waiting_bytes_ = 0;  // of their detections
   std::int64_t arrivals_ = 0;
   std::int64_t turns_ = 0;
   bool woken_ = false;

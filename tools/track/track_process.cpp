@@ -11,6 +11,7 @@
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
+#include "pipeline/process/byte_count.hpp"
 #include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/text/limited_lines.hpp"
@@ -33,6 +34,7 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
 struct Waiting {
   PairedMessages messages;
   std::int64_t since_us = 0;  ///< on the bus' clock
+  ByteCount::Held held;       ///< of the frame
 };
 
 /// Processes that find objects, and those of them that have fallen silent. May be used from any thread.
@@ -183,7 +185,7 @@ class TrackProcess {
   bool step(milliseconds timeout) {
     constexpr milliseconds kPatience(3);  // how long the end of a frame's waiting may go unnoticed
     std::optional<PairedMessages> pair = inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kPatience));
-    if (pair) keep_waiting({std::move(*pair), now_us()});
+    if (pair) keep_waiting(*std::move(pair));
     count_dropped();
     tell_silence();
     bool worked = false;
@@ -195,7 +197,6 @@ class TrackProcess {
       }
       const Waiting now = std::move(*it);
       it = waiting_.erase(it);
-      waiting_bytes_ -= now.messages.frame->size();
       worked = true;
       if (!place.T_world_camera) {
         refuse(now.messages.id, place.reason);
@@ -208,13 +209,12 @@ class TrackProcess {
   }
 
   /// A copy of its frame goes with each pose, and poses may be sent without end.
-  void keep_waiting(Waiting waiting) {
+  void keep_waiting(PairedMessages messages) {
     constexpr std::size_t kMost = 1024;
-    waiting_bytes_ += waiting.messages.frame->size();
-    waiting_.push_back(std::move(waiting));
-    while (waiting_.size() > 1 && (waiting_.size() > kMost || waiting_bytes_ > PairInbox::kHistoryBytes)) {
+    ByteCount::Held held = waiting_bytes_.hold(messages.frame->size());
+    waiting_.push_back({std::move(messages), now_us(), std::move(held)});
+    while (waiting_.size() > 1 && (waiting_.size() > kMost || waiting_bytes_.total() > PairInbox::kHistoryBytes)) {
       refuse(waiting_.front().messages.id, "too many wait for the transforms of their cameras");
-      waiting_bytes_ -= waiting_.front().messages.frame->size();
       waiting_.pop_front();
     }
   }
@@ -359,8 +359,8 @@ class TrackProcess {
   LimitedLines lines_;     // of contradictions
   LimitedLines silences_;  // of processes
   std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
+  ByteCount waiting_bytes_;  // of the frames of those that wait
   std::deque<Waiting> waiting_;
-  std::size_t waiting_bytes_ = 0;  // of their frames
   std::string world_;
   std::string alone_;               // the camera whose frame is the world, where no place is known
   std::int64_t without_frame_ = 0;  // poses

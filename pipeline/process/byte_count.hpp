@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+namespace houghstream {
+
+/// Bytes that the items of one queue, or of several, hold in all. Each item keeps the Held that hold() has given for
+/// it: however an item goes, taken, dropped or replaced, its bytes are given back with that. It only counts; which item
+/// goes where they are too many is for the queue to say. Not thread-safe: what is held is moved and destroyed under the
+/// queue's lock as well. Must outlive what is held of it, and so is declared before the items.
+class ByteCount {
+ public:
+  /// The bytes of one item, which count for as long as this lives.
+  class Held {
+   public:
+    Held() = default;
+    ~Held() {
+      if (count_ != nullptr) count_->total_ -= bytes_;
+    }
+    Held(Held&& other) noexcept : count_(std::exchange(other.count_, nullptr)), bytes_(other.bytes_) {}
+    Held& operator=(Held&& other) noexcept {
+      Held mine(std::move(other));
+      std::swap(count_, mine.count_);
+      std::swap(bytes_, mine.bytes_);
+      return *this;
+    }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+
+    /// Zero where nothing is held: by default, and after a move.
+    std::size_t bytes() const { return count_ == nullptr ? 0 : bytes_; }
+
+   private:
+    friend class ByteCount;
+    Held(ByteCount& count, std::size_t bytes) : count_(&count), bytes_(bytes) { count.total_ += bytes; }
+
+    ByteCount* count_ = nullptr;
+    std::size_t bytes_ = 0;
+  };
+
+  ByteCount() = default;
+  ByteCount(const ByteCount&) = delete;
+  ByteCount& operator=(const ByteCount&) = delete;
+
+  [[nodiscard]] Held hold(std::size_t bytes) { return {*this, bytes}; }
+  std::size_t total() const { return total_; }
+
+ private:
+  std::size_t total_ = 0;
+};
+
+}  // namespace houghstream
