@@ -15,7 +15,9 @@
 #include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/text/limited_lines.hpp"
-#include "pose/tracks/camera_places.hpp"
+#include "tools/track/recent_detections.hpp"
+#include "tools/track/silence.hpp"
+#include "tools/track/world_frame.hpp"
 
 namespace houghstream::track {
 namespace {
@@ -37,41 +39,6 @@ struct Waiting {
   ByteCount::Held held;       ///< of the frame
 };
 
-/// Processes that find objects, and those of them that have fallen silent. May be used from any thread.
-class Silence {
- public:
-  /// What is no status is somebody else's.
-  void hear(const Arrival& arrival) {
-    try {
-      const auto status = decode_message<status_t>(arrival.bytes);
-      if (status.process != "hs-detect" && status.process != "hs-pose") return;
-      const std::string name = fmt::format("{} (process {})", status.process, status.pid);
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (last_.size() < kProcesses || last_.count(name) > 0) last_[name] = arrival.event_us;
-    } catch (const InputError&) {
-    }
-  }
-
-  /// Names of those that have been silent for too long since they were asked for last; each is told once.
-  std::vector<std::string> fallen_silent(std::int64_t now_us) {
-    constexpr std::int64_t kSilentUs = 3000000;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    std::vector<std::string> out;
-    for (auto it = last_.begin(); it != last_.end();) {
-      const bool silent = now_us - it->second > kSilentUs;
-      if (silent) out.push_back(it->first);
-      it = silent ? last_.erase(it) : std::next(it);
-    }
-    return out;
-  }
-
- private:
-  static constexpr std::size_t kProcesses = 64;  // a sender of rubbish may make up numbers without end
-
-  std::mutex mutex_;
-  std::map<std::string, std::int64_t> last_;
-};
-
 class TrackProcess {
  public:
   TrackProcess(LcmBus& bus, const TrackProcessOptions& options, const CurrentModels& models)
@@ -83,10 +50,9 @@ class TrackProcess {
         inbox_(false),
         used_models_(models()),
         tracker_(*used_models_, {}),
-        output_(bus, options.output) {
+        output_(bus, options.output),
+        world_(options.places) {
     output_.set_models(*used_models_);
-    for (const auto& [camera, T_world_camera] : options.places)
-      places_.fix(channel::camera_name(camera), T_world_camera);
   }
 
   tracks::ExtrinsicCheck run() {
@@ -138,15 +104,12 @@ class TrackProcess {
   }
 
   void receive_detections(const Arrival& arrival) {
-    constexpr std::size_t kKept = 64;
     note_event(arrival);
     try {
       PairInbox::require_size(arrival.bytes.size);
       Detections detections = detections_from_message(decode_message<detections_t>(arrival.bytes));
       if (!channels_.matches(detections.frame.channel)) return;
-      const std::lock_guard<std::mutex> lock(mutex_);
-      detections_.push_back(std::move(detections));
-      if (detections_.size() > kKept) detections_.pop_front();
+      detections_.add(std::move(detections));
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
     }
@@ -174,8 +137,7 @@ class TrackProcess {
     try {
       const auto message = decode_message<rigid_transform_t>(arrival.bytes);
       const Eigen::Isometry3d T_world_camera = transform_from_message(message);
-      const std::lock_guard<std::mutex> lock(mutex_);
-      places_.add(arrival.channel.substr(0, arrival.channel.size() - kSuffix), message.utime, T_world_camera);
+      world_.add(arrival.channel.substr(0, arrival.channel.size() - kSuffix), message.utime, T_world_camera);
       if (frames_wait_) inbox_.wake();
     } catch (const InputError& error) {
       status_.note_bad_message(fmt::format("message on {}: {}", arrival.channel, error.what()));
@@ -187,10 +149,10 @@ class TrackProcess {
     std::optional<PairedMessages> pair = inbox_.take(waiting_.empty() ? timeout : std::min(timeout, kPatience));
     if (pair) keep_waiting(*std::move(pair));
     count_dropped();
-    tell_silence();
+    if (!bus_.is_log()) silence_->tell(now_us());
     bool worked = false;
     for (auto it = waiting_.begin(); it != waiting_.end();) {
-      const tracks::CameraPlace place = place_of(*it);
+      const tracks::CameraPlace place = world_.place_of(it->messages.id, is_patient(*it));
       if (!place.T_world_camera && place.may_come) {
         ++it;
         continue;
@@ -201,6 +163,7 @@ class TrackProcess {
       if (!place.T_world_camera) {
         refuse(now.messages.id, place.reason);
       } else {
+        if (world_.take_begun()) tracker_.begin_world();
         work_on(now, *place.T_world_camera);
       }
     }
@@ -219,33 +182,8 @@ class TrackProcess {
     }
   }
 
-  /// Where the camera was; `may_come` only while it is worth waiting.
-  tracks::CameraPlace place_of(const Waiting& waiting) {
-    const FrameId& frame = waiting.messages.id;
-    const bool patient = static_cast<double>(now_us() - waiting.since_us) * 1e-6 < options_.wait_s;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    tracks::CameraPlace place = places_.at(channel::camera_name(frame.channel), frame.utime);
-    place.may_come = place.may_come && patient && (alone_.empty() || places_.any());
-    if (place.T_world_camera || place.may_come) return begin_world("WORLD", place);
-    if (places_.any()) return place;
-    if (!alone_.empty() && alone_ != frame.channel)
-      return {
-          std::nullopt, false,
-          "where its camera is is not known, expected --cameras, --camera-pose or " + channel::to_world(frame.channel)};
-    if (alone_.empty())
-      log_info("where {} is is not known: the world is its own frame, and objects move when it does", frame.channel);
-    alone_ = frame.channel;
-    return begin_world(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
-  }
-
-  tracks::CameraPlace begin_world(const std::string& name, const tracks::CameraPlace& place) {
-    if (!place.T_world_camera || world_ == name) return place;
-    if (!world_.empty()) {
-      log_warning("the world is {} from here on, no longer {}: a new one begins", name, world_);
-      tracker_.begin_world();
-    }
-    world_ = name;
-    return place;
+  bool is_patient(const Waiting& waiting) const {
+    return static_cast<double>(now_us() - waiting.since_us) * 1e-6 < options_.wait_s;
   }
 
   void work_on(const Waiting& waiting, const Eigen::Isometry3d& T_world_camera) {
@@ -269,7 +207,7 @@ class TrackProcess {
       tracker_.set_models(*models);
       output_.set_models(*models);
     }
-    const Detections detections = detections_of(poses.frame);
+    const Detections detections = detections_.of(poses.frame);
     std::optional<RgbdFrame> image;
     const auto decode = [&]() -> const RgbdFrame* {
       if (!image) {
@@ -290,7 +228,7 @@ class TrackProcess {
       status_.note_bad_message(fmt::format("frame {}: no room for {} objects more, expected at most {} in all",
                                            to_string(poses.frame), tracker_.refused(),
                                            tracks::TrackerSettings().most_objects));
-    objects->world = world_;
+    objects->world = world_.name();
     objects->stages.insert(objects->stages.end(), clock.times().begin(), clock.times().end());
     output_.publish(*objects);
     return true;
@@ -302,18 +240,6 @@ class TrackProcess {
     return found == newest_.end() ? std::nullopt : std::optional<std::int64_t>(found->second);
   }
 
-  /// All that any detector found in the frame.
-  Detections detections_of(const FrameId& frame) {
-    Detections all;
-    all.frame = frame;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (const Detections& some : detections_) {
-      if (some.frame == frame)
-        all.detections.insert(all.detections.end(), some.detections.begin(), some.detections.end());
-    }
-    return all;
-  }
-
   void refuse(const FrameId& frame, const std::string& reason) {
     status_.count_refused(fmt::format("poses of frame {}: {}", to_string(frame), reason), "place");
   }
@@ -323,15 +249,6 @@ class TrackProcess {
     status_.count_skipped(dropped.skipped);
     without_frame_ += static_cast<std::int64_t>(dropped.without_frame.size());
     for (const FrameId& frame : dropped.without_frame) refuse(frame, "the frame itself has not come");
-  }
-
-  void tell_silence() {
-    if (bus_.is_log()) return;
-    for (const std::string& name : silence_->fallen_silent(now_us())) {
-      const std::string line = name + " has fallen silent: what it alone finds is not seen any more";
-      const auto admitted = silences_.admit(name, line, std::chrono::steady_clock::now());
-      if (admitted) log_warning("{}", *admitted);
-    }
   }
 
   void tell_contradictions() {
@@ -355,21 +272,18 @@ class TrackProcess {
   std::shared_ptr<const tracks::TrackModels> used_models_;
   tracks::Tracker tracker_;
   WorldOutput output_;
+  WorldFrame world_;
   tracks::ExtrinsicCheck check_;
-  LimitedLines lines_;     // of contradictions
-  LimitedLines silences_;  // of processes
+  LimitedLines lines_;  // of contradictions
   std::shared_ptr<Silence> silence_ = std::make_shared<Silence>();
   ByteCount waiting_bytes_;  // of the frames of those that wait
   std::deque<Waiting> waiting_;
-  std::string world_;
-  std::string alone_;               // the camera whose frame is the world, where no place is known
   std::int64_t without_frame_ = 0;  // poses
+  RecentDetections detections_;
   // What the receiving thread writes.
   mutable std::mutex mutex_;
   std::int64_t event_us_ = 0;
-  std::deque<Detections> detections_;
   std::map<std::string, std::int64_t> newest_;  // utimes of the frames that came last, by channel
-  tracks::CameraPlaces places_;
   std::atomic<std::int64_t> poses_{0};
   std::atomic<bool> frames_wait_{false};  // for transforms
 };

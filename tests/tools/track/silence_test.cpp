@@ -1,0 +1,41 @@
+#include "tools/track/silence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <houghstream/status_t.hpp>
+
+#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/wire_check.hpp"
+
+namespace houghstream::track {
+namespace {
+
+void hear_of(Silence& silence, const std::string& process, std::int64_t event_us) {
+  status_t status{};
+  status.process = process;
+  status.pid = 7;
+  const std::vector<std::uint8_t> bytes = encode_message(status);
+  silence.hear({channel::kStatus, {bytes.data(), bytes.size()}, {}, event_us});
+}
+
+TEST(Silence, IsToldOnceOfWhoFindsObjects) {
+  Silence silence;
+  hear_of(silence, "hs-detect", 1000000);
+  hear_of(silence, "hs-pose", 3000000);
+  hear_of(silence, "hs-view", 1000000);
+  EXPECT_TRUE(silence.fallen_silent(4000000).empty());
+  EXPECT_EQ(silence.fallen_silent(4000001), std::vector<std::string>{"hs-detect (process 7)"});
+  EXPECT_TRUE(silence.fallen_silent(4000001).empty());
+  hear_of(silence, "hs-detect", 5000000);
+  EXPECT_EQ(silence.fallen_silent(9000000).size(), 2U);
+}
+
+TEST(Silence, HearsNothingOfWhatIsNoStatus) {
+  Silence silence;
+  const std::vector<std::uint8_t> rubbish(100, 1);
+  silence.hear({channel::kStatus, {rubbish.data(), rubbish.size()}, {}, 1});
+  EXPECT_TRUE(silence.fallen_silent(9000000).empty());
+}
+
+}  // namespace
+}  // namespace houghstream::track

@@ -1,0 +1,45 @@
+#include "tools/track/world_frame.hpp"
+
+#include <optional>
+
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/bus/channels.hpp"
+
+namespace houghstream::track {
+
+WorldFrame::WorldFrame(const std::map<std::string, Eigen::Isometry3d>& fixed) {
+  for (const auto& [camera, T_world_camera] : fixed) places_.fix(channel::camera_name(camera), T_world_camera);
+}
+
+void WorldFrame::add(const std::string& camera, std::int64_t utime, const Eigen::Isometry3d& T_world_camera) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  places_.add(camera, utime, T_world_camera);
+}
+
+tracks::CameraPlace WorldFrame::place_of(const FrameId& frame, bool patient) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  tracks::CameraPlace place = places_.at(channel::camera_name(frame.channel), frame.utime);
+  place.may_come = place.may_come && patient && (alone_.empty() || places_.any());
+  if (place.T_world_camera || place.may_come) return begin("WORLD", place);
+  if (places_.any()) return place;
+  if (!alone_.empty() && alone_ != frame.channel)
+    return {
+        std::nullopt, false,
+        "where its camera is is not known, expected --cameras, --camera-pose or " + channel::to_world(frame.channel)};
+  if (alone_.empty())
+    log_info("where {} is is not known: the world is its own frame, and objects move when it does", frame.channel);
+  alone_ = frame.channel;
+  return begin(frame.channel, {Eigen::Isometry3d::Identity(), false, ""});
+}
+
+tracks::CameraPlace WorldFrame::begin(const std::string& world, const tracks::CameraPlace& place) {
+  if (!place.T_world_camera || name_ == world) return place;
+  if (!name_.empty()) {
+    log_warning("the world is {} from here on, no longer {}: a new one begins", world, name_);
+    begun_ = true;
+  }
+  name_ = world;
+  return place;
+}
+
+}  // namespace houghstream::track
