@@ -15,6 +15,7 @@
 #include "pose/reconstruction/take_merging.hpp"
 #include "tools/teach/mesh_checks.hpp"
 #include "tools/teach/show/camera_take.hpp"
+#include "tools/teach/show/kept_showing.hpp"
 #include "tools/teach/show/show_report.hpp"
 #include "tools/teach/show/show_sources.hpp"
 #include "tools/teach/show/turntable_videos.hpp"

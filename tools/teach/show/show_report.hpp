@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,16 +37,16 @@ Verdict judge(const Shown& shown);
 /// Second of the take at which a frame was taken.
 double second_of(const reconstruction::Take& take, int frame);
 
+/// Frames of the take in which the camera's place is known.
+int tracked_frames(const reconstruction::Take& take);
+
+/// From which directions some take shows the object.
+reconstruction::SeenDirections seen_by_all(const Shown& shown);
+
+/// By how much a turn missed its beginning.
+double degrees_of(const reconstruction::LoopGap& gap);
+
 /// The verdict and its figures in words, a few lines.
 std::string describe(const Shown& shown, const Verdict& verdict);
-
-/// Throws InputError where a folder holds something else than what was kept of an earlier showing, and would not be
-/// replaced, or could not be written.
-void require_keepable(const std::filesystem::path& folder);
-
-/// What was asked to be kept, in a folder that appears as a whole: model.ply, views/ (BOP: the keyframes with poses and
-/// masks), contact_sheet.jpg, chosen.png, outlines/, camera_poses.csv, report.json and report.html. One of an earlier
-/// time is replaced, anything else is not. Throws InputError where it cannot be written.
-void keep_shown(const Shown& shown, const Verdict& verdict, const std::filesystem::path& folder);
 
 }  // namespace houghstream::teach
