@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <opencv2/imgproc.hpp>
 
 #include "drivers/store/object_store.hpp"
 #include "drivers/store/store_build.hpp"
@@ -13,11 +12,12 @@
 #include "pose/fusion/grid_surface.hpp"
 #include "pose/reconstruction/object_tracker.hpp"
 #include "pose/reconstruction/take_merging.hpp"
-#include "tools/teach/mesh_checks.hpp"
 #include "tools/teach/show/camera_take.hpp"
 #include "tools/teach/show/kept_showing.hpp"
 #include "tools/teach/show/show_report.hpp"
 #include "tools/teach/show/show_sources.hpp"
+#include "tools/teach/show/shown_teaching.hpp"
+#include "tools/teach/show/telling.hpp"
 #include "tools/teach/show/turntable_videos.hpp"
 #include "tools/teach/teach_jobs.hpp"
 
@@ -27,68 +27,6 @@ namespace {
 using reconstruction::ObjectTracker;
 using reconstruction::ShownModel;
 using reconstruction::Take;
-using reconstruction::TrackerState;
-using reconstruction::TrackState;
-
-/// Tells the observer and, where something new happens, the terminal.
-class Telling {
- public:
-  Telling(const ShowOptions& options, ShowObserver* observer) : observer_(observer) { now_.name = options.name; }
-
-  void frame(const FrameId& id, const TrackerState& state) {
-    now_.frame = id;
-    now_.state = state.state == TrackState::kTracking ? ShowState::kTracking
-                 : state.state == TrackState::kLost   ? ShowState::kLost
-                                                      : ShowState::kChoosing;
-    now_.message = state.message;
-    now_.seen = state.seen;
-    now_.frames = state.frames;
-    now_.keyframes = state.keyframes;
-    now_.box = state.box_px;
-    now_.T_camera_object = state.T_camera_object;
-    now_.progress = static_cast<double>(reconstruction::count_seen(state.seen)) / ShowProgress::kDirections;
-    tell();
-  }
-
-  void step(ShowState state, double progress, const std::string& message) {
-    now_.state = state;
-    now_.progress = progress;
-    now_.message = message;
-    now_.box = {};
-    now_.T_camera_object.reset();
-    printed_us_ = 0;
-    tell();
-  }
-
-  /// The terminal gets the exception's line itself.
-  void fail(const std::string& message) {
-    now_.state = ShowState::kFailed;
-    now_.message = message;
-    if (observer_ != nullptr) observer_->progress(now_);
-  }
-
- private:
-  void tell() {
-    constexpr std::int64_t kApart_us = 1'000'000;  // of the take's time
-    const std::string line = fmt::format("{}: {}", name_of(now_.state), now_.message);
-    const bool is_choice = printed_state_ == ShowState::kChoosing && now_.state != ShowState::kChoosing;
-    const std::int64_t since_us = microseconds_between(printed_us_, now_.frame.utime);
-    const bool soon = printed_us_ != 0 && !is_choice && since_us > -kApart_us && since_us < kApart_us;
-    if (line != printed_ && !soon) {
-      fmt::print(stderr, "hs-teach: {}\n", line);
-      printed_ = line;
-      printed_us_ = now_.frame.utime;
-      printed_state_ = now_.state;
-    }
-    if (observer_ != nullptr) observer_->progress(now_);
-  }
-
-  ShowObserver* observer_;
-  ShowProgress now_;
-  std::string printed_;
-  ShowState printed_state_ = ShowState::kChoosing;
-  std::int64_t printed_us_ = 0;
-};
 
 /// Nobody can turn the object over between two takes of one camera that begin at once; videos have no second take.
 void check_second(const ShowOptions& options) {
@@ -197,66 +135,6 @@ ModelledTake follow_and_model(const TakeSource& source, const ShowOptions& optio
   }
 }
 
-/// What is taught of a view: the object with a margin, in the tone in which it is looked for.
-void crop_to_object(TrainingView& view) {
-  constexpr int kMargin_px = 8;
-  const ToneCurve tone = tone_curve(view.frame.colour, kPractisedTone);
-  cv::Rect crop = cv::boundingRect(view.mask);
-  crop = cv::Rect(crop.x - kMargin_px, crop.y - kMargin_px, crop.width + 2 * kMargin_px, crop.height + 2 * kMargin_px) &
-         cv::Rect({0, 0}, view.mask.size());
-  cv::Mat colour;
-  apply_tone(tone, view.frame.colour(crop), colour);
-  view.frame.colour = colour;
-  view.frame.depth = view.frame.depth(crop).clone();
-  view.frame.camera = view.frame.camera.cropped(crop.x, crop.y, crop.width, crop.height);
-  view.mask = view.mask(crop).clone();
-}
-
-/// Gives the model of the takes the colours that it has in pictures of the tone in which it is looked for.
-void bring_into_tone(const std::vector<Take>& takes, std::vector<cv::Vec3b>& colours) {
-  if (colours.empty()) return;
-  ToneCurve mean{0.0F, 0.0F};
-  float count = 0.0F;
-  for (const Take& take : takes) {
-    for (const reconstruction::Keyframe& keyframe : take.keyframes) {
-      const ToneCurve tone = tone_curve(keyframe.frame.colour, kPractisedTone);
-      mean.gain += tone.gain;
-      mean.offset += tone.offset;
-      count += 1.0F;
-    }
-  }
-  if (count == 0.0F) return;
-  cv::Mat all(colours);  // lies where they do
-  apply_tone({mean.gain / count, mean.offset / count}, all, all);
-}
-
-/// The shown mesh as one that hs-teach mesh could have read, and the keyframes' views of it.
-TeachOptions teaching_of(const ShowOptions& options, const Shown& shown) {
-  TeachOptions teach;
-  TaughtMesh mesh;
-  mesh.name = options.name;
-  mesh.file = "shown: " + options.source;
-  mesh.mesh = shown.mesh;
-  check_mesh(options.name, 1e-3, mesh.mesh);
-  mesh.coloured = has_colour(mesh.mesh);
-  bring_into_tone(shown.takes, mesh.mesh.colours);
-  teach.shown = {std::move(mesh)};
-  for (std::size_t t = 0; t < shown.takes.size(); ++t) {
-    std::vector<TrainingView> own = training_views(shown.takes[t], shown.views[t], options.name);
-    for (TrainingView& view : own) {
-      crop_to_object(view);
-      teach.own_views.push_back(std::move(view));
-    }
-  }
-  teach.out = options.out;
-  teach.add = options.add;
-  teach.rooms.cache = options.rooms_cache;
-  teach.rooms.threads = options.threads;
-  teach.seed = options.seed;
-  teach.threads = options.threads;
-  return teach;
-}
-
 /// Follows one or two takes and makes a model of them.
 Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const ShownFrames& second, Telling& telling) {
   const auto begin = std::chrono::steady_clock::now();
@@ -288,7 +166,7 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
 /// soon, and again when they were learnt as thoroughly as those of any other.
 void teach_shown(const ShowOptions& options, const Shown& shown, Telling& telling) {
   constexpr int kFirstRooms = 12;
-  TeachOptions teach = teaching_of(options, shown);
+  TeachOptions teach = options_to_teach(options, shown);
   PracticeSettings thorough = teach.practice;
   thorough.seed = options.seed;
   thorough.threads = options.threads;
@@ -320,7 +198,7 @@ int conclude(const ShowOptions& options, const Shown& shown, Telling& telling) {
 
 /// Says why where it fails.
 int told(const ShowOptions& options, ShowObserver* observer, const std::function<Shown(Telling&)>& show) {
-  Telling telling(options, observer);
+  Telling telling(options.name, observer);
   try {
     check_show_options(options);
     if (options.teach && !options.add) warn_of_replaced(options.out);

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "tools/teach/show/show_jobs.hpp"
+#include "tools/teach/show/show_report.hpp"
+#include "tools/teach/teach_jobs.hpp"
+
+namespace houghstream::teach {
+
+/// What teaches a shown object: its mesh as one that hs-teach mesh could have read, and the keyframes' views of it, all
+/// in the tone in which objects are looked for. Throws InputError for a mesh that cannot be taught.
+TeachOptions options_to_teach(const ShowOptions& options, const Shown& shown);
+
+}  // namespace houghstream::teach
