@@ -11,7 +11,6 @@
 #include <set>
 
 #include "detector/forest/forest_file.hpp"
-#include "detector/training/forest_trainer.hpp"
 #include "detector/training/object_removal.hpp"
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/store/object_store.hpp"
@@ -23,6 +22,7 @@
 #include "tools/common/stored_quality.hpp"
 #include "tools/teach/contact_sheet.hpp"
 #include "tools/teach/lookalikes.hpp"
+#include "tools/teach/taught_forest.hpp"
 #include "tools/teach/taught_views.hpp"
 
 namespace houghstream::teach {
@@ -31,8 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
-
-constexpr double kToneShare = 0.7;  // see TrainingSettings
 
 /// A line for each step, with the seconds since the start.
 class Progress {
@@ -114,42 +112,6 @@ void take_ids(const ObjectStore& list, Forest& forest) {
       if (object.name == known.name) known.class_id = object.id;
     }
   }
-}
-
-int most_views(const std::vector<TrainingView>& views) {
-  std::map<int, int> counts;
-  for (const TrainingView& view : views) counts[view.class_id] += view.class_id > 0 ? 1 : 0;
-  int most = 1;
-  for (const auto& [class_id, count] : counts) most = std::max(most, count);
-  return most;
-}
-
-Forest train(const std::vector<TrainingView>& views, const std::optional<Forest>& old, const TeachOptions& options,
-             const Progress& progress) {
-  constexpr int kPatches = 26000;  // of an object: what trees are grown of, and how long that takes
-  constexpr int kFewestPatches = 40;
-  constexpr int kMostPatches = 250;
-  constexpr int kViewsPerPicture = 2;  // a remembered view costs a tenth of one that trees learn from
-  Profile profile = options.profile;
-  if (old) {
-    profile = training::profile_of(*old);
-    const int trees = profile.training.trees;
-    const Scoring scoring = profile.training.scoring;
-    profile.training = options.profile.training;
-    profile.training.trees = trees;
-    profile.training.scoring = scoring;
-  }
-  profile.training.validation_frames = 0;    // practice tells more
-  profile.training.composites_per_view = 1;  // another view tells more than another room
-  profile.training.tone_share = kToneShare;
-  if (!old) profile.features.tone = kPractisedTone;
-  profile.training.views_per_picture = kViewsPerPicture;
-  const int pictures = std::max(most_views(views) / kViewsPerPicture, 1);
-  profile.training.patches_per_view = std::clamp(kPatches / pictures, kFewestPatches, kMostPatches);
-  profile.training.seed = options.seed;
-  profile.training.threads = options.threads;
-  const auto report = [&](const std::string& line) { progress(line); };
-  return old ? training::add_objects(*old, views, profile, report) : training::train_forest(views, profile, report);
 }
 
 /// Everything but the pictures of views, which are there, and store.json last. All of it is read back: a store that
@@ -255,7 +217,7 @@ void teach_meshes(const TeachOptions& options) {
   progress(fmt::format("{} pictures of rooms read", views.size()));
   std::vector<TrainingView> of_objects = make_views(meshes, options, made, progress);
   std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
-  Forest forest = train(views, old.forest, options, progress);
+  Forest forest = train_taught(views, old.forest, options, progress);
   take_ids(made, forest);
   std::set<int> new_ids;
   for (NamedModel& model : models_of(meshes)) {
