@@ -6,7 +6,7 @@
 
 #include "drivers/files/json_file.hpp"
 #include "tools/evaluate/evaluation.hpp"
-#include "tools/evaluate/latency.hpp"
+#include "tools/evaluate/metrics/latency.hpp"
 
 namespace houghstream {
 

@@ -7,8 +7,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/types/frame_results.hpp"
-#include "tools/evaluate/latency.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
+#include "tools/evaluate/metrics/latency.hpp"
 #include "tools/evaluate/metrics/pose_metrics.hpp"
 
 namespace houghstream {

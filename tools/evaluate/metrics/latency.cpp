@@ -1,4 +1,4 @@
-#include "tools/evaluate/latency.hpp"
+#include "tools/evaluate/metrics/latency.hpp"
 
 #include <algorithm>
 #include <charconv>
