@@ -2,7 +2,6 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <set>
 
 #include "detector/detector.hpp"
@@ -18,6 +17,7 @@
 #include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/metrics/search_times.hpp"
 #include "tools/evaluate/report.hpp"
+#include "tools/evaluate/scene_figures.hpp"
 
 namespace houghstream {
 namespace {
@@ -37,13 +37,6 @@ struct EvaluateOptions {
   SearchOptions search;
   std::optional<float> min_quality;
   int every = 1;
-};
-
-/// A scene with its truth, and beside it the results.
-struct OpenScene {
-  BopScene scene;
-  std::map<int, std::string> names;
-  std::vector<EvaluatedFrame> frames;
 };
 
 std::vector<OpenScene> open_scenes(const EvaluateOptions& options) {
@@ -100,79 +93,6 @@ std::vector<std::string> listed_classes(const EvaluateOptions& options, const st
   return {listed.names.begin(), listed.names.end()};
 }
 
-/// What the listed classes' poses are measured with.
-struct Models {
-  std::map<std::string, PoseModel> scored;
-  std::map<std::string, BopModel> bop;
-};
-
-Models make_models(const EvaluateOptions& options, const std::vector<std::string>& classes,
-                   const std::map<std::string, Mesh>& meshes) {
-  Models models;
-  if (meshes.empty()) return models;
-  for (auto& [name, model] : make_bop_models(meshes, read_bop_models(options.known.models))) {
-    models.scored[name] = make_pose_model(model.mesh, model.symmetries.size() > 1);
-    if (std::find(classes.begin(), classes.end(), name) != classes.end()) models.bop[name] = model;
-  }
-  return models;
-}
-
-/// The errors of a scene's poses, as published and with nothing withheld.
-struct SceneErrors {
-  ClassErrors published;
-  ClassErrors nothing_withheld;
-};
-
-void join(const ClassErrors& errors, ClassErrors& all) {
-  for (const auto& [name, frames] : errors) all[name].insert(all[name].end(), frames.begin(), frames.end());
-}
-
-bool anything_withheld_is_known(const std::vector<EvaluatedFrame>& frames) {
-  return std::any_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.poses_nothing_withheld; });
-}
-
-SceneErrors measure_scene(const EvaluateOptions& options, const OpenScene& it, const Models& models) {
-  const std::vector<EvaluatedFrame> counted = counted_frames(it.frames, options.rules);
-  const int threads = options.search.threads;
-  SceneErrors errors;
-  errors.published = measure_poses(counted, it.scene, models.bop, threads);
-  if (anything_withheld_is_known(counted))
-    errors.nothing_withheld = measure_poses(with_nothing_withheld(counted), it.scene, models.bop, threads);
-  return errors;
-}
-
-Evaluation evaluate_frames(const EvaluateOptions& options, const std::vector<EvaluatedFrame>& frames,
-                           const std::vector<std::string>& classes, const Models& models, const SceneErrors& errors) {
-  Evaluation evaluation = evaluate(frames, classes, models.scored, options.rules);
-  if (models.scored.empty() || evaluation.frames_with_poses == 0) return evaluation;
-  evaluation.localisation = localisation_scores(errors.published);
-  if (anything_withheld_is_known(frames))
-    evaluation.localisation_nothing_withheld = localisation_scores(errors.nothing_withheld);
-  return evaluation;
-}
-
-/// The figures of all scenes together, and of each.
-struct Figures {
-  Evaluation all;
-  std::vector<SceneEvaluation> scenes;
-};
-
-Figures measure(const EvaluateOptions& options, const std::vector<OpenScene>& scenes,
-                const std::vector<std::string>& classes, const Models& models) {
-  Figures figures;
-  std::vector<EvaluatedFrame> frames;
-  SceneErrors errors;
-  for (const OpenScene& it : scenes) {
-    const SceneErrors here = measure_scene(options, it, models);
-    figures.scenes.push_back({scene_name(it.scene), evaluate_frames(options, it.frames, classes, models, here)});
-    frames.insert(frames.end(), it.frames.begin(), it.frames.end());
-    join(here.published, errors.published);
-    join(here.nothing_withheld, errors.nothing_withheld);
-  }
-  figures.all = evaluate_frames(options, frames, classes, models, errors);
-  return figures;
-}
-
 void search_in_process(const EvaluateOptions& options, Forest forest, const std::map<std::string, Mesh>& meshes,
                        std::vector<OpenScene>& scenes) {
   PublishingRules rules;
@@ -192,7 +112,7 @@ void add_log(const EvaluateOptions& options, bool check_names, const NamedSide& 
   add_results(it.frames, results, options.log);
 }
 
-void write_files(const EvaluateOptions& options, const Figures& figures, const std::vector<OpenScene>& scenes,
+void write_files(const EvaluateOptions& options, const SceneFigures& figures, const std::vector<OpenScene>& scenes,
                  const std::optional<Latencies>& latencies) {
   write_report(figures.all,
                scenes.size() > 1 ? summary_json(figures.all, figures.scenes, options.rules, latencies)
@@ -239,7 +159,9 @@ void run(EvaluateOptions options) {
     options.rules.min_quality = options.pose.quality.least;
     search_in_process(options, *std::move(forest), meshes, scenes);
   }
-  const Figures figures = measure(options, scenes, classes, make_models(options, classes, meshes));
+  const SceneFigures figures =
+      measure_scenes(scenes, classes, make_scored_models(options.known.models, meshes, classes), options.rules,
+                     options.search.threads);
   fmt::print("{}", summary_table(figures.all, options.rules));
   if (!options.out.empty()) write_files(options, figures, scenes, latencies);
 }
