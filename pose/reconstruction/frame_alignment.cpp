@@ -231,4 +231,13 @@ Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const
   return out;
 }
 
+Alignment compare_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
+                        int level) {
+  AlignmentLimits limits;
+  limits.iterations = 0;
+  limits.coarsest = level;
+  limits.finest = level;
+  return align_frame(points, frame, T_camera_world, {}, limits);
+}
+
 }  // namespace houghstream::reconstruction

@@ -65,6 +65,10 @@ struct Alignment {
 Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
                       const Holds& holds, const AlignmentLimits& limits);
 
+/// The statistics of a frame at a pose that is left as it is, on one level.
+Alignment compare_frame(const LevelPoints& points, const FrameLevels& frame, const Eigen::Isometry3d& T_camera_world,
+                        int level);
+
 /// Radians by which a frame shows a corner elsewhere than its pose says, in the pinhole's plane (tangents); infinite
 /// where the corner is not before the camera.
 double bearing_error(const SeenCorner& corner, const Eigen::Isometry3d& T_camera_world);

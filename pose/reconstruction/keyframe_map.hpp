@@ -67,6 +67,7 @@ class KeyframeMap {
   explicit KeyframeMap(const MapSettings& settings, std::vector<Keyframe> keyframes = {})
       : settings_(settings), keyframes_(std::move(keyframes)) {}
   MapSettings& settings() { return settings_; }
+  const MapSettings& settings() const { return settings_; }
 
   /// Adds a keyframe; `alignment` is how it was laid on the local map (not asked for with the first). Closes a loop
   /// where one is found, and corrects all poses then: the gap that was closed.

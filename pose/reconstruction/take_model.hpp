@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "pipeline/geometry/mesh.hpp"
-#include "pose/reconstruction/object_tracker.hpp"
+#include "pose/reconstruction/tracking/take.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/object_tracker.hpp"
+#include "pose/reconstruction/tracking/object_tracker.hpp"
 
 #include <gtest/gtest.h>
 

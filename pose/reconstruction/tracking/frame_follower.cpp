@@ -1,0 +1,57 @@
+#include "pose/reconstruction/tracking/frame_follower.hpp"
+
+#include <algorithm>
+
+namespace houghstream::reconstruction {
+namespace {
+
+double agreement_of(const Alignment& alignment) {
+  return alignment.inlier_share * std::min(1.0, alignment.seen_share / 0.4) - 0.5 * alignment.light_rms;
+}
+
+}  // namespace
+
+Alignment FrameFollower::lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,
+                                    KeyframeMap& map) const {
+  AlignmentLimits limits;
+  limits.coarsest = coarsest;
+  return align_frame(map.local_map(T_start), levels, T_start, {map.settings().plane, corners_}, limits);
+}
+
+std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const FrameLevels& levels, const LastPoses& poses,
+                                               Motion motion, KeyframeMap& map) {
+  constexpr double kMostTurn = 0.15;     // radians a frame, from rest
+  constexpr double kMostEver = 0.4;      // radians a frame
+  constexpr double kMostShift_m = 0.02;  // a frame, of an object that turns where it stands
+  const auto& [T_last, T_before] = poses;
+  const Eigen::Isometry3d T_goes_on =
+      motion == Motion::kObject ? T_last * (T_before.inverse() * T_last) : T_last * T_before.inverse() * T_last;
+  const int coarsest = map.settings().coarsest;
+  const LevelPoints& points = map.local_map(T_last);
+  const bool goes_on = agreement_of(compare_frame(points, levels, T_goes_on, coarsest)) >
+                       agreement_of(compare_frame(points, levels, T_last, coarsest));
+  const std::optional<LandmarkMatch> flow =
+      motion == Motion::kObject ? std::nullopt : follow_corners(last_flow_, corners_to_follow(last_flow_, {}), now);
+  corners_.clear();
+  if (flow && flow->inliers.size() >= map.settings().fewest_corners) {
+    for (const auto& [before, after] : flow->inliers) corners_.push_back({T_last.inverse() * before, after});
+  }
+  const Eigen::Isometry3d T_likely = !corners_.empty() ? flow->T_b_a * T_last : goes_on ? T_goes_on : T_last;
+  Alignment best = lay_on_map(levels, T_likely, coarsest, map);
+  // Stripes and tiles repeat: what suddenly agrees less has slipped by one.
+  if (!map.is_good(best) || best.light_rms > 1.4 * usual_light_rms_ + 0.03) {
+    const Eigen::Isometry3d& T_else = goes_on ? T_last : T_goes_on;
+    for (const Alignment& other : {lay_on_map(levels, T_likely, 0, map), lay_on_map(levels, T_else, coarsest, map),
+                                   lay_on_map(levels, T_else, 1, map)}) {
+      if (agreement_of(other) > agreement_of(best)) best = other;
+    }
+  }
+  const double most = std::min(kMostTurn + 2.0 * map.difference(T_last, T_before), kMostEver);
+  const double shift = (T_last.inverse() * best.T_camera_world).translation().norm();
+  const bool too_far = motion == Motion::kObject && shift > kMostShift_m;
+  if (!map.is_good(best) || too_far || map.difference(T_last, best.T_camera_world) > most) return std::nullopt;
+  usual_light_rms_ += 0.2 * (best.light_rms - usual_light_rms_);
+  return best;
+}
+
+}  // namespace houghstream::reconstruction

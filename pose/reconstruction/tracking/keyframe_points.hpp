@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+
+#include "pose/reconstruction/keyframe_map.hpp"
+#include "pose/reconstruction/object_choice.hpp"
+
+namespace houghstream::reconstruction {
+
+/// Pixels that show the object, or a hand on it: CV_8UC1, 255 where the measured point lies above the table and within
+/// the chosen object's bounds. World: z up, origin at the object's foot.
+cv::Mat object_pixels(const FrameLevel& level, const ChosenObject& object, const Eigen::Isometry3d& T_camera_world);
+
+/// Points of all that a keyframe shows, while the camera is carried about; those of the table are marked. Camera frame.
+LevelPoints points_of_scene(const Keyframe& keyframe);
+
+/// Points of the object alone, while it turns before the camera: without a hand, which keyframes of `map` have seen
+/// through, or which has the colour of skin where the object has not. `region_px`: what of the keyframe's frame its
+/// levels show. Camera frame.
+LevelPoints points_of_object(const Keyframe& keyframe, const KeyframeMap& map, const ChosenObject& object,
+                             const cv::Rect& region_px);
+
+}  // namespace houghstream::reconstruction

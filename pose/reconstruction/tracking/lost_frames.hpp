@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <map>
+#include <optional>
+
+#include "pose/reconstruction/keyframe_map.hpp"
+
+namespace houghstream::reconstruction {
+
+/// Corners of a frame that is looked for again and again, and what those of each keyframe say of it: found once.
+struct KnownCorners {
+  struct Place {
+    std::size_t corners = 0;  ///< that agree; 0 = it says nothing
+    Eigen::Isometry3d T_frame_keyframe = Eigen::Isometry3d::Identity();
+  };
+  std::optional<Landmarks> seen;
+  std::map<int, Place> by_keyframe;
+};
+
+/// A frame that could not be placed when it came.
+struct LostFrame {
+  int number = 0;  ///< in its take
+  RgbdFrame frame;
+  KnownCorners corners;
+};
+
+/// From where a lost frame is looked for.
+struct LastPlace {
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< the last that is known, metres
+  double farthest = 1e9;                                             ///< radians, as KeyframeMap::difference has it
+};
+
+/// Lays a frame on the keyframes nearest to the last place, one by one, with its view taken for theirs.
+std::optional<Alignment> find_by_views(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last);
+
+/// Looks for frames by the corners that they have in common with keyframes.
+class CornerSearch {
+ public:
+  /// Lays a frame on the keyframe with the most corners in common, if these suffice. `corners.seen` are the frame's.
+  /// Unless it is to look `everywhere`, it tries some keyframes: the nearest, and others in turn from call to call.
+  std::optional<Alignment> find(const KeyframeMap& map, const FrameLevels& levels, const LastPlace& last,
+                                bool everywhere, KnownCorners& corners);
+
+ private:
+  std::size_t next_to_try_ = 0;
+};
+
+}  // namespace houghstream::reconstruction

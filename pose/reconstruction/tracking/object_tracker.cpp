@@ -1,0 +1,279 @@
+#include "pose/reconstruction/tracking/object_tracker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "pipeline/base/checks.hpp"
+#include "pose/reconstruction/tracking/keyframe_points.hpp"
+
+namespace houghstream::reconstruction {
+namespace {
+
+constexpr double kDegrees = 57.29577951308232;
+
+/// Where the object is seen; empty where the camera is too near for that.
+cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::Isometry3d& T_camera_world) {
+  const double half = object.radius_m * 0.8;
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-half, -half, 0.0), Eigen::Vector3d(half, half, object.height_m));
+  return seen_box(box, camera, T_camera_world).value_or(cv::Rect()) & cv::Rect(0, 0, camera.width, camera.height);
+}
+
+}  // namespace
+
+/// Masks, levels and boxes of the first frame are laid over all others.
+void ObjectTracker::require_same_size(const RgbdFrame& frame) {
+  const cv::Size size = frame.depth.size();
+  if (take_.frames.empty()) size_ = size;
+  require(size == size_ && frame.colour.size() == size_,
+          "frame {}: colour {}x{} and depth {}x{}, expected {}x{} as of the first frame: a take is of one camera",
+          to_string(frame.id), frame.colour.cols, frame.colour.rows, size.width, size.height, size_.width,
+          size_.height);
+}
+
+const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
+  constexpr std::size_t kMostUnplaced = 100;
+  const auto begin = std::chrono::steady_clock::now();
+  require_same_size(frame);
+  take_.frames.push_back({frame.id, false, false, -1, Eigen::Isometry3d::Identity()});
+  ++state_.frames;
+  if (map_.empty()) {
+    choose(frame);
+  } else {
+    FrameLevels levels = make_levels(frame, levels_);
+    FlowFrame now;
+    if (motion_ != Motion::kObject) now = make_flow_frame(frame);
+    take_.frames.back().left_out = !is_fit_for_model(levels.quality);
+    std::optional<Alignment> found;
+    if (motion_ == Motion::kObject) lights_.mark_what_stays(object_pixels(levels.levels[0], chosen_, T_last_), levels);
+    if (state_.state == TrackState::kTracking)
+      found = follower_.follow(now, levels, {T_last_, T_before_}, motion_, map_);
+    if (found && motion_ == Motion::kUnknown) {
+      motion_ = judge_.judge(now, levels, found->T_camera_world);
+      if (motion_ == Motion::kObject) {
+        follow_object_only();
+        levels = make_levels(frame, levels_);
+        found = follower_.follow(now, levels, {T_last_, T_before_}, motion_, map_);
+      }
+    }
+    KnownCorners corners;
+    if (!found) found = find_again(frame, levels, false, corners);
+    if (found) {
+      accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), *found);
+      follower_.set_last(std::move(now));
+    } else {
+      note_lost(levels);
+      if (unplaced_.size() < kMostUnplaced)
+        unplaced_.push_back({static_cast<int>(take_.frames.size()) - 1, frame, std::move(corners)});
+    }
+  }
+  describe();
+  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return state_;
+}
+
+void ObjectTracker::choose(const RgbdFrame& frame) {
+  Choice choice = choose_object(frame, settings_.choice);
+  if (!choice.object) {
+    state_.message = choice.reason;
+    require(state_.frames < settings_.most_frames_to_choose && !settings_.choice.box_px, "{}", choice.reason);
+    return;
+  }
+  chosen_ = std::move(*choice.object);
+  map_.settings().middle = {0.0, 0.0, 0.5 * chosen_.height_m};
+  first_number_ = state_.frames - 1;
+  FrameLevels levels = make_levels(frame, levels_);
+  T_last_ = T_before_ = chosen_.T_camera_stand;
+  state_.state = TrackState::kTracking;
+  round_.assign(36, false);
+  judge_ = MotionJudge(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
+                       chosen_.T_camera_stand, settings_.map.fewest_corners);
+  follower_.set_last(judge_.first());
+  Alignment at_start;
+  at_start.T_camera_world = chosen_.T_camera_stand;
+  accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
+}
+
+bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
+  constexpr std::size_t kAround = 31;
+  std::vector<double> around(sharpness_.begin(), sharpness_.end());
+  sharpness_.push_back(quality.sharpness);
+  if (sharpness_.size() > kAround) sharpness_.pop_front();
+  const bool badly_exposed =
+      quality.dark_share > settings_.most_dark_share || quality.bright_share > settings_.most_bright_share;
+  take_.badly_exposed += badly_exposed ? 1 : 0;
+  if (badly_exposed) return false;
+  if (around.size() < 3) return true;
+  std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2), around.end());
+  const bool blurred = quality.sharpness < settings_.least_sharpness * around[around.size() / 2];
+  take_.blurred += blurred ? 1 : 0;
+  return !blurred;
+}
+
+std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+                                                   KnownCorners& corners) {
+  // What is round or a box looks alike from several sides.
+  const LastPlace last{T_last_, motion_ == Motion::kObject ? 0.5 : 1e9};
+  if (std::optional<Alignment> found = find_by_views(map_, levels, last)) return found;
+  if (motion_ == Motion::kObject) corners = {};  // they are of where the object is believed to be
+  if (!corners.seen) corners.seen = find_landmarks(frame, landmark_mask(frame, T_last_));
+  return by_corners_.find(map_, levels, last, everywhere, corners);
+}
+
+void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+  const bool was_lost = state_.state == TrackState::kLost;
+  state_.state = TrackState::kTracking;
+  T_before_ = was_lost ? alignment.T_camera_world : T_last_;
+  T_last_ = alignment.T_camera_world;
+  FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
+  const bool fit = !track.left_out;
+  const int nearest = map_.nearest(T_last_);
+  const double away =
+      nearest < 0 ? 1e9 : map_.difference(T_last_, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
+  if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
+    Landmarks landmarks = find_landmarks(frame, landmark_mask(frame, T_last_));
+    Alignment held = alignment;
+    if (nearest >= 0) map_.local_map(T_last_);  // the keyframes that the new one is tied to
+    if (nearest >= 0 && map_.settings().corners_hold) {
+      held = map_.held_by_corners(levels, landmarks, alignment);
+      T_last_ = held.T_camera_world;
+      T_before_ = T_before_ * alignment.T_camera_world.inverse() * T_last_;
+    }
+    add_keyframe({frame, number, std::move(levels), {}, std::move(landmarks), T_last_}, held);
+  }
+  track.tracked = true;
+  track.keyframe = map_.nearest(T_last_);
+  track.T_camera_keyframe =
+      T_last_ * map_.keyframes()[static_cast<std::size_t>(track.keyframe)].T_camera_world.inverse();
+  const Eigen::Vector3d towards = T_last_.inverse().translation() - map_.settings().middle;
+  if (fit) mark_seen(towards, state_.seen);
+  const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
+  round_[at] = round_[at] || fit;
+}
+
+/// The camera stands still and something happens to the object: from here on its own surface alone is followed, and the
+/// table, which does not move, holds it upright.
+void ObjectTracker::follow_object_only() {
+  constexpr double kAround = 0.6;
+  const RgbdFrame& first = judge_.first().frame;
+  MapSettings& map = map_.settings();
+  map.plane = PlaneKnown();
+  map.plane->normal = chosen_.plane.normal;
+  map.plane->offset = chosen_.plane.offset;
+  map.least_inlier_share = 0.6;
+  map.coarsest = 1;
+  map.corners_hold = false;
+  map.sure_corners = 12;
+  const cv::Rect& box = chosen_.box_px;
+  const cv::Size more(cvRound(kAround * box.width) + 20, cvRound(kAround * box.height) + 20);
+  levels_.region_px =
+      cv::Rect(box.x - more.width, box.y - more.height, box.width + 2 * more.width, box.height + 2 * more.height) &
+      cv::Rect({0, 0}, first.depth.size());
+  map_ = KeyframeMap(map);
+  tie_to_first_keyframe();
+  state_.seen = {};
+  T_last_ = T_before_ = chosen_.T_camera_stand;
+  Landmarks landmarks = find_landmarks(first, landmark_mask(first, T_last_));
+  add_keyframe({first, first_number_, make_levels(first, levels_), {}, std::move(landmarks), T_last_}, {});
+}
+
+/// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
+/// them show the object as that one does. In the last of them it moved already, and nobody knows how far.
+void ObjectTracker::tie_to_first_keyframe() {
+  int moved = judge_.object_moves() - 1;  // the last is the present frame, which is not placed yet
+  for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
+    if (!frame->tracked) continue;
+    frame->T_camera_keyframe.setIdentity();
+    frame->tracked = moved-- <= 0;
+    frame->keyframe = frame->tracked ? 0 : -1;
+  }
+}
+
+/// Where corners are looked for: everywhere while the camera moves, else on the object, which may have turned but
+/// stays.
+cv::Mat ObjectTracker::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
+  if (motion_ != Motion::kObject) return {};
+  return object_pixels({frame.camera, {}, frame.depth, {}}, chosen_, T_camera_world);
+}
+
+/// The keyframe of T_last_, which has no points yet.
+void ObjectTracker::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
+  keyframe.points = motion_ == Motion::kObject ? points_of_object(keyframe, map_, chosen_, levels_.region_px)
+                                               : points_of_scene(keyframe);
+  const std::optional<LoopGap> gap = map_.add(std::move(keyframe), alignment);
+  if (!gap) return;
+  T_last_ = T_before_ = map_.keyframes().back().T_camera_world;
+  const auto seen_round = std::count(round_.begin(), round_.end(), true);
+  constexpr int kNearlyRound = 30;  // of 36
+  if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
+}
+
+void ObjectTracker::note_lost(const FrameLevels& levels) {
+  constexpr double kFast = 0.06;  // radians of view a frame
+  const int number = static_cast<int>(take_.frames.size()) - 1;
+  if (state_.state == TrackState::kLost && !take_.lost.empty() && take_.lost.back().to == number - 1) {
+    take_.lost.back().to = number;
+    return;
+  }
+  const double speed = map_.difference(T_last_, T_before_);
+  std::string why = "the picture jumped, or something hid what was followed";
+  if (speed > kFast ||
+      levels.quality.sharpness < settings_.least_sharpness * (sharpness_.empty() ? 0.0 : sharpness_.front()))
+    why = "too fast";
+  state_.state = TrackState::kLost;
+  take_.lost.push_back({number, number, why});
+}
+
+void ObjectTracker::describe() {
+  constexpr int kTold = 45;  // frames for which the choice is said, so that a person can read it
+  state_.keyframes = static_cast<int>(map_.keyframes().size());
+  state_.T_camera_object.reset();
+  state_.box_px = {};
+  if (map_.empty()) return;
+  if (state_.state == TrackState::kLost) {
+    state_.message = take_.lost.empty() ? "lost" : "lost: " + take_.lost.back().why + "; go back to where it was seen";
+    return;
+  }
+  state_.T_camera_object = T_last_;
+  state_.box_px = box_of(chosen_, judge_.first().frame.camera, T_last_);
+  state_.message = describe_seen(state_.seen, chosen_.T_camera_stand.inverse().translation());
+  if (state_.frames - first_number_ <= kTold)
+    state_.message = describe_choice(chosen_) + "; move the camera once around it, or turn it";
+}
+
+/// What was lost when it came may be found now that more of the surroundings is known.
+void ObjectTracker::place_the_lost() {
+  for (bool any = true; any;) {
+    any = false;
+    for (auto at = unplaced_.begin(); at != unplaced_.end();) {
+      FrameLevels levels = make_levels(at->frame, levels_);
+      const std::optional<Alignment> found = find_again(at->frame, levels, true, at->corners);
+      if (!found) {
+        ++at;
+        continue;
+      }
+      accept(at->number, at->frame, std::move(levels), *found);
+      at = unplaced_.erase(at);
+      any = true;
+    }
+  }
+  take_.lost = still_lost(take_);
+}
+
+Take ObjectTracker::finish() {
+  require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
+  place_the_lost();
+  map_.refine(3);
+  take_.chosen = chosen_;
+  take_.motion = motion_;
+  take_.keyframes = std::move(map_.keyframes());
+  take_.seen = state_.seen;
+  take_.degrees_round = static_cast<int>(10 * std::count(round_.begin(), round_.end(), true));
+  take_.tracking_hz = seconds_ > 0.0 ? static_cast<double>(take_.frames.size()) / seconds_ : 0.0;
+  return std::move(take_);
+}
+
+}  // namespace houghstream::reconstruction

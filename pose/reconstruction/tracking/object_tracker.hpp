@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pose/reconstruction/tracking/frame_follower.hpp"
+#include "pose/reconstruction/tracking/lost_frames.hpp"
+#include "pose/reconstruction/tracking/take.hpp"
+#include "pose/reconstruction/tracking/what_moves.hpp"
+
+namespace houghstream::reconstruction {
+
+enum class TrackState : std::uint8_t { kChoosing, kTracking, kLost };
+
+struct TrackerSettings {
+  ChoiceSettings choice;
+  MapSettings map;                 ///< middle and plane are those of the object
+  int most_frames_to_choose = 45;  ///< without an object in so many frames, there is none
+  double keyframe_turn = 0.12;     ///< radians between the views of keyframes
+  double least_sharpness = 0.5;    ///< of the median of the frames around; what is less is blurred
+  double most_dark_share = 0.7;    ///< of a picture; what is more is badly exposed
+  double most_bright_share = 0.4;
+};
+
+/// What can be said at any time.
+struct TrackerState {
+  TrackState state = TrackState::kChoosing;
+  std::string message;  ///< for a person, one line
+  SeenDirections seen{};
+  int frames = 0;
+  int keyframes = 0;
+  cv::Rect box_px;                                   ///< of the object in the last frame; empty where it is not known
+  std::optional<Eigen::Isometry3d> T_camera_object;  ///< metres; z up, origin at its foot
+};
+
+/// Follows an object on a table through the frames of a take, in which the camera is carried about it, or the object
+/// turns before a camera that stands still. Each frame is laid on a map of the nearest keyframes (align_frame); table
+/// points are held to one plane; when the way closes, the gap is spread over it. What is lost is looked for by
+/// neighbouring keyframes and by ORB landmarks. One thread; same frames, same result.
+class ObjectTracker {
+ public:
+  explicit ObjectTracker(const TrackerSettings& settings) : settings_(settings), map_(settings.map) {}
+
+  /// The next frame. Throws InputError with the reason where no object was found in the first frames, and for a frame
+  /// of another size than the first.
+  const TrackerState& process(const RgbdFrame& frame);
+  const TrackerState& state() const { return state_; }
+
+  /// Registers all keyframes to one another once more and hands over the take. Throws InputError where there is none.
+  Take finish();
+
+ private:
+  void require_same_size(const RgbdFrame& frame);
+  void choose(const RgbdFrame& frame);
+  std::optional<Alignment> find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+                                      KnownCorners& corners);
+  void place_the_lost();
+  void accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment);
+  void note_lost(const FrameLevels& levels);
+  bool is_fit_for_model(const PictureQuality& quality);
+  void follow_object_only();
+  void tie_to_first_keyframe();
+  void add_keyframe(Keyframe keyframe, const Alignment& alignment);
+  cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
+  void describe();
+
+  TrackerSettings settings_;
+  TrackerState state_;
+  ChosenObject chosen_;
+  KeyframeMap map_;
+  LevelSettings levels_;
+  Motion motion_ = Motion::kUnknown;
+  MotionJudge judge_;  ///< from the frame on in which the object was chosen
+  LastLights lights_;  ///< while the object turns
+  FrameFollower follower_;
+  cv::Size size_;  ///< of all frames, pixels
+  int first_number_ = 0;
+  Eigen::Isometry3d T_last_ = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_before_ = Eigen::Isometry3d::Identity();
+  std::vector<LostFrame> unplaced_;
+  CornerSearch by_corners_;
+  std::deque<double> sharpness_;
+  Take take_;
+  std::vector<bool> round_;  ///< each ten degrees of the turn
+  double seconds_ = 0.0;
+};
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/types/frame_id.hpp"
+#include "pose/reconstruction/keyframe_map.hpp"
+#include "pose/reconstruction/object_choice.hpp"
+#include "pose/reconstruction/sphere_of_directions.hpp"
+
+namespace houghstream::reconstruction {
+
+/// What moves: the camera about the object, the object before a camera that stands still, or a turntable with
+/// known masks (not of the tracker).
+enum class Motion : std::uint8_t { kUnknown, kCamera, kObject, kTurntable };
+
+/// What became of a frame.
+struct FrameTrack {
+  FrameId id;
+  bool tracked = false;
+  bool left_out = false;  ///< blurred or badly exposed: it is not used for the model
+  int keyframe = -1;      ///< that its pose is kept by
+  Eigen::Isometry3d T_camera_keyframe = Eigen::Isometry3d::Identity();
+};
+
+/// Frames in which nobody knew where the camera was.
+struct LostSpan {
+  int from = 0, to = 0;  ///< numbers of frames, both lost
+  std::string why;
+};
+
+/// A take that is over.
+struct Take {
+  ChosenObject chosen;  ///< in the first frame
+  Motion motion = Motion::kUnknown;
+  std::vector<Keyframe> keyframes;
+  std::vector<FrameTrack> frames;
+  std::vector<LostSpan> lost;
+  std::optional<LoopGap> gap;  ///< of the loop that goes round, before it was closed
+  SeenDirections seen{};
+  int degrees_round = 0;               ///< of the turn from which it was seen, 0 to 360
+  int blurred = 0, badly_exposed = 0;  ///< frames
+  double tracking_hz = 0.0;            ///< frames a second that tracking alone takes
+
+  /// T_camera_world of a tracked frame.
+  Eigen::Isometry3d pose_of(const FrameTrack& frame) const;
+};
+
+/// What is left of the take's lost spans, where frames of them have been placed since.
+std::vector<LostSpan> still_lost(const Take& take);
+
+}  // namespace houghstream::reconstruction

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <deque>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "pose/reconstruction/frame_levels.hpp"
+#include "pose/reconstruction/landmarks.hpp"
+#include "pose/reconstruction/tracking/take.hpp"
+
+namespace houghstream::reconstruction {
+
+/// Tells from the first frame of a take and the later ones what moves. The camera stands still as long as the corners
+/// of the surroundings are where they were at first; where there are few, as long as the surroundings look as they did
+/// then rather than as a moved camera would see them. The object moves where it alone looks different.
+class MotionJudge {
+ public:
+  MotionJudge() = default;
+  /// `levels` are of the first frame; `on_object` is CV_8UC1, as large as the finest, and not 0 where the object is.
+  /// `fewest_corners`: in common with the first frame, to say whether the camera stands still.
+  MotionJudge(FlowFrame first, const FrameLevels& levels, const cv::Mat& on_object,
+              const Eigen::Isometry3d& T_camera_world, std::size_t fewest_corners);
+
+  const FlowFrame& first() const { return first_; }
+
+  /// The next frame, with the pose that a moved camera would have. Where the camera stands still, the pose becomes the
+  /// first frame's. kUnknown until three frames one after the other say the same.
+  Motion judge(const FlowFrame& now, const FrameLevels& levels, Eigen::Isometry3d& T_camera_world);
+
+  /// Frames in which the object moved, one after the other, the last one judged included.
+  int object_moves() const { return object_moves_; }
+
+ private:
+  bool camera_is_still(const FlowFrame& now, const FrameLevels& levels, const Eigen::Isometry3d& T_moved) const;
+
+  FlowFrame first_;
+  cv::Mat first_light_, about_object_, away_from_object_;  ///< of its finest level
+  Eigen::Isometry3d T_first_ = Eigen::Isometry3d::Identity();
+  std::size_t fewest_corners_ = 0;
+  std::vector<cv::Point2f> corners_;  ///< of it, away from the object
+  LevelPoints rest_;                  ///< points away from the object, world frame
+  int object_moves_ = 0;
+  int camera_moves_ = 0;
+};
+
+/// The light of the last frames before a camera that stands still, while the object turns.
+class LastLights {
+ public:
+  /// Shade and shine stay where they are while the object turns: what looks as it did some frames ago tells nothing of
+  /// the turn, unless all of it does, and the object rests. Marks it in the next frame's levels (FrameLevel::stays).
+  /// `on_object`: as for MotionJudge.
+  void mark_what_stays(const cv::Mat& on_object, FrameLevels& levels);
+
+ private:
+  std::deque<std::vector<cv::Mat>> lights_;  ///< by level, the oldest frame first
+};
+
+}  // namespace houghstream::reconstruction
