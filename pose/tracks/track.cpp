@@ -71,20 +71,30 @@ Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name) {
   return model == models.end() ? Eigen::Vector3d(0.0, 0.0, 0.0) : model->second.centre;
 }
 
+double radius_of(const TrackModels& models, const std::string& name) {
+  constexpr double kUsual = 0.07;
+  const auto model = models.find(name);
+  return model == models.end() ? kUsual : model->second.radius_m;
+}
+
+const Symmetries& symmetries_of(const TrackModels& models, const std::string& name) {
+  static const Symmetries none;
+  const auto model = models.find(name);
+  return model == models.end() ? none : model->second.symmetries;
+}
+
 std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                  const TrackModels& models) {
-  constexpr double kUsualRadius = 0.07;  // of what has no model
   std::vector<SeenPose> out;
   for (const ObjectPose& pose : poses.poses) {
     if (!pose.T_camera_object) continue;
-    const auto model = models.find(pose.class_name);
-    const double radius_m = model == models.end() ? kUsualRadius : model->second.radius_m;
     out.push_back({poses.frame,
                    pose.class_id,
                    pose.class_name,
                    static_cast<double>(pose.quality),
                    {poses.frame.utime, T_world_camera * *pose.T_camera_object,
-                    covariance_of(pose, T_world_camera, centre_of(models, pose.class_name), radius_m)}});
+                    covariance_of(pose, T_world_camera, centre_of(models, pose.class_name),
+                                  radius_of(models, pose.class_name))}});
   }
   return out;
 }

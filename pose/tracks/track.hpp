@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,6 +11,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
+#include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pipeline/types/tracked_object.hpp"
@@ -31,8 +34,24 @@ using TrackModels = std::map<std::string, TrackModel>;
 /// origins may be at their feet, which half a turn takes to the top.
 Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name);
 
+/// TrackModel::radius_m of a class; that of a usual object where it has no model.
+double radius_of(const TrackModels& models, const std::string& name);
+
+/// TrackModel::symmetries of a class; none where it has no model.
+const Symmetries& symmetries_of(const TrackModels& models, const std::string& name);
+
 /// Models by class name; those without known symmetries have none. Throws InputError naming a mesh without triangles.
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries);
+
+/// What is known of a frame of a camera.
+struct FrameSeen {
+  const ObjectPoses& poses;                ///< names the frame
+  const Detections* detections = nullptr;  ///< of the frame, where they are known
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::function<const RgbdFrame*()> image;  ///< its depth, asked only where that is needed; null where there is none
+  /// Of the frame of this camera that has come last: without it, the frame of the poses.
+  std::optional<std::int64_t> newest_utime = std::nullopt;
+};
 
 /// A pose that was measured in a frame, in the world.
 struct SeenPose {
@@ -106,6 +125,25 @@ class PoseTrack {
   std::int64_t weighed_utime_ = 0;
   std::map<std::string, Witness> witnesses_;  // by camera
   std::deque<PoseMeasurement> recent_;        // while it moves
+};
+
+/// An object, or what may become one.
+struct Track {
+  std::int64_t id = 0;  ///< 0: not confirmed
+  int class_id = 0;
+  std::string class_name;
+  PoseTrack pose;
+  double log_odds = 0.0;  ///< that it is there
+  int seen = 0;           ///< frames with a pose of it
+  std::int64_t first_utime = 0;
+  FrameId last_seen;
+  TrackState state = TrackState::kVisible;
+  std::string reason;
+  std::int64_t gone_utime = 0;  ///< 0: it is there
+  bool seen_now = false;
+  double seen_through_s = 0.0;  ///< for how long it was seen through, since it was seen last
+
+  bool there() const { return gone_utime == 0; }
 };
 
 }  // namespace houghstream::tracks

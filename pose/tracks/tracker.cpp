@@ -1,44 +1,17 @@
 #include "pose/tracks/tracker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 #include "pipeline/base/log_line.hpp"
-#include "pose/tracks/assignment.hpp"
 #include "pose/tracks/looked_for.hpp"
 #include "pose/tracks/world_clock.hpp"
 
 namespace houghstream::tracks {
-namespace {
-
-/// An object, or what may become one.
-struct Track {
-  std::int64_t id = 0;  ///< 0: not confirmed
-  int class_id = 0;
-  std::string class_name;
-  PoseTrack pose;
-  double log_odds = 0.0;
-  int seen = 0;
-  std::int64_t first_utime = 0;
-  FrameId last_seen;
-  TrackState state = TrackState::kVisible;
-  std::string reason;
-  std::int64_t gone_utime = 0;  ///< 0: it is there
-  bool seen_now = false;
-  double seen_through_s = 0.0;  ///< for how long it was seen through, since it was seen last
-
-  bool there() const { return gone_utime == 0; }
-};
-
-/// What a result counts for an object of which it has no pose.
-struct Missed {
-  double seconds = 0.0;         ///< since the camera's frame before
-  bool by_depth = false;        ///< it is the first one of its frame
-  bool by_recognition = false;  ///< it is the first one of its frame that speaks of the class
-};
-
-}  // namespace
 
 struct Tracker::State {
   TrackModels models;
@@ -51,21 +24,6 @@ struct Tracker::State {
   int world_number = 1;
   std::size_t refused = 0;  // poses of the last frame, for which there was no room
 
-  const TrackModel* model_of(const std::string& name) const {
-    const auto found = models.find(name);
-    return found == models.end() ? nullptr : &found->second;
-  }
-  const Symmetries& symmetries_of(const std::string& name) const {
-    static const Symmetries none;
-    const TrackModel* model = model_of(name);
-    return model == nullptr ? none : model->symmetries;
-  }
-  double radius_of(const std::string& name) const {
-    constexpr double kUsual = 0.07;
-    const TrackModel* model = model_of(name);
-    return model == nullptr ? kUsual : model->radius_m;
-  }
-
   void begin_world();
   CameraClock* begin_frame(const FrameSeen& seen);
   std::vector<SeenPose> new_poses(const FrameSeen& seen, CameraClock& camera) const;
@@ -74,7 +32,6 @@ struct Tracker::State {
   bool has_room();
   void begin(const SeenPose& pose);
   void miss_unseen(const FrameSeen& seen, const std::vector<SeenPose>& poses, CameraClock& camera);
-  void judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses, const Missed& missed);
   void confirm(std::int64_t utime);
   Track* earlier_self(const Track& candidate, std::int64_t utime);
   void forget(std::int64_t utime);
@@ -157,48 +114,21 @@ std::vector<SeenPose> Tracker::State::new_poses(const FrameSeen& seen, CameraClo
 /// Gives the poses of a class to its objects; those that no object is near are left.
 std::vector<SeenPose> Tracker::State::associate(const std::vector<SeenPose>& poses, const std::string& class_name,
                                                 double seconds) {
-  const AssociationSettings& how = settings.association;
-  std::vector<Track*> objects;
-  std::vector<const SeenPose*> measured;
-  for (Track& track : tracks) {
-    if (track.there() && track.class_name == class_name) objects.push_back(&track);
-  }
-  for (const SeenPose& pose : poses) {
-    if (pose.class_name == class_name) measured.push_back(&pose);
-  }
-  constexpr double kUnconfirmed = 0.3;  // rather one that is known
-  Eigen::MatrixXd costs(objects.size(), measured.size());
-  const Symmetries& symmetries = symmetries_of(class_name);
-  const Eigen::Vector3d centre = centre_of(models, class_name);
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const Track& track = *objects[i];
-    const double reach = track.pose.filter().moving() ? how.moving_reach_m : how.reach_m;
-    for (std::size_t j = 0; j < measured.size(); ++j) {
-      const double distance = track.pose.distance(measured[j]->measured, symmetries, centre);
-      const double angle = track.pose.angle(measured[j]->measured, symmetries);
-      costs(i, j) = distance > reach
-                        ? 10.0
-                        : distance / reach + how.turn_cost * angle / M_PI + (track.id == 0 ? kUnconfirmed : 0.0);
-    }
-  }
-  constexpr double kLimit = 2.0;
-  const std::vector<int> given = assign(costs, kLimit);
-  std::vector<bool> taken(measured.size(), false);
-  for (std::size_t i = 0; i < objects.size(); ++i) {
+  const OfOneClass one = of_one_class(class_name, poses, models, tracks);
+  const std::vector<int> given = assign_poses(one, settings.association);
+  std::vector<bool> taken(one.measured.size(), false);
+  for (std::size_t i = 0; i < one.objects.size(); ++i) {
     if (given[i] < 0) continue;
     taken[given[i]] = true;
-    take(*objects[i], *measured[given[i]], seconds);
+    take(*one.objects[i], *one.measured[given[i]], seconds);
   }
   const int together = static_cast<int>(std::count_if(
-      objects.begin(), objects.end(), [](const Track* track) { return track->id != 0 && track->seen_now; }));
+      one.objects.begin(), one.objects.end(), [](const Track* track) { return track->id != 0 && track->seen_now; }));
   most_together[class_name] = std::max(most_together[class_name], together);
   std::vector<SeenPose> left;
-  for (std::size_t j = 0; j < measured.size(); ++j) {
-    if (taken[j]) continue;
-    const bool crowded = std::any_of(objects.begin(), objects.end(), [&](const Track* track) {
-      return track->pose.distance(measured[j]->measured, symmetries, centre) < how.crowded * radius_of(class_name);
-    });
-    if (!crowded) left.push_back(*measured[j]);
+  for (std::size_t j = 0; j < one.measured.size(); ++j) {
+    const SeenPose& pose = *one.measured[j];
+    if (!taken[j] && !is_crowded(pose.measured, one, settings.association)) left.push_back(pose);
   }
   return left;
 }
@@ -207,7 +137,7 @@ void Tracker::State::take(Track& track, const SeenPose& pose, double seconds) {
   constexpr double kRateHz = 30.0;
   constexpr double kMost = 4.0;
   const double share = std::clamp(seconds * kRateHz, 0.5, 1.5);
-  track.pose.take(pose, symmetries_of(track.class_name), track.seen_through_s > 0.0);
+  track.pose.take(pose, symmetries_of(models, track.class_name), track.seen_through_s > 0.0);
   track.log_odds =
       std::min(settings.existence.most,
                track.log_odds + share * settings.existence.gain * std::clamp(log_odds_of(pose.quality), 0.3, kMost));
@@ -254,6 +184,7 @@ void Tracker::State::begin(const SeenPose& pose) {
 /// What is not seen is missed once a frame, however many results that has.
 void Tracker::State::miss_unseen(const FrameSeen& seen, const std::vector<SeenPose>& poses, CameraClock& camera) {
   looked_for.note(seen.poses);
+  const Unseen unseen{seen, poses, models, settings.association.reach_m, settings.pose.motion.coast_s};
   std::set<std::string> missed_now;
   for (Track& track : tracks) {
     if (!track.there() || track.seen_now) continue;
@@ -261,78 +192,9 @@ void Tracker::State::miss_unseen(const FrameSeen& seen, const std::vector<SeenPo
         camera.seconds, camera.results == 1,
         camera.missed.count(track.class_name) == 0 && looked_for.speaks_of(seen.poses, track.class_name)};
     if (missed.by_recognition) missed_now.insert(track.class_name);
-    if (missed.by_depth || missed.by_recognition) judge_unseen(track, seen, poses, missed);
+    if (missed.by_depth || missed.by_recognition) judge_unseen(unseen, missed, settings.existence, track);
   }
   camera.missed.insert(missed_now.begin(), missed_now.end());
-}
-
-/// What the frame says of an object of which it has no pose.
-void Tracker::State::judge_unseen(Track& track, const FrameSeen& seen, const std::vector<SeenPose>& poses,
-                                  const Missed& missed) {
-  const ExistenceSettings& how = settings.existence;
-  const TrackModel* model = model_of(track.class_name);
-  const RgbdFrame* image = model != nullptr && seen.image ? seen.image() : nullptr;
-  const Eigen::Isometry3d T_camera_object = seen.T_world_camera.inverse() * track.pose.filter().T_world_object();
-  const Look look = image != nullptr ? look_at(*image, *model, T_camera_object) : Look{};
-  const double unseen_s = seconds_between(track.last_seen.utime, seen.poses.frame.utime);
-  const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(models, track.class_name);
-  const bool crowded = std::any_of(poses.begin(), poses.end(), [&](const SeenPose& pose) {
-    return pose.class_name != track.class_name &&
-           (pose.measured.T_world_object * centre_of(models, pose.class_name) - place).norm() <
-               0.5 * std::min(radius_of(pose.class_name), radius_of(track.class_name));
-  });
-  const Eigen::Vector3d here = T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
-  const bool detected =
-      seen.detections != nullptr &&
-      std::any_of(seen.detections->detections.begin(), seen.detections->detections.end(),
-                  [&](const Detection& detection) {
-                    return detection.class_name == track.class_name &&
-                           (detection.centre_camera.cast<double>() - here).norm() < settings.association.reach_m;
-                  });
-  double rate = 0.0;
-  std::string why;
-  switch (look.state) {
-    case TrackState::kGone:
-      if (missed.by_depth) {
-        rate = how.seen_through * look.seen_through;
-        track.seen_through_s += missed.seconds;
-      }
-      why =
-          fmt::format("{} sees through {:.0f} % of where it was", seen.poses.frame.channel, 100.0 * look.seen_through);
-      break;
-    case TrackState::kHidden: why = fmt::format("something stands before it in {}", seen.poses.frame.channel); break;
-    case TrackState::kOutOfView:
-      why = fmt::format("not in view of {}, or without depth", seen.poses.frame.channel);
-      break;
-    default:
-      if (missed.by_recognition) rate = look.goes_on ? how.goes_on : detected ? 0.0 : how.unrecognised;
-      why = fmt::format("not recognised by {}, whose depth agrees", seen.poses.frame.channel);
-  }
-  if (crowded && look.state != TrackState::kOutOfView) {
-    if (missed.by_depth) rate += how.crowded_out;
-    why += ", where something else is";
-  }
-  if (track.pose.filter().moving() && unseen_s > settings.pose.motion.coast_s) {
-    if (missed.by_recognition) rate += look.state == TrackState::kHidden ? 0.25 * how.lost : how.lost;
-    why += "; it moved when it was seen last";
-  }
-  if (track.id == 0 && missed.by_recognition) rate += how.unconfirmed;
-  track.log_odds -= missed.seconds * rate;
-  // Of several cameras the one that saw it last has the word, as long as that is not long ago.
-  constexpr double kHasTheWordS = 0.1;
-  const bool says_anything = missed.by_recognition || look.state != TrackState::kUnrecognised;
-  if (says_anything && (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kHasTheWordS)) {
-    track.state = look.state == TrackState::kGone ? TrackState::kUnrecognised : look.state;
-    track.reason = why;
-  }
-  if (track.log_odds < how.gone) {
-    track.gone_utime = seen.poses.frame.utime;
-    track.state = TrackState::kGone;
-    track.reason = why;
-    if (track.id != 0)
-      log_info("{} #{} is gone: {} (last seen by {} {:.2f} s before)", track.class_name, track.id, why,
-               track.last_seen.channel, unseen_s);
-  }
 }
 
 /// The object that a candidate was before it was carried or taken away: one of its class that is gone, that is not
@@ -352,9 +214,10 @@ Track* Tracker::State::earlier_self(const Track& candidate, std::int64_t utime) 
     const bool lost = track.pose.filter().moving() || track.seen_through_s > 0.0;
     const bool free = !track.there() || lost || (handled && visible <= most_together[candidate.class_name]);
     if (!free || track.last_seen.utime > candidate.last_seen.utime) continue;
-    const double rank = unseen_s + (track.there() ? 0.0 : 5.0) +
-                        track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
-                                            symmetries_of(track.class_name), centre_of(models, track.class_name));
+    const double rank =
+        unseen_s + (track.there() ? 0.0 : 5.0) +
+        track.pose.distance({utime, candidate.pose.filter().T_world_object(), Covariance6::Identity()},
+                            symmetries_of(models, track.class_name), centre_of(models, track.class_name));
     if (best != nullptr && rank >= best_rank) continue;
     best = &track;
     best_rank = rank;

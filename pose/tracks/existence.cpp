@@ -1,0 +1,92 @@
+#include "pose/tracks/existence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "pipeline/base/log_line.hpp"
+
+namespace houghstream::tracks {
+namespace {
+
+/// Whether an object of another class is recognised in its place.
+bool is_crowded_out(const Unseen& frame, const Track& track) {
+  const Eigen::Vector3d place = track.pose.filter().T_world_object() * centre_of(frame.models, track.class_name);
+  return std::any_of(frame.poses.begin(), frame.poses.end(), [&](const SeenPose& pose) {
+    return pose.class_name != track.class_name &&
+           (pose.measured.T_world_object * centre_of(frame.models, pose.class_name) - place).norm() <
+               0.5 * std::min(radius_of(frame.models, pose.class_name), radius_of(frame.models, track.class_name));
+  });
+}
+
+/// Whether the class is detected at a place, which is where such a detection has its centre; camera frame, metres.
+bool is_detected(const Unseen& frame, const std::string& class_name, const Eigen::Vector3d& here) {
+  const Detections* detections = frame.seen.detections;
+  return detections != nullptr &&
+         std::any_of(detections->detections.begin(), detections->detections.end(), [&](const Detection& detection) {
+           return detection.class_name == class_name &&
+                  (detection.centre_camera.cast<double>() - here).norm() < frame.reach_m;
+         });
+}
+
+}  // namespace
+
+void judge_unseen(const Unseen& frame, const Missed& missed, const ExistenceSettings& how, Track& track) {
+  const FrameSeen& seen = frame.seen;
+  const auto known = frame.models.find(track.class_name);
+  const TrackModel* model = known == frame.models.end() ? nullptr : &known->second;
+  const RgbdFrame* image = model != nullptr && seen.image ? seen.image() : nullptr;
+  const Eigen::Isometry3d T_camera_object = seen.T_world_camera.inverse() * track.pose.filter().T_world_object();
+  const Look look = image != nullptr ? look_at(*image, *model, T_camera_object) : Look{};
+  const double unseen_s = seconds_between(track.last_seen.utime, seen.poses.frame.utime);
+  const bool crowded = is_crowded_out(frame, track);
+  const Eigen::Vector3d here = T_camera_object * (model != nullptr ? model->vote_centre : Eigen::Vector3d::Zero());
+  const bool detected = is_detected(frame, track.class_name, here);
+  double rate = 0.0;
+  std::string why;
+  switch (look.state) {
+    case TrackState::kGone:
+      if (missed.by_depth) {
+        rate = how.seen_through * look.seen_through;
+        track.seen_through_s += missed.seconds;
+      }
+      why =
+          fmt::format("{} sees through {:.0f} % of where it was", seen.poses.frame.channel, 100.0 * look.seen_through);
+      break;
+    case TrackState::kHidden: why = fmt::format("something stands before it in {}", seen.poses.frame.channel); break;
+    case TrackState::kOutOfView:
+      why = fmt::format("not in view of {}, or without depth", seen.poses.frame.channel);
+      break;
+    default:
+      if (missed.by_recognition) rate = look.goes_on ? how.goes_on : detected ? 0.0 : how.unrecognised;
+      why = fmt::format("not recognised by {}, whose depth agrees", seen.poses.frame.channel);
+  }
+  if (crowded && look.state != TrackState::kOutOfView) {
+    if (missed.by_depth) rate += how.crowded_out;
+    why += ", where something else is";
+  }
+  if (track.pose.filter().moving() && unseen_s > frame.coast_s) {
+    if (missed.by_recognition) rate += look.state == TrackState::kHidden ? 0.25 * how.lost : how.lost;
+    why += "; it moved when it was seen last";
+  }
+  if (track.id == 0 && missed.by_recognition) rate += how.unconfirmed;
+  track.log_odds -= missed.seconds * rate;
+  // Of several cameras the one that saw it last has the word, as long as that is not long ago.
+  constexpr double kHasTheWordS = 0.1;
+  const bool says_anything = missed.by_recognition || look.state != TrackState::kUnrecognised;
+  if (says_anything && (track.last_seen.channel == seen.poses.frame.channel || unseen_s > kHasTheWordS)) {
+    track.state = look.state == TrackState::kGone ? TrackState::kUnrecognised : look.state;
+    track.reason = why;
+  }
+  if (track.log_odds < how.gone) {
+    track.gone_utime = seen.poses.frame.utime;
+    track.state = TrackState::kGone;
+    track.reason = why;
+    if (track.id != 0)
+      log_info("{} #{} is gone: {} (last seen by {} {:.2f} s before)", track.class_name, track.id, why,
+               track.last_seen.channel, unseen_s);
+  }
+}
+
+}  // namespace houghstream::tracks
