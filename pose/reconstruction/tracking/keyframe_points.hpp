@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
+#include "pose/reconstruction/choice/object_choice.hpp"
 #include "pose/reconstruction/keyframe_map.hpp"
-#include "pose/reconstruction/object_choice.hpp"
 
 namespace houghstream::reconstruction {
 

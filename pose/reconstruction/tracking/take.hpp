@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pipeline/types/frame_id.hpp"
+#include "pose/reconstruction/choice/object_choice.hpp"
 #include "pose/reconstruction/keyframe_map.hpp"
-#include "pose/reconstruction/object_choice.hpp"
 #include "pose/reconstruction/sphere_of_directions.hpp"
 
 namespace houghstream::reconstruction {

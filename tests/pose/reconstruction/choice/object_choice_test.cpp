@@ -1,4 +1,4 @@
-#include "pose/reconstruction/object_choice.hpp"
+#include "pose/reconstruction/choice/object_choice.hpp"
 
 #include <gtest/gtest.h>
 

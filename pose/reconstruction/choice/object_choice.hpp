@@ -1,22 +1,15 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "pipeline/types/frame.hpp"
+#include "pose/reconstruction/choice/support_planes.hpp"
 
 namespace houghstream::reconstruction {
-
-/// normal.X + offset = 0 for its points X; camera frame, metres.
-struct Plane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit length, towards the camera
-  double offset = 0.0;                                ///< the camera's height above it
-
-  double height(const Eigen::Vector3d& point) const { return normal.dot(point) + offset; }
-};
 
 /// The object that is meant.
 struct ChosenObject {
@@ -48,15 +41,6 @@ struct ChoiceSettings {
 
 /// Pixels of a colour that skin has, CV_8UC1 (Chai & Ngan, "Face segmentation using skin-color map", 1999).
 cv::Mat skin_pixels(const cv::Mat& colour);
-
-/// Planes on which things may stand, the largest first: RANSAC (Fischler & Bolles 1981) on the depth, refined by least
-/// squares; only such as face upwards or the camera.
-std::vector<Plane> find_planes(const RgbdFrame& frame, const ChoiceSettings& settings);
-
-/// The plane nearest to the measured points that are close to it, of those pixels where `mask` (CV_8UC1, may be empty)
-/// is 0 and within `radius_m` of `middle`.
-Plane refine_plane(const RgbdFrame& frame, const cv::Mat& mask, const Plane& plane, const Eigen::Vector3d& middle,
-                   double radius_m);
 
 /// The rectangle about a box as the camera sees it, also beyond the picture; none where a corner is nearer than 5 cm.
 std::optional<cv::Rect> seen_box(const Eigen::AlignedBox3d& box, const Camera& camera,

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "pose/reconstruction/choice/support_planes.hpp"
+
+namespace houghstream::reconstruction {
+
+/// Coordinates in a plane, and cells of it; camera frame, metres.
+struct PlaneAxes {
+  static constexpr double kCell_m = 0.005;  ///< side of a cell: what hangs together is found in these
+
+  Eigen::Vector3d origin, x, y;
+
+  /// About the point at which the camera looks along a ray, x to the camera's right.
+  PlaneAxes(const Plane& plane, const Eigen::Vector3d& middle_ray);
+
+  /// The cell that a point is above; none where that is too far from the origin.
+  std::optional<cv::Point> cell_of(const Eigen::Vector3d& point) const;
+  /// The point of the plane at a place in cells.
+  Eigen::Vector3d point_at(double u, double v) const;
+  /// Cells of a side.
+  static int cells();
+};
+
+/// Something above the plane that hangs together.
+struct Cluster {
+  int pixels = 0;
+  double lowest = 1e9, highest = 0.0;  ///< above the plane, metres
+  double to_middle_px = 1e9;           ///< of its nearest pixel, from the place that is meant
+  cv::Rect cells;
+};
+
+struct Clusters {
+  cv::Mat of_pixel;           ///< CV_32SC1, size of the frame; 0 = none
+  std::vector<Cluster> list;  ///< the first is none
+};
+
+/// What of a picture is looked at.
+struct SearchedPart {
+  cv::Rect region_px;       ///< within the picture
+  cv::Point2d meant_px;     ///< the place that is meant
+  double farthest_m = 0.0;  ///< from the camera
+};
+
+/// All that stands on a plane, or floats above it.
+Clusters find_clusters(const RgbdFrame& frame, const Plane& plane, const PlaneAxes& axes, const SearchedPart& searched);
+
+}  // namespace houghstream::reconstruction
