@@ -1,4 +1,4 @@
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/model_agreement.hpp"
 
 #include <gtest/gtest.h>
 
