@@ -1,33 +1,16 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "pose/following/detection_look.hpp"
+#include "pose/following/followed_objects.hpp"
 #include "pose/pose_estimator.hpp"
 
 namespace houghstream {
-
-/// When what is followed is given up, and which detection is of it.
-struct FollowerSettings {
-  int most_failures = 3;            ///< frames one after the other without evidence: it is lost
-  float least_kept_quality = 0.3F;  ///< a pose that is withheld is followed on from this quality on
-  double longest_withheld_s = 1.0;  ///< but no longer without a valid pose
-  double longest_hidden_s = 2.0;    ///< the same while it is hidden
-  double reach_m = 0.07;          ///< between a detection's centre and a followed pose of its class: it is of that one
-  double apart = 0.5;             ///< of the smaller radius: closer together two objects are one
-  double score_gain = 0.3;        ///< how much one look moves the score's log odds
-  float missed_score = 0.3F;      ///< what a look is worth that does not find an object in full view...
-  double missed_after_s = 1.0;    ///< ...once none has found it for so long
-  double doubted_after_s = 0.15;  ///< a detection's pose is looked for anew, beside the followed one...
-  double better_log_odds = 0.3;   ///< ...and takes its place where its quality is so much better
-  double speed_gain = 0.5;        ///< how much the last step moves the speed
-};
 
 /// What hs-pose --follow remembers: the objects of each camera that are followed from frame to frame by registration
 /// from where they are expected (constant velocity), each for as long as the evidence lasts. Detections, which come
@@ -50,61 +33,20 @@ class ObjectFollower {
   ObjectPoses answer(const PoseEstimator& estimator, const RgbdFrame& frame, const Detections& detections);
 
  private:
-  struct Followed {
-    std::int64_t number = 0;  // in the order in which they were found
-    int class_id = 0;
-    std::string class_name;
-    double log_odds = 0.0;  // of its detections' scores
-    Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
-    std::int64_t utime = 0;                               // of the frame in which it was there
-    Eigen::Vector3d speed = Eigen::Vector3d::Zero();      // m/s
-    Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  // rad/s
-    std::int64_t valid_utime = 0;                         // of its last valid pose
-    std::int64_t found_utime = 0;                         // of its last detection
-    std::int64_t doubted_utime = 0;                       // when it was last looked for as if it were not followed
-    int failures = 0;
-    std::optional<Verification> verified;  // of the last rendering
-  };
-  /// A frame's poses, and whose they are.
-  struct Shown {
-    std::int64_t utime = 0;
-    std::vector<std::int64_t> numbers;
-    std::vector<FollowedPose> poses;
-  };
-  struct Camera {
-    std::vector<Followed> objects;
-    std::deque<Shown> shown;  // the last ones
-    std::int64_t frames = 0;
-  };
-  /// A detection's followed object: its place in Shown, or -1.
-  using Matches = std::vector<int>;
-  /// A frame's detections beside what was followed in it.
-  struct Look {
-    Shown shown;
-    Matches matches;
-    int doubted = -1;  // the place in `shown` of what is looked for as if it were not followed
-
-    bool is_looked_for(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == doubted; }
-  };
-
-  std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame, Camera& camera) const;
-  void follow_again(const PoseEstimator& estimator, const RgbdFrame& frame, const Camera& camera,
+  std::vector<FollowedPose> follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
+                                       FollowedCamera& camera) const;
+  void follow_again(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                     std::vector<FollowedPose>& poses) const;
-  void note_result(const FollowedPose& result, std::int64_t utime, Followed& object) const;
-  bool is_lost(const Followed& object, const FollowedPose& result, std::int64_t utime) const;
-  void give_up(const PoseEstimator& estimator, Camera& camera, Shown& shown) const;
-  Look begin_look(const PoseEstimator& estimator, const Detections& detections);
-  Matches match(const PoseEstimator& estimator, const Detections& detections, const Shown& shown) const;
-  void note_look(const Detections& detections, const Matches& matches, const Shown& shown, Camera& camera) const;
-  static Followed* find(std::int64_t number, Camera& camera);
-  int choose_doubted(const Matches& matches, const Shown& shown, Camera& camera) const;
-  void settle_doubt(const ObjectPose& pose, const FollowedPose& followed, Followed& object) const;
-  void take_up(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, Camera& camera);
-  static void bring_up_to_date(std::int64_t utime, const Camera& camera, Followed& found);
+  void note_result(const FollowedPose& result, std::int64_t utime, FollowedObject& object) const;
+  bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t utime) const;
+  void give_up(const PoseEstimator& estimator, FollowedCamera& camera, ShownFrame& shown) const;
+  DetectionLook begin_look(const PoseEstimator& estimator, const Detections& detections);
+  void take_up(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, FollowedCamera& camera);
+  static void bring_up_to_date(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);
 
   FollowerSettings settings_;
   std::mutex mutex_;
-  std::map<std::string, Camera> cameras_;  // by channel
+  std::map<std::string, FollowedCamera> cameras_;  // by channel
   std::int64_t found_ = 0;
 };
 
