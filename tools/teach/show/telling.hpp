@@ -4,7 +4,7 @@
 #include <string>
 
 #include "pipeline/types/frame_id.hpp"
-#include "pose/reconstruction/object_tracker.hpp"
+#include "pose/reconstruction/tracking/object_tracker.hpp"
 #include "tools/teach/show/show_progress.hpp"
 
 namespace houghstream::teach {
