@@ -98,10 +98,11 @@ TEST(TrainingPictures, SamplesOfTheObjectLieOnItsMaskAndTheOthersBeside) {
 /// How unevenly steep the middle of the object seems, 0 to 127; the derivatives are the first planes.
 double unevenness(const TrainingPicture& picture) {
   constexpr int kReach = 8;  // pixels
+  const cv::Point middle(picture.features.width() / 2, picture.features.height() / 2);
   std::vector<double> slopes;
   for (int y = -kReach; y <= kReach; ++y) {
     for (int x = -kReach; x <= kReach; ++x) {
-      slopes.push_back(picture.features.at(picture.features.width() / 2 + x, picture.features.height() / 2 + y)[0]);
+      slopes.push_back(picture.features.at(middle.x + x, middle.y + y)[0]);
     }
   }
   cv::Scalar mean;
