@@ -189,3 +189,81 @@ def bop_words(summary):
     words = f"Every {settings['every']}th image" if settings["every"] > 1 else "All images"
     taught = f"the store {settings['objects']}" if settings["objects"] else f"{settings['seeds']} teaching(s) a set"
     return f"{words} of the sets' targets, split `{settings['split']}`; {taught}."
+
+
+SEQUENCES = {
+    "walk": "a camera walks round a table",
+    "pushed": "objects are pushed",
+    "carried": "carried by a hand",
+    "removed": "taken away, brought back",
+    "swapped": "swapped",
+    "cans": "two equal cans",
+    "arm": "an arm passes before them",
+    "jerk": "the camera is pushed",
+    "cameras": "three cameras",
+}
+
+
+def sequence_table(summary):
+    header = ("", "frames", "recall", "precision", "switches", "HOTA", "standing: mm, 95 %", "within two deviations")
+    rows = [header]
+    for name, one in summary["sequences"].items():
+        standing = one["error"]["standing"]
+        errors = f"{show(standing['mm_median'], '{:.2f}')}, {show(standing['mm_p95'], '{:.2f}')}"
+        rows.append((SEQUENCES[name], one["frames"], show(one["recall"]), show(one["precision"]), one["id_switches"],
+                     show(one["hota"]), errors, show(standing["within_two_deviations"])))  # fmt: skip
+    return table(rows)
+
+
+def track_words(summary):
+    jitter, cameras = summary["jitter"], summary["cameras"]
+    text = (f"An object put into view is published within {show(summary['seconds_to_find'], '{:.2f}')} s, one taken away is gone "
+            f"within {show(summary['seconds_to_gone'], '{:.2f}')} s. What stands jitters by {show(jitter['mm'], '{:.2f}')} mm and "
+            f"{show(jitter['deg'], '{:.2f}')} degrees (deviation over 5 s). ")  # fmt: skip
+    if cameras is not None:
+        best = min(cameras["mm_median_alone"].values())
+        text += (f"By three cameras the error is {show(cameras['mm_median'], '{:.2f}')} mm, by the best alone "
+                 f"{show(best, '{:.2f}')} mm.")  # fmt: skip
+    return text
+
+
+def rate_table(summary):
+    rows = [("camera", "to poses, ms: p50, p99", "to the world's objects, ms", "lost", "passed over", "cores in use")]
+    for name in ("hz30", "hz60", "hz90"):
+        one = summary.get(name)
+        if one is None:
+            continue
+        rows.append((f"{name[2:]} Hz", f"{ms(one['p50_ms'])}, {ms(one['p99_ms'])}", f"{ms(one['objects_p50_ms'])}, "
+                     f"{ms(one['objects_p99_ms'])}", one["lost"], show(one["skipped"]), show(one["cores"], "{:.2f}")))  # fmt: skip
+    return table(rows) if len(rows) > 1 else None
+
+
+def host_words(summary):
+    hosts = summary.get("hosts")
+    if not hosts:
+        return None
+    one, two, lost = hosts["one"]["world"], hosts["two"]["world"], hosts["lost"]
+    return (f"Frame to the world's objects: {ms(one['p50_ms'])} ms (p50) with twenty objects on one host, {ms(two['p50_ms'])} ms "
+            f"with forty on two. A host that goes away is said after {ms(lost['said_s'])} s; back, its objects are there after "
+            f"{ms(lost['back_s'])} s.")  # fmt: skip
+
+
+def shown_table(summary):
+    """Of each object: the model beside the true mesh, and what is found by it beside what the true mesh finds."""
+    header = ("", "mesh: mm, 95 %", "drift: mm, degrees", "masks' IoU", "AUC, of true mesh", "ADD-S, of true mesh", "verdict")
+    rows = [header]
+    for name, one in summary["objects"].items():
+        rows.append((name, f"{show(one['mesh_mm_median'], '{:.2f}')}, {show(one['mesh_mm_95'], '{:.2f}')}",
+                     f"{show(one['drift_mm'], '{:.2f}')}, {show(one['drift_deg'], '{:.2f}')}", show(one["mask_iou"]),
+                     f"{show(one['auc'])}, {show(one['auc_true'])}", f"{show(one['add_s'])}, {show(one['add_s_true'])}",
+                     one["verdict"]))  # fmt: skip
+    return table(rows)
+
+
+def shown_words(summary):
+    text = f"Frames are followed at {show(summary['tracking_hz'], '{:.0f}')} Hz."
+    stream = summary["stream"]
+    if stream is None:
+        return text
+    return text + (f" Taught while a stream went on: found {show(summary['seconds_to_found'], '{:.0f}')} s after the take's end; "
+                   f"{stream['frames']} frames, {stream['lost']} lost, {stream['skipped']} passed over.")  # fmt: skip

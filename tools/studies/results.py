@@ -16,18 +16,24 @@ from studies.result_tables import (
     demo_frames,
     demo_table,
     growth_table,
+    host_words,
     live_frames,
     live_table,
     pose_table,
     pose_words,
+    rate_table,
     recorded_pose_words,
+    sequence_table,
     show,
+    shown_table,
+    shown_words,
     small_speed_table,
     speed_gains,
     speed_table,
     stage_table,
     stream_table,
     table,
+    track_words,
 )
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -120,6 +126,16 @@ def bench_sections(out, commit):
     ]
 
 
+def life_sections(out, commit):
+    """Of objects that are followed over time, and of objects that are shown."""
+    tracks, shown = Source(out / "bench" / "tracks.json", commit), Source(out / "teach" / "summary.json", commit)
+    followed = (sequence_table, track_words, rate_table, host_words)
+    return [
+        section("Objects that persist", tracks, "tools/bench tracks", *followed),
+        section("Objects that are shown to a camera", shown, "tools/bench teach", shown_table, shown_words),
+    ]
+
+
 def bop_sections(out, commit):
     measured = Source(out / "bop" / "summary.json", commit)
     command = "tools/bench bop --dataset NAME=ROOT"
@@ -138,7 +154,8 @@ def copy_pictures(folder, into):
 
 def page(out, commit):
     reproduced = Source(out / "reproduce" / "summary.json", commit)
-    sections = demo_sections(out, commit) + bench_sections(out, commit) + bop_sections(out, commit)
+    made = (demo_sections, bench_sections, life_sections, bop_sections)
+    sections = [one for make in made for one in make(out, commit)]
     if reproduced.is_there:
         sections += [
             section(title, reproduced, "", *content) for title, *content in reproduce_tables(out / "reproduce")

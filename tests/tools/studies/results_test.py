@@ -101,6 +101,28 @@ class ResultsOfACommit(unittest.TestCase):
         self.assertIn("| realtime | 3.00 |", section)
         self.assertIn("Not measured of this commit: `tools/bench growth`", text)
 
+    def test_objects_that_persist_have_sequences_and_rates(self):
+        standing = {"mm_median": 0.17, "mm_p95": 0.85, "within_two_deviations": 0.98}
+        walk = {"frames": 900, "recall": 0.997, "precision": 1.0, "id_switches": 0, "hota": 0.996, "error": {"standing": standing}}
+        rate = {"p50_ms": 2.6, "p99_ms": 7.2, "objects_p50_ms": 2.8, "objects_p99_ms": 8.0, "lost": 0, "skipped": 0.0, "cores": 0.32}
+        summary = {"sequences": {"walk": walk}, "jitter": {"mm": 0.13, "deg": 0.2}, "seconds_to_find": 0.3, "cameras": None}
+        write_json(
+            self.out / "bench" / "tracks.json", {**summary, "seconds_to_gone": None, "hz60": rate, **OF_COMMIT}
+        )
+        section = self.section(self.written(), "Objects that persist")
+        self.assertIn("round a table | 900 | 0.997 | 1.000 | 0 | 0.996 | 0.17, 0.85 | 0.980 |", section)
+        self.assertIn("| 60 Hz | 2.6, 7.2 | 2.8, 8.0 | 0 | 0.000 | 0.32 |", section)
+        self.assertIn("gone within not measured s", section)
+
+    def test_objects_that_are_shown_stand_beside_their_true_meshes(self):
+        keys = ("mesh_mm_median", "mesh_mm_95", "drift_mm", "drift_deg", "mask_iou", "auc_true", "add_s_true")
+        tin = {**dict.fromkeys(keys, 0.5), "auc": None, "add_s": None, "verdict": "poor"}
+        summary = {"objects": {"tin": tin}, "tracking_hz": 43.4, "seconds_to_found": None, "stream": None}
+        write_json(self.out / "teach" / "summary.json", {**summary, **OF_COMMIT})
+        section = self.section(self.written(), "Objects that are shown")
+        self.assertIn("| tin | 0.50, 0.50 | 0.50, 0.50 | 0.500 | not measured, 0.500 |", section)
+        self.assertIn("followed at 43 Hz.", section)
+
     def test_a_cell_that_was_not_measured_says_so(self):
         write_json(self.out / "reproduce" / "summary.json", reproduced())
         section = self.section(self.written(), "Six rendered scenes")
