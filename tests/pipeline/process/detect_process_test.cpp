@@ -25,7 +25,7 @@ images_t frame_message(std::int64_t utime, std::int64_t sequence) {
   return to_message(make_test_frame(utime), WireFormat{}, sequence);
 }
 
-std::function<void(LcmBus&)> process_with(std::function<Detections(const RgbdFrame&)> detect) {
+std::function<void(LcmBus&)> process_with(const std::function<Detections(const RgbdFrame&)>& detect) {
   return [detect](LcmBus& bus) { run_detect_process(bus, DetectProcessOptions{}, detect); };
 }
 
