@@ -28,7 +28,7 @@ TEST(ReliabilityPicture, BarsAreAsHighAsWhatIsTrue) {
   };
   const int half = pixels(0.5);
   EXPECT_GT(half, 1000);
-  EXPECT_NEAR(pixels(1.0), 2 * half, half / 4);
+  EXPECT_NEAR(pixels(1.0), 2 * half, 0.25 * half);
 }
 
 }  // namespace

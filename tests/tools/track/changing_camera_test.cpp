@@ -48,7 +48,7 @@ std::function<void(LcmBus&)> tracking_bowls(const std::optional<Camera>& camera)
   options.wait_s = 0.02;
   options.camera = camera;
   return [options](LcmBus& bus) {
-    const auto models =
+    auto models =
         std::make_shared<const tracks::TrackModels>(tracks::make_track_models({{"bowl", tetrahedron(0.4F)}}, {}));
     run_track_process(bus, options, [&] { return models; });
   };

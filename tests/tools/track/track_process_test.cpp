@@ -41,7 +41,7 @@ void send_place(ProcessOnMemq& test, int frame, double x) {
 
 std::function<void(LcmBus&)> tracking(const TrackProcessOptions& options) {
   return [options](LcmBus& bus) {
-    const auto none = std::make_shared<const tracks::TrackModels>();
+    auto none = std::make_shared<const tracks::TrackModels>();
     run_track_process(bus, options, [&] { return none; });
   };
 }
@@ -219,7 +219,7 @@ TEST(TrackProcess, ALogGivesTheSameObjectsEachTime) {
   std::vector<std::vector<WorldObjects>> runs;
   for (const char* name : {"first.lcmlog", "second.lcmlog"}) {
     LcmBus bus("file://" + (folder / "in.lcmlog").string(), (folder / name).string());
-    const auto none = std::make_shared<const tracks::TrackModels>();
+    auto none = std::make_shared<const tracks::TrackModels>();
     run_track_process(bus, {}, [&] { return none; });
     runs.emplace_back();
     LogReader reader(folder / name);
@@ -256,7 +256,7 @@ TEST(TrackProcess, AResultThatComesTwoSecondsLateIsPassedOverAndTheWorldGoesOn) 
   writer.close();
   {
     LcmBus bus("file://" + (folder / "in.lcmlog").string(), (folder / "out.lcmlog").string());
-    const auto none = std::make_shared<const tracks::TrackModels>();
+    auto none = std::make_shared<const tracks::TrackModels>();
     run_track_process(bus, {}, [&] { return none; });
   }
   int worlds = 0;
@@ -277,7 +277,7 @@ TEST(TrackProcess, ALogWithoutPosesIsRefused) {
   writer.write(1, channel::kFrame, {bytes.data(), bytes.size()});
   writer.close();
   LcmBus bus("file://" + file.string());
-  const auto none = std::make_shared<const tracks::TrackModels>();
+  auto none = std::make_shared<const tracks::TrackModels>();
   EXPECT_THROW(run_track_process(bus, {}, [&] { return none; }), InputError);
 }
 
@@ -291,7 +291,7 @@ TEST(TrackProcess, ALogOfPosesWithoutTheirFramesIsRefusedWithWhatKeepsThem) {
   }
   writer.close();
   LcmBus bus("file://" + file.string());
-  const auto none = std::make_shared<const tracks::TrackModels>();
+  auto none = std::make_shared<const tracks::TrackModels>();
   try {
     run_track_process(bus, {}, [&] { return none; });
     ADD_FAILURE() << "expected an error";
