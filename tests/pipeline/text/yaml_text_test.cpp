@@ -20,6 +20,10 @@ TEST(YamlText, ListsAreIndentedAndWhatEndsAMessageGoes) {
             kHeader + "k:\n  - 1\n  - x: 2\n    y: 3\nb: 4\n");
 }
 
+TEST(YamlText, AByteZeroIsRefused) {
+  EXPECT_THROW(yaml_for_opencv(std::string("a: [0,\0\0\n", 10), "a.yaml"), InputError);
+}
+
 // OpenCV's reader would need 25 MB of the stack.
 TEST(YamlText, ListsWithinListsWithoutEndAreRefused) {
   std::string brackets;
