@@ -4,6 +4,7 @@
 
 #include "tests/pipeline/geometry/tetrahedron.hpp"
 #include "tests/pipeline/process_test.hpp"
+#include "tests/tools/track/one_bowl.hpp"
 #include "tools/track/track_process.hpp"
 
 // What becomes of objects when the frames of their camera have another size from some frame on.
@@ -14,8 +15,7 @@ namespace {
 constexpr int kKnown = 10;  // frames, after which a bowl that is seen in each is an object
 
 images_t picture(int frame, int width, int height) {
-  return to_message(make_test_frame(1000000000 + 40000 * static_cast<std::int64_t>(frame), width, height), WireFormat{},
-                    frame);
+  return to_message(make_test_frame(time_of(frame), width, height), WireFormat{}, frame);
 }
 
 /// What a driver of somebody else sends.
@@ -29,16 +29,8 @@ images_t without_camera(images_t message) {
 
 /// A bowl behind what the frames' depth shows, and whether it is found.
 void send_with_bowl(ProcessOnMemq& test, const images_t& message, bool found) {
-  ObjectPose pose;
-  pose.class_id = 1;
-  pose.class_name = "bowl";
-  pose.status = PoseStatus::kValid;
-  pose.quality = 0.95F;
-  pose.visible_fraction = 0.9F;
-  pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1));
-  ObjectPoses poses;
-  poses.frame = {channel::kFrame, message.utime};
-  if (found) poses.poses = {pose};
+  ObjectPoses poses = one_bowl(message.utime);
+  if (!found) poses.poses.clear();
   test.bus.publish(channel::kFrame, message);
   test.bus.publish(channel::kPoses, to_message(poses));
 }

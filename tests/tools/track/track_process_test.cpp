@@ -7,27 +7,10 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "tests/pipeline/process_test.hpp"
+#include "tests/tools/track/one_bowl.hpp"
 
 namespace houghstream::track {
 namespace {
-
-ObjectPoses one_bowl(std::int64_t utime, const std::string& camera = channel::kFrame) {
-  ObjectPose pose;
-  pose.class_id = 1;
-  pose.class_name = "bowl";
-  pose.status = PoseStatus::kValid;
-  pose.quality = 0.95F;
-  pose.visible_fraction = 0.9F;
-  pose.T_camera_object = Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1));
-  ObjectPoses poses;
-  poses.frame = {camera, utime};
-  poses.poses = {pose};
-  return poses;
-}
-
-std::int64_t time_of(int frame) {
-  return 1000000000 + 40000 * static_cast<std::int64_t>(frame);
-}
 
 void send_frame(ProcessOnMemq& test, int frame, const std::string& camera = channel::kFrame) {
   test.bus.publish(camera, to_message(make_test_frame(time_of(frame)), WireFormat{}, frame));
