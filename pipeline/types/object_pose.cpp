@@ -28,8 +28,22 @@ const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_inde
   return found == poses.poses.end() ? nullptr : &*found;
 }
 
+bool is_refuted(const Detection& detection, const ObjectPose* pose) {
+  constexpr float kContradicted = 0.02F;
+  constexpr float kSureByItself = 0.8F;
+  if (pose == nullptr || detection.score >= kSureByItself) return false;
+  switch (pose->status) {
+    case PoseStatus::kRejectedByDepth:
+    case PoseStatus::kLowScore:
+    case PoseStatus::kRejectedByOutline:
+    case PoseStatus::kRejectedByColour: return pose->quality < kContradicted;
+    default: return false;  // valid, or none was found that could be judged
+  }
+}
+
 bool is_reported(const Detection& detection, const ObjectPose* pose) {
-  return detection.reported || (pose != nullptr && pose->status == PoseStatus::kValid);
+  if (pose != nullptr && pose->status == PoseStatus::kValid) return true;
+  return detection.reported && !is_refuted(detection, pose);
 }
 
 }  // namespace houghstream

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 namespace houghstream {
 namespace {
@@ -102,6 +103,24 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   sums.add(points, count);
   if (sums.count() < kFewest) return std::nullopt;
   return compare(sums.means(), sums.count());
+}
+
+std::optional<ColourComparison> compare_print(const LabRegion& colours, const ViewLook& seen,
+                                              const DepthTolerance& tolerance) {
+  constexpr int kAveraged = 5;  // pixels
+  constexpr int kReach = 2;
+  if (colours.lab.empty()) return std::nullopt;
+  LabRegion moved = colours;
+  cv::blur(colours.lab, moved.lab, cv::Size(kAveraged, kAveraged));
+  std::optional<ColourComparison> best;
+  for (const int dy : {0, -kReach, kReach}) {
+    for (const int dx : {0, -kReach, kReach}) {
+      moved.origin_px = colours.origin_px + cv::Point(dx, dy);
+      const std::optional<ColourComparison> here = compare_colours(moved, seen, tolerance);
+      if (here && (!best || here->agreement > best->agreement)) best = here;
+    }
+  }
+  return best;
 }
 
 float joint_score(float depth_value, const std::optional<ColourComparison>& colour) {

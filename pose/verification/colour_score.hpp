@@ -28,6 +28,12 @@ struct ColourComparison {
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
                                                 const DepthTolerance& tolerance);
 
+/// The same with the seen colours averaged over as much as the model's are, and moved by up to two pixels to where they
+/// agree best: cameras' colours are registered to their depth, and poses found, no better than that. For judging a
+/// pose, not for choosing between poses, which differ by less.
+std::optional<ColourComparison> compare_print(const LabRegion& colours, const ViewLook& seen,
+                                              const DepthTolerance& tolerance);
+
 /// Depth and colour together: the square root of `depth_value` (DepthScore::value), whose noise would else drown what
 /// little the turns of a round thing differ in colour, less a part where the colours do not explain what is seen.
 /// `depth_value` itself where that is not above 0.

@@ -19,7 +19,7 @@ PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
   const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
   return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance),
-          compare_colours(seen.colours, look, tolerance)};
+          compare_print(seen.colours, look, tolerance)};
 }
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
@@ -28,6 +28,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   constexpr double kFraction = 0.05;
   constexpr double kCount = 3.0;
   constexpr double kLeastAgreement = -0.5;
+  constexpr double kColourNoise = 15.0;   // variance that says nothing
   constexpr double kUnknownColour = 0.8;  // of the usual agreement: no colours are no proof
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
@@ -39,6 +40,8 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   if (evidence.colour) {
     terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
     terms.agreement = std::max(kLeastAgreement, static_cast<double>(evidence.colour->agreement));
+    const auto left_over = static_cast<double>(evidence.colour->left_over);
+    terms.left_over = -std::log(left_over * left_over + kColourNoise);
   } else {
     terms.agreement *= kUnknownColour;
   }
@@ -54,7 +57,8 @@ float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
 PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {
   constexpr std::array<PoseStatus, kQualityTerms.size()> kReasons = {
       PoseStatus::kLowScore,          PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByDepth,
-      PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour};
+      PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour,
+      PoseStatus::kRejectedByColour};
   const auto against = [&](std::size_t i) {
     const auto term = kQualityTerms[i];
     return settings.weights.*term * (settings.typical.*term - terms.*term);

@@ -29,14 +29,15 @@ struct QualityTerms {
   double outline = 0.0;       ///< log of outline ends over outline that goes on
   double chroma_conflict = 0.0;  ///< see ColourComparison (negated)
   double agreement = 0.0;        ///< see ColourComparison, at least -0.5
+  double left_over = 0.0;        ///< log of the variance of the seen colours that is left over (negated)
 };
 
 /// The terms in the order in which they are summed, and their names.
-inline constexpr std::array<double QualityTerms::*, 6> kQualityTerms = {
-    &QualityTerms::detection_log_odds, &QualityTerms::seen_through, &QualityTerms::visible, &QualityTerms::outline,
-    &QualityTerms::chroma_conflict,    &QualityTerms::agreement};
+inline constexpr std::array<double QualityTerms::*, 7> kQualityTerms = {
+    &QualityTerms::detection_log_odds, &QualityTerms::seen_through, &QualityTerms::visible,  &QualityTerms::outline,
+    &QualityTerms::chroma_conflict,    &QualityTerms::agreement,    &QualityTerms::left_over};
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
-    "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "agreement"};
+    "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "agreement", "left_over"};
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
 /// (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least` on in scenes
@@ -46,10 +47,10 @@ inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames
 /// learns of an object takes their place.
 struct QualitySettings {
   double bias = -5.31;
-  QualityTerms weights = {1.05, 0.50, 2.45, 0.77, 2.18, 7.42};
+  QualityTerms weights = {1.05, 0.50, 2.45, 0.77, 2.18, 7.42, 0.0};
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {2.16, 3.05, -0.17, 1.64, -0.23, 0.77};
+  QualityTerms typical = {2.16, 3.05, -0.17, 1.64, -0.23, 0.77, -4.1};
   float least = 0.8F;                ///< poses of lower quality are not published...
   float least_of_candidates = 0.8F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
 };

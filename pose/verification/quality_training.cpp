@@ -39,7 +39,12 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
                                      double stiffness) {
   std::vector<LogisticExample<kWeights>> judged;
   judged.reserve(examples.size());
-  for (const QualityExample& example : examples) judged.push_back({to_vector(1.0, example.terms), example.is_right});
+  for (const QualityExample& example : examples) {
+    judged.push_back({to_vector(1.0, example.terms), example.is_right});
+    // Which of the two is right, not how likely that is: all else is the same, and drops out.
+    if (example.of_other_print)
+      judged.push_back({to_vector(1.0, example.terms) - to_vector(1.0, *example.of_other_print), true});
+  }
   const Weights weights = fit_logistic<kWeights>(judged, {to_vector(prior.bias, prior.weights), stiffness});
   QualitySettings settings = prior;
   settings.bias = weights[0];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pose/verification/quality.hpp"
@@ -10,6 +11,8 @@ namespace houghstream {
 struct QualityExample {
   QualityTerms terms;
   bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
+  /// Of a right pose, what speaks for it if the object had another print: the fit tells the two apart.
+  std::optional<QualityTerms> of_other_print = std::nullopt;
 };
 
 /// Bias, weights and typical values that explain the examples best (maximum a posteriori, a Gaussian about each weight

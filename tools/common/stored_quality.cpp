@@ -12,10 +12,14 @@ nlohmann::json to_json(const QualityTerms& terms) {
 }
 
 QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, const std::string& where) {
-  require(entry.contains(name) && entry[name].is_object() && entry[name].size() == kQualityTerms.size(),
-          "{}: '{}' of the quality expected, with {} terms", where, name, kQualityTerms.size());
+  require(entry.contains(name) && entry[name].is_object(), "{}: '{}' of the quality expected, with {} terms", where,
+          name, kQualityTerms.size());
+  const bool knows_left_over = entry[name].contains("left_over");  // else it was learnt without, and weighs nothing
+  const std::size_t known = kQualityTerms.size() - (knows_left_over ? 0 : 1);
+  require(entry[name].size() == known, "{}: '{}' of the quality has {} terms, expected {}", where, name,
+          entry[name].size(), known);
   QualityTerms terms;
-  for (std::size_t i = 0; i < kQualityTerms.size(); ++i)
+  for (std::size_t i = 0; i < known; ++i)
     terms.*kQualityTerms[i] = json_number(entry[name], kQualityTermNames[i], where);
   return terms;
 }

@@ -179,7 +179,7 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   std::vector<QualityExample> all;
   for (const auto& [name, model] : judged_by) {
     for (const quality::Example& example : quality::judge_examples(found, {{name, model}}))
-      by_class[name].push_back({example.terms, example.is_right});
+      by_class[name].push_back({example.terms, example.is_right, example.of_other_print});
     all.insert(all.end(), by_class[name].begin(), by_class[name].end());
   }
   const QualitySettings common = fit_quality_settings(all, QualitySettings{}, 1.0);

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pose/verification/other_print.hpp"
+
 namespace houghstream::quality {
 namespace {
 
@@ -23,9 +25,9 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
   std::vector<Example> examples;
   for (const auto& [name, model] : models) {
     for (const JudgedDetection& judged : judge_detections(found.frames, name, DetectionRules{})) {
-      const std::optional<QualityTerms>& terms = found.terms[judged.frame][judged.index];
+      const std::optional<FoundTerms>& terms = found.terms[judged.frame][judged.index];
       if (!terms || judged.verdict == Verdict::kIgnored) continue;
-      Example example{found.scene, *terms, false};
+      Example example{found.scene, terms->own};
       if (judged.verdict == Verdict::kTrue) {
         const EvaluatedFrame& frame = found.frames[judged.frame];
         const TrueObject& truth = frame.objects[judged.object].truth;
@@ -34,6 +36,7 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
         const double error = add_s_error(model.points, T_camera_object, truth.T_camera_object);
         example.is_right = error < kRightBelow * model.diameter;
       }
+      if (example.is_right) example.of_other_print = terms->of_other_print;
       examples.push_back(std::move(example));
     }
   }
@@ -55,23 +58,26 @@ FoundPoses PoseFinder::find(const std::string& name, const BopScene& scene, cons
   return found;
 }
 
-std::vector<std::optional<QualityTerms>> PoseFinder::find_in(const RgbdFrame& frame, EvaluatedFrame& found) const {
+std::vector<std::optional<FoundTerms>> PoseFinder::find_in(const RgbdFrame& frame, EvaluatedFrame& found) const {
   found.poses = estimator_.estimate(frame, *found.detections);
   return terms_of(frame, *found.detections, *found.poses);
 }
 
-std::vector<std::optional<QualityTerms>> PoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,
-                                                              const ObjectPoses& poses) const {
-  std::vector<std::optional<QualityTerms>> all;
+std::vector<std::optional<FoundTerms>> PoseFinder::terms_of(const RgbdFrame& frame, const Detections& detections,
+                                                            const ObjectPoses& poses) const {
+  std::vector<std::optional<FoundTerms>> all;
   const SeenFrame seen_frame = see_frame(frame, settings_.region, settings_.noise);
   for (const ObjectPose& pose : poses.poses) {
-    std::optional<QualityTerms>& terms = all.emplace_back();
+    std::optional<FoundTerms>& terms = all.emplace_back();
     if (!pose.T_camera_object) continue;
     const Detection& detection = detections.detections[pose.detection_index];
     const SeenObject seen = see_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
-    terms = quality_terms(gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification),
-                          settings_.quality);
-    if (pose_quality(*terms, settings_.quality) != pose.quality) {
+    const PoseEvidence own = gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification);
+    const std::optional<PoseEvidence> other =
+        evidence_of_other_print(seen, *pose.T_camera_object, own, settings_.verification);
+    terms = FoundTerms{quality_terms(own, settings_.quality), std::nullopt};
+    if (other) terms->of_other_print = quality_terms(*other, settings_.quality);
+    if (pose_quality(terms->own, settings_.quality) != pose.quality) {
       throw std::logic_error(
           fmt::format("pose of {}: not judged by the evidence that is learnt from", pose.class_name));
     }

@@ -17,6 +17,13 @@ struct Example {
   std::string scene;
   QualityTerms terms;
   bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
+  std::optional<QualityTerms> of_other_print = std::nullopt;  ///< of a right pose, see evidence_of_other_print()
+};
+
+/// What a pose that was found is judged by.
+struct FoundTerms {
+  QualityTerms own;
+  std::optional<QualityTerms> of_other_print;  ///< see evidence_of_other_print()
 };
 
 /// Frames of a scene with detections and poses, one pose for each detection in their order, and what each pose is
@@ -24,7 +31,7 @@ struct Example {
 struct FoundPoses {
   std::string scene;
   std::vector<EvaluatedFrame> frames;
-  std::vector<std::vector<std::optional<QualityTerms>>> terms;
+  std::vector<std::vector<std::optional<FoundTerms>>> terms;
 };
 
 /// The poses of the classes with a model beside the truth. Those of detections that are neither true nor false, and of
@@ -48,11 +55,11 @@ class PoseFinder {
   FoundPoses find(const std::string& name, const BopScene& scene, const Detector& detector, int every) const;
 
   /// The poses of `found.detections`, into `found.poses`; returns what each is judged by. Thread-safe.
-  std::vector<std::optional<QualityTerms>> find_in(const RgbdFrame& frame, EvaluatedFrame& found) const;
+  std::vector<std::optional<FoundTerms>> find_in(const RgbdFrame& frame, EvaluatedFrame& found) const;
 
  private:
-  std::vector<std::optional<QualityTerms>> terms_of(const RgbdFrame& frame, const Detections& detections,
-                                                    const ObjectPoses& poses) const;
+  std::vector<std::optional<FoundTerms>> terms_of(const RgbdFrame& frame, const Detections& detections,
+                                                  const ObjectPoses& poses) const;
 
   PoseSettings settings_;
   PoseEstimator estimator_;

@@ -22,6 +22,7 @@ TEST(IsReported, ACandidateIsConfirmedByAValidPoseAlone) {
   Detection detection;
   ObjectPose pose;
   pose.status = PoseStatus::kRejectedByDepth;
+  pose.quality = 0.1F;
   EXPECT_TRUE(is_reported(detection, nullptr));
   EXPECT_TRUE(is_reported(detection, &pose)) << "found, though its pose is withheld";
   detection.reported = false;
@@ -29,6 +30,20 @@ TEST(IsReported, ACandidateIsConfirmedByAValidPoseAlone) {
   EXPECT_FALSE(is_reported(detection, &pose));
   pose.status = PoseStatus::kValid;
   EXPECT_TRUE(is_reported(detection, &pose));
+}
+
+TEST(IsReported, ADetectionThatIsNotSureIsRefutedByAPoseThatIsContradicted) {
+  Detection detection;
+  detection.score = 0.7F;
+  ObjectPose pose;
+  pose.status = PoseStatus::kRejectedByColour;
+  pose.quality = 0.001F;
+  EXPECT_FALSE(is_reported(detection, &pose));
+  pose.status = PoseStatus::kTooFewPoints;
+  EXPECT_TRUE(is_reported(detection, &pose)) << "no pose was judged";
+  pose.status = PoseStatus::kRejectedByColour;
+  detection.score = 0.9F;
+  EXPECT_TRUE(is_reported(detection, &pose)) << "sure by itself";
 }
 
 TEST(FindPose, GoesByTheDetectionNotByTheOrder) {

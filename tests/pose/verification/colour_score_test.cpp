@@ -87,6 +87,21 @@ TEST(ColourScore, PalerColoursAreNoConflictAndOthersAre) {
   EXPECT_GT(compare(with_saturation(frame, 0.0), box, kPose)->chroma_conflict, 1.0F) << "grey is not pale red";
 }
 
+TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
+  const Mesh box = printed_box();
+  const ObjectModel model = make_object_model("box", box, {});
+  const auto judged = [&](const Eigen::Isometry3d& T_camera_object, double moved_px) {
+    RgbdFrame frame = coloured_frame(box, kPose, 1);
+    const cv::Mat move = (cv::Mat_<double>(2, 3) << 1.0, 0.0, moved_px, 0.0, 1.0, 0.0);
+    cv::warpAffine(frame.colour, frame.colour, move, frame.colour.size());
+    const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
+    return compare_print(colours, look_at_view(frame, model, T_camera_object, 400), kTolerance)->agreement;
+  };
+  EXPECT_GT(judged(kPose, 2.0), judged(kPose, 0.0) - 0.02F);
+  EXPECT_LT(judged(kPose, 12.0), judged(kPose, 0.0) - 0.1F);
+  EXPECT_LT(judged(turned(kPose, 180.0), 0.0), judged(kPose, 0.0) - 0.4F);
+}
+
 TEST(ColourScore, WithoutColoursOrMeasuredDepthThereIsNoAnswer) {
   const Mesh box = printed_box();
   RgbdFrame frame = coloured_frame(box, kPose, 1);

@@ -50,6 +50,19 @@ TEST(QualityTraining, FewExamplesLeaveThePriorLittle) {
   EXPECT_LT(way_from_prior(fit_quality_settings(drawn(3), QualitySettings{}, 100.0)), 0.1 * by_few);
 }
 
+TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
+  std::vector<QualityExample> examples = drawn(2000);
+  const QualitySettings alone = fit_quality_settings(examples, QualitySettings{}, 1.0);
+  for (QualityExample& example : examples) {
+    if (!example.is_right) continue;
+    example.of_other_print = example.terms;
+    example.of_other_print->agreement = example.terms.agreement - 0.3;
+  }
+  const QualitySettings told_apart = fit_quality_settings(examples, QualitySettings{}, 1.0);
+  EXPECT_GT(told_apart.weights.agreement, alone.weights.agreement + 0.5);
+  EXPECT_NEAR(told_apart.weights.outline, alone.weights.outline, 0.25);
+}
+
 TEST(QualityTraining, NoExamplesGiveThePrior) {
   QualitySettings prior;
   prior.bias = 0.5;

@@ -15,9 +15,13 @@ bool is_required(const NamedObject& object, const DetectionRules& rules) {
   return is_target && !object.truth.box_visible_px.empty();
 }
 
-bool has_pose(const EvaluatedFrame& frame, std::size_t detection) {
-  const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, detection) : nullptr;
-  return pose != nullptr && pose->status == PoseStatus::kValid;
+/// A detection of the class that no verdict is given of yet.
+JudgedDetection unjudged(const EvaluatedFrame& frame, std::size_t f, std::size_t index) {
+  const Detection& detection = frame.detections->detections[index];
+  const ObjectPose* pose = frame.poses ? find_pose(*frame.poses, index) : nullptr;
+  const bool is_candidate = !detection.reported || is_refuted(detection, pose);
+  const bool has_pose = pose != nullptr && pose->status == PoseStatus::kValid;
+  return {f, index, detection.score, Verdict::kFalse, 0, is_candidate, has_pose};
 }
 
 /// The class's detections over all frames, strongest first.
@@ -31,7 +35,7 @@ std::vector<JudgedDetection> ranked_detections(const std::vector<EvaluatedFrame>
     std::vector<JudgedDetection> here;
     for (std::size_t i = 0; i < detections.size(); ++i) {
       if (detections[i].class_name != class_name) continue;
-      here.push_back({f, i, detections[i].score, Verdict::kFalse, 0, !detections[i].reported, has_pose(frames[f], i)});
+      here.push_back(unjudged(frames[f], f, i));
     }
     std::stable_sort(here.begin(), here.end(), stronger);
     if (here.size() > static_cast<std::size_t>(max_per_class)) here.resize(static_cast<std::size_t>(max_per_class));

@@ -24,7 +24,7 @@ struct JudgedDetection {
   float score = 0.0F;
   Verdict verdict = Verdict::kFalse;
   std::size_t object = 0;     ///< in the frame's objects; only meaningful where true
-  bool is_candidate = false;  ///< not Detection::reported
+  bool is_candidate = false;  ///< not Detection::reported, or refuted by its pose
   bool has_pose = false;      ///< a published one
 };
 

@@ -26,9 +26,19 @@ final class ObjectsTable extends AbstractTableModel {
     fireTableDataChanged();
   }
 
-  /** A candidate counts where its pose is valid. `pose` may be null. */
+  /** A candidate counts where its pose is valid, another detection where its pose does not refute it (see
+   *  pipeline/types/object_pose.hpp). `pose` may be null. */
   static boolean isReported(detection_t detection, object_pose_t pose) {
-    return detection.reported || (pose != null && pose.status == object_pose_t.VALID);
+    if (pose != null && pose.status == object_pose_t.VALID) return true;
+    return detection.reported && !isRefuted(detection, pose);
+  }
+
+  private static boolean isRefuted(detection_t detection, object_pose_t pose) {
+    if (pose == null || detection.score >= 0.8F) return false;
+    return switch (pose.status) {
+      case object_pose_t.REJECTED_BY_DEPTH, object_pose_t.LOW_SCORE, object_pose_t.REJECTED_BY_OUTLINE, object_pose_t.REJECTED_BY_COLOUR -> pose.quality < 0.02F;
+      default -> false;
+    };
   }
 
   static object_pose_t poseOf(int detection, object_poses_t poses) {

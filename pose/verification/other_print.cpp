@@ -1,0 +1,64 @@
+#include "pose/verification/other_print.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+/// The view with the colours of each point's opposite.
+ModelView with_opposite_colours(const ModelView& view) {
+  ModelView other = view;
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& point : view.points) middle += point / static_cast<float>(view.points.size());
+  const auto across = [&](const Eigen::Vector3f& point) {
+    const Eigen::Vector3f from_middle = point - middle;
+    return Eigen::Vector3f(from_middle - from_middle.dot(view.direction) * view.direction);
+  };
+  for (std::size_t i = 0; i < view.points.size(); ++i) {
+    const Eigen::Vector3f opposite = -across(view.points[i]);
+    const auto nearest = std::min_element(view.points.begin(), view.points.end(), [&](const auto& a, const auto& b) {
+      return (across(a) - opposite).squaredNorm() < (across(b) - opposite).squaredNorm();
+    });
+    other.colours[i] = view.colours[static_cast<std::size_t>(nearest - view.points.begin())];
+  }
+  return other;
+}
+
+/// L*, a*, b* of each point, less their means.
+Eigen::MatrixX3d about_mean(const std::vector<LabColour>& colours) {
+  Eigen::MatrixX3d out(static_cast<Eigen::Index>(colours.size()), 3);
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    out.row(static_cast<Eigen::Index>(i)) << colours[i][0], colours[i][1], colours[i][2];
+  out.rowwise() -= out.colwise().mean().eval();
+  return out;
+}
+
+/// Of two prints of the same points: near 1 for plain ones too.
+double correlation(const std::vector<LabColour>& a, const std::vector<LabColour>& b) {
+  constexpr double kPlain = 30.0;  // variance without print
+  const Eigen::MatrixX3d one = about_mean(a);
+  const Eigen::MatrixX3d two = about_mean(b);
+  const double plain = kPlain * static_cast<double>(a.size());
+  return (one.cwiseProduct(two).sum() + plain) / (one.norm() * two.norm() + plain);
+}
+
+}  // namespace
+
+std::optional<PoseEvidence> evidence_of_other_print(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
+                                                    const PoseEvidence& own, const VerificationSettings& settings) {
+  constexpr double kSamePrint = 0.5;  // correlation
+  const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
+  if (look.view.colours.empty()) return std::nullopt;
+  const ModelView view = with_opposite_colours(look.view);
+  if (correlation(look.view.colours, view.colours) > kSamePrint) return std::nullopt;
+  const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
+  const ViewLook other{view, look.T, look.depth, look.looks};
+  PoseEvidence evidence = own;
+  evidence.colour = compare_print(seen.colours, other, tolerance);
+  if (!evidence.colour) return std::nullopt;
+  return evidence;
+}
+
+}  // namespace houghstream
