@@ -44,15 +44,15 @@ function(houghstream_compile_options target)
                                            -Wno-float-conversion ${HOUGHSTREAM_WERROR} -ffp-contract=off -fno-strict-aliasing)
   # A shared library that links ours, as the virtual camera's driver does, exports its own names only.
   target_compile_options(${target} PRIVATE -fvisibility=hidden -fvisibility-inlines-hidden)
-  set(sanitized -fno-omit-frame-pointer -g1 $<$<CONFIG:Release>:-O1>) # -O3 takes minutes and gigabytes
+  # -O3 takes minutes and gigabytes; GCC 12 sees uninitialised optionals in code that it instruments, where there are none.
+  set(sanitized -fno-omit-frame-pointer -g1 $<$<CONFIG:Release>:-O1> -Wno-maybe-uninitialized)
   if(HOUGHSTREAM_FUZZ) # by clang, whose warnings are others
     target_compile_options(${target} PRIVATE -Wno-error -fsanitize=fuzzer-no-link,address,undefined
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
     target_compile_definitions(${target} PRIVATE EIGEN_MALLOC_ALREADY_ALIGNED=1)
   elseif(HOUGHSTREAM_SANITIZE STREQUAL thread)
-    # GCC 12 sees uninitialised optionals in code that it instruments so, where there are none.
-    target_compile_options(${target} PRIVATE -fsanitize=thread ${sanitized} -Wno-maybe-uninitialized)
+    target_compile_options(${target} PRIVATE -fsanitize=thread ${sanitized})
     target_link_options(${target} PUBLIC -fsanitize=thread)
   elseif(HOUGHSTREAM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all ${sanitized})
