@@ -1,24 +1,33 @@
 #include "pipeline/bus/channel_pattern.hpp"
 
-#include <regex>
+#include <re2/re2.h>
+
+#include <cstdint>
+#include <memory>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {
 
+re2::RE2::Options expression_options() {
+  constexpr std::int64_t kMostMemory = std::int64_t{1} << 20;  // of an expression and of what it keeps to match faster
+  re2::RE2::Options options;
+  options.set_encoding(re2::RE2::Options::EncodingLatin1);  // a name is bytes, which need not be UTF-8
+  options.set_never_capture(true);
+  options.set_max_mem(kMostMemory);
+  options.set_log_errors(false);
+  return options;
+}
+
 std::function<bool(const std::string&)> matcher_of(const std::string& text, bool is_name) {
   if (is_name) return [text](const std::string& channel) { return channel == text; };
-  try {
-    // std::regex goes a step deeper into the stack for each character, and a message may name any channel.
-    return [expression = std::regex(text)](const std::string& channel) {
-      return channel.size() <= channel::kMostBytes && std::regex_match(channel, expression);
-    };
-  } catch (const std::regex_error& error) {
-    fail("channels '{}': {}, expected a regular expression", printable(text), error.what());
-  }
+  // Not std::regex, nor any other that tries one way after another: few bytes of an expression would keep it for ever.
+  const auto expression = std::make_shared<const re2::RE2>(text, expression_options());
+  require(expression->ok(), "channels '{}': {}, expected a regular expression", printable(text),
+          printable(expression->error()));
+  return [expression](const std::string& channel) { return re2::RE2::FullMatch(channel, *expression); };
 }
 
 }  // namespace

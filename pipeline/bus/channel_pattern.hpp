@@ -5,10 +5,14 @@
 
 namespace houghstream {
 
-/// Channels as the option -c means them everywhere, on the bus and in a log: a regular expression (ECMAScript's, which
-/// LCM's own agree with as far as channels go) that a channel's whole name has to match, for instance OPENNI_FRAME,
-/// "LEFT|RIGHT" or "CAMERA_.*". An expression matches no name that is longer than channel::kMostBytes. May be used from
-/// any thread.
+/// Channels as the option -c means them everywhere, on the bus and in a log: a regular expression in RE2's syntax (no
+/// look-ahead, no back-references) that a channel's whole name has to match, for instance OPENNI_FRAME, "LEFT|RIGHT" or
+/// "CAMERA_.*". Whatever the expression, the time to match grows with the length of the name only, and memory is
+/// bounded. May be used from any thread.
+///
+/// LcmBus hands an expression to LCM too: on a network a message comes where both match. LCM's are Perl's, which take
+/// what RE2 takes and mean the same by it for names of ASCII. LCM asks its own once for each name that is new, and that
+/// one may try many ways through a name, until a limit of its library ends it.
 class ChannelPattern {
  public:
   /// Throws InputError where `text` is no regular expression.

@@ -99,6 +99,10 @@ void check_mtl(std::string_view bytes, const std::string& source) {
     if (!words.empty())
       check_mtl_line(words, has_material, fmt::format("{}: line {} '{}'", source, lines.number(), shown(*line)));
   }
+  // The library refuses what is shorter than a material with a name, without closing the file.
+  constexpr std::size_t kShortest = std::string_view("newmtl a").size();
+  require(bytes.empty() || bytes.size() >= kShortest, "{}: {} bytes, expected none, or {} and more", source,
+          bytes.size(), kShortest);
 }
 
 void check_materials(std::string_view obj, const std::filesystem::path& file) {

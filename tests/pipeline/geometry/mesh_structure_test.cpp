@@ -237,6 +237,8 @@ TEST(MeshStructure, MaterialsAreWholeToo) {
                           "newmtl a\nKd 1 1 1 1\n", "newmtl a\nNs\n", "newmtl a\nmap_Kd\n", "newmtl a\nmap_Kd -bm 1\n",
                           "newmtl a\nmap_Kd -unknown 1 a.png\n"})
     EXPECT_THROW(check_mtl(bad, "bad.mtl"), InputError) << bad;
+  EXPECT_NO_THROW(check_mtl("newmtl a", "shortest.mtl"));
+  EXPECT_THROW(check_mtl("# made\n", "short.mtl"), InputError);
   EXPECT_THROW(check_mtl("newmtl a\n# " + std::string(2000, 'x'), "long.mtl"), InputError);
   EXPECT_THROW(check_mtl(std::string("newmtl a\0", 9), "zero.mtl"), InputError);
 }
