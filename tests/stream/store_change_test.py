@@ -1,5 +1,5 @@
 """An object store that changes under a stream: what is renamed is there without a restart, what is torn is said, whoever is killed while
-he changes it leaves it whole.
+he changes it leaves it whole, and none is replaced unless that is asked for.
 
 Forest, models and scene are those that end_to_end_test.py has made.
 """
@@ -41,6 +41,22 @@ def names_in(store):
 
 def hs_teach(tools, *words):
     return subprocess.run([str(tools / "hs-teach"), *map(str, words)], capture_output=True, text=True, check=False, timeout=60)
+
+
+def files_in(folder):
+    return {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
+def check_refused(tools, store):
+    """A teaching that says neither --add nor --replace changes nothing."""
+    before = files_in(store.parent)
+    mesh = store / "models" / "obj_000001.ply"
+    for words in (("mesh", mesh), ("show", "--source", "log:nowhere.lcmlog", "--name", "cup")):
+        done = hs_teach(tools, *words, "--out", store)
+        assert done.returncode == 1, done
+        expected = "expected --add to add to it, or --replace to put a new one in its place"
+        assert done.stderr == f"hs-teach: {store}: holds {len(CLASSES)} objects, {expected}\n", done
+        assert files_in(store.parent) == before
 
 
 def check_killed(tools, store):
@@ -159,6 +175,7 @@ def main():
     store = arguments.out / "my" / "store"
     make_store(arguments.made, store)
     assert names_in(store) == set(CLASSES.values()), names_in(store)
+    check_refused(arguments.tools, store)
     check_killed(arguments.tools, store)
     check_stream(arguments.tools, arguments.made, arguments.out, store)
 

@@ -94,6 +94,12 @@ bool is_about_config(const CLI::App& app, const std::string& words) {
 
 /// CLI11's words about an option begin with its name, but where it is a flag that is neither true nor false.
 std::string fault_of_option(const std::string& words, const CLI::ParseError& error) {
+  if (is_of(error, CLI::ExitCodes::ExcludesError)) {
+    const std::string between = " excludes ";
+    const std::size_t end = words.find(between);
+    return fmt::format("{} and {}, expected at most one of them", words.substr(0, end),
+                       words.substr(end + between.size()));
+  }
   const std::string name = words.substr(0, words.find(':'));
   if (is_of(error, CLI::ExitCodes::ArgumentMismatch)) {
     const bool is_repeated = words.find("At Most") != std::string::npos;

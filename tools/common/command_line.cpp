@@ -144,6 +144,11 @@ CommandOption& CommandOption::one_of(const std::vector<int>& values) {
   return *this;
 }
 
+CommandOption& CommandOption::excludes(const CommandOption& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
 CommandOption& CommandOption::transform(const std::map<std::string, double>& values) {
   std::vector<std::string> names;
   names.reserve(values.size());

@@ -42,14 +42,20 @@ void add_practice_options(CommandLine& command, TeachOptions& options) {
       .capture_default_str();
 }
 
+/// What becomes of a store that is there; with neither it is refused.
+void add_store_flags(CommandLine& command, bool& add, bool& replace) {
+  const CommandOption adding = command.add_flag("--add", add, "what is taught joins the objects of the store");
+  command.add_flag("--replace", replace, "a new store takes the place of the one that is there, when all is done")
+      .excludes(adding);
+}
+
 CommandLine add_mesh(CommandLine& app, TeachOptions& options, Lists& lists) {
   CommandLine mesh = app.add_subcommand("mesh", "teaches objects from their meshes");
   mesh.add_option("sources", options.meshes.sources,
                   "meshes (PLY, OBJ, GLB, glTF), folders of them, or BOP models/ folders")
       .required();
-  mesh.add_option("--out", options.out, "object store to write; one that is there is replaced when all is done")
-      .required();
-  mesh.add_flag("--add", options.add, "the objects join those of the store");
+  mesh.add_option("--out", options.out, "object store to write; one that is there wants --add or --replace").required();
+  add_store_flags(mesh, options.add, options.replace);
   mesh.add_option("--unit", options.meshes.unit_m, "unit of the meshes' coordinates: mm, cm or m; default mm, glTF m")
       .transform({{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}});
   mesh.add_option("--names", lists.names, "2=cracker,5=mustard: by BOP id or file name");
@@ -101,8 +107,8 @@ CommandLine add_show(CommandLine& app, ShowOptions& options, ShowWords& words) {
   show.add_option("--second", options.second,
                   "a recording of a second take, the object laid on its side or turned over");
   show.add_option("--name", options.name, "of the object").required();
-  show.add_option("--out", options.out, "object store to write; one that is there is replaced when all is done");
-  show.add_flag("--add", options.add, "the object joins those of the store");
+  show.add_option("--out", options.out, "object store to write; one that is there wants --add or --replace");
+  add_store_flags(show, options.add, options.replace);
   show.add_option("--box", words.box,
                   "X,Y,W,H about the object in the first frame; default: what stands nearest the middle");
   show.add_option("--at", words.at, "X,Y on the object in the first frame, instead of the middle");

@@ -1,7 +1,6 @@
 #include "tools/teach/teach_jobs.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -181,24 +180,27 @@ void name_lookalikes(const std::vector<NamedModel>& models) {
 
 }  // namespace
 
-void warn_of_replaced(const fs::path& folder) {
-  std::vector<std::string> names;
+void require_no_store(const fs::path& folder) {
+  ObjectStore there;
+  there.folder = folder;
+  if (!fs::exists(there.json_file())) return;
   try {
-    for (const StoredObject& object : store::read_store(folder).objects) names.push_back(object.name);
-  } catch (const InputError&) {
-    return;  // none, or a torn one, of which nothing could be kept
+    there = store::read_store(folder);
+  } catch (const InputError& error) {  // of another version, for one: somebody else may read it
+    fail("{}: an object store that cannot be read ({}), expected --replace to put a new one in its place",
+         folder.string(), error.what());
   }
-  log_warning("{}: knows {}, and will not when this is done; --add keeps what a store knows", folder.string(),
-              fmt::join(names, ", "));
+  fail("{}: holds {} object{}, expected --add to add to it, or --replace to put a new one in its place",
+       folder.string(), there.objects.size(), there.objects.size() == 1 ? "" : "s");
 }
 
 void teach_meshes(const TeachOptions& options) {
   const Progress progress;
-  if (!options.add && options.shown.empty()) warn_of_replaced(options.out);  // hs-teach show has said it
   world::parse_mesh_attitudes(options.attitudes);
   if (options.rooms.camera) parse_camera(*options.rooms.camera);
   require_free(options.dump_views);
   store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on
+  if (!options.add && !options.replace) require_no_store(options.out);
   Contents old;
   if (options.add) old = read_contents(options.out);
   std::vector<TaughtMesh> meshes = options.shown;

@@ -26,6 +26,7 @@ struct TeachOptions {
   std::filesystem::path out;                   ///< the store
   std::string attitudes = "resting";           ///< see world::parse_mesh_attitudes
   bool add = false;                            ///< to the store that is there
+  bool replace = false;                        ///< that store; with neither one that is there is refused
   std::filesystem::path dump_views;            ///< BOP training folder to write the views to as well; empty = none
   world::MeshViewSettings views;               ///< attitudes and colour are those of the object
   Profile profile = make_profile("realtime");  ///< with `add` its training only, the rest is the forest's
@@ -34,11 +35,13 @@ struct TeachOptions {
   int threads = 2;
 };
 
-/// Warns of a store that is there and will know none of its objects any more, where a teaching does not add to it.
-void warn_of_replaced(const std::filesystem::path& folder);
+/// Throws InputError where a store is there, also one that cannot be read: a teaching that neither adds to it nor was
+/// asked to replace it would lose what it knows. Of other folders StoreBuild takes empty ones only.
+void require_no_store(const std::filesystem::path& folder);
 
 /// Teaches objects from their meshes. Says on standard error what is done, and at the end which objects can hardly be
-/// told apart. The store that was there stays whole until the new one is. Throws InputError for what cannot be taught.
+/// told apart. The store that was there stays whole until the new one is. Throws InputError for what cannot be taught,
+/// and before all work for a store that is there where `options` say neither add nor replace.
 void teach_meshes(const TeachOptions& options);
 
 /// Prints what the store knows, an object a line.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "drivers/datasets/bop_writer.hpp"
@@ -31,6 +32,15 @@ inline std::filesystem::path whole_store(const std::string& name) {
   std::filesystem::create_directories(folder);
   fill_store(folder, "brick");
   return folder;
+}
+
+/// All files of a folder, byte for byte, by their paths.
+inline std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) files[entry.path().string()] = read_text(entry.path());
+  }
+  return files;
 }
 
 /// The store becomes one of a mug and of `second`, as teaching does it.

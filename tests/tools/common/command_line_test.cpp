@@ -191,6 +191,25 @@ TEST(CommandLine, AFaultIsOneLineThatNamesProgramCommandAndWord) {
   for (const auto& [words, expected] : faults) EXPECT_EQ(fault(line, words), expected);
 }
 
+TEST(CommandLine, OfOptionsThatExcludeEachOtherOneIsGiven) {
+  const auto expect_said = [](const std::vector<std::string>& words, const std::string& expected) {
+    CommandLine line("words", "tool");
+    bool join = false;
+    bool part = false;
+    const CommandOption joining = line.add_flag("--join", join, "words");
+    line.add_flag("--part", part, "words").excludes(joining);
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(line.parse(words).value_or(0) == 0, expected.empty());
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), expected);
+  };
+  expect_said({}, "");
+  expect_said({"--join"}, "");
+  expect_said({"--part"}, "");
+  const std::string refused = "tool: --join and --part, expected at most one of them\n";
+  expect_said({"--join", "--part"}, refused);
+  expect_said({"--part", "--join"}, refused);
+}
+
 TEST(CommandLine, WhatIsMissingMayBeMisspelt) {
   CommandLine line("words", "tool");
   std::string out;

@@ -69,6 +69,10 @@ class RefusedOptions(unittest.TestCase):
     def test_results_to_evaluate(self):
         self.check(EVALUATE, "neither --log nor --forest nor --objects")
 
+    def test_a_store_to_add_to_and_to_replace(self):
+        for command in (MESH, (*SHOW, "--out", NOWHERE)):
+            self.check((*command, "--replace", "--add"), "--add and --replace, expected at most one of them")
+
     def test_an_empty_name(self):
         self.check(("hs-log", "filter", f"{NOWHERE}/in.log", ""), "out: nothing, expected a value")
 

@@ -54,6 +54,9 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   const fs::path folder = folder_of_meshes("teach_whole");
   TeachOptions options = quick_options(folder, "bracket.ply");
   options.dump_views = folder / "views";
+  fs::create_directory(options.out);  // in the place of another store
+  store::fill_store(options.out, "brick");
+  options.replace = true;
   teach_meshes(options);
   const store::ObjectStore first = store::read_store(options.out);
   ASSERT_EQ(first.objects.size(), 1U);
@@ -148,24 +151,44 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   EXPECT_EQ(std::distance(fs::directory_iterator(options.out.parent_path()), {}), 3) << "nothing is left beside it";
 }
 
-TEST(TeachJobs, WhatAStoreKnowsIsNotReplacedWithoutAWord) {
-  start_log("teach_tests", LogLevel::kInfo);
-  const auto said_of = [](const fs::path& store) {
-    testing::internal::CaptureStderr();
-    warn_of_replaced(store);
-    return testing::internal::GetCapturedStderr();
-  };
+TEST(TeachJobs, AStoreIsOnlyReplacedWhereThatIsAskedFor) {
   const fs::path store = store::whole_store("teach_replaced");
-  const std::string said = said_of(store);
-  EXPECT_NE(said.find(store.string() + ": knows mug, brick, and will not when this is done; --add keeps"),
-            std::string::npos)
+  TeachOptions options = quick_options(store.parent_path(), "nowhere.ply");
+  ASSERT_EQ(options.out.string(), store.string());
+  const auto before = store::files_of(store.parent_path());
+  EXPECT_EQ(
+      error_of([&] { teach_meshes(options); }),
+      store.string() + ": holds 2 objects, expected --add to add to it, or --replace to put a new one in its place");
+  EXPECT_EQ(store::files_of(store.parent_path()), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(store.parent_path()), {}), 1) << "nothing is left beside it";
+  options.replace = true;
+  EXPECT_EQ(error_of([&] { teach_meshes(options); }).find((store.parent_path() / "nowhere.ply").string()), 0U);
+  EXPECT_EQ(store::files_of(store.parent_path()), before) << "until the new one is whole";
+
+  options.replace = false;
+  fs::rename(store, store.parent_path() / ".store.before");
+  EXPECT_NE(error_of([&] { teach_meshes(options); }).find("holds 2 objects"), std::string::npos) << "put aside";
+  EXPECT_EQ(store::files_of(store.parent_path()), before);
+}
+
+TEST(TeachJobs, AStoreThatCannotBeReadIsNotReplacedEither) {
+  const fs::path store = store::whole_store("teach_unread");
+  const TeachOptions options = quick_options(store.parent_path(), "nowhere.ply");
+  replace_in_file(store / "store.json", "\"houghstream_store\": 1", "\"houghstream_store\": 7");
+  const auto before = store::files_of(store.parent_path());
+  const std::string said = error_of([&] { teach_meshes(options); });
+  EXPECT_EQ(said.find(store.string() + ": an object store that cannot be read (" + (store / "store.json").string() +
+                      ": object store of version 7"),
+            0U)
       << said;
-  EXPECT_EQ(said_of(store / "nowhere"), "");
+  EXPECT_NE(said.find("), expected --replace to put a new one in its place"), std::string::npos) << said;
+  EXPECT_EQ(store::files_of(store.parent_path()), before);
 }
 
 TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   const fs::path folder = folder_of_meshes("teach_practise");
   const TeachOptions options = quick_options(folder, "bracket.ply");
+  fs::create_directory(options.out);  // an empty folder is no store
   teach_meshes(options);
   const store::ObjectStore before = store::read_store(options.out);
   PracticeSettings other = options.practice;

@@ -48,8 +48,9 @@ void check_show_options(const ShowOptions& options) {
   if (!options.teach) return;
   require(!options.out.empty(), "--out is missing, expected the store to teach into, or --no-teach");
   store::require_place_for_store(options.out);
-  if (!options.add) return;
   store::bring_back_store(options.out);
+  if (!options.add && !options.replace) require_no_store(options.out);
+  if (!options.add) return;
   const store::ObjectStore known = store::read_store(options.out);
   const bool is_known = std::any_of(known.objects.begin(), known.objects.end(),
                                     [&](const store::StoredObject& object) { return object.name == options.name; });
@@ -201,7 +202,6 @@ int told(const ShowOptions& options, ShowObserver* observer, const std::function
   Telling telling(options.name, observer);
   try {
     check_show_options(options);
-    if (options.teach && !options.add) warn_of_replaced(options.out);
     return conclude(options, show(telling), telling);
   } catch (const std::exception& error) {
     telling.fail(error.what());

@@ -19,6 +19,7 @@ struct ShowOptions {
   std::string name;             ///< of the object
   std::filesystem::path out;    ///< the store
   bool add = false;             ///< to the store that is there
+  bool replace = false;         ///< that store; with neither one that is there is refused before the take
   std::optional<cv::Rect> box;  ///< of the object in the first frame, pixels; none = nearest to `at`
   std::optional<cv::Point> at;  ///< a place on it there; none = the middle
   std::filesystem::path keep;   ///< where model, views, pictures and report go; empty = nowhere

@@ -66,6 +66,7 @@ TeachOptions options_to_teach(const ShowOptions& options, const Shown& shown) {
   }
   teach.out = options.out;
   teach.add = options.add;
+  teach.replace = options.replace;
   teach.rooms.cache = options.rooms_cache;
   teach.rooms.threads = options.threads;
   teach.seed = options.seed;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/drivers/store/small_store.hpp"
 #include "tests/pose/reconstruction/shown_scene.hpp"
 
 namespace houghstream::teach {
@@ -168,6 +169,31 @@ TEST(ShowJobs, AFolderThatHoldsSomethingElseIsRefusedBeforeTheTake) {
   EXPECT_EQ(line_of(options, frames).find("/dev/null: cannot be a folder to write to"), 0U);
   EXPECT_EQ(taken, 0);
   fs::remove_all(folder);
+}
+
+TEST(ShowJobs, AStoreThatIsThereIsRefusedBeforeTheTake) {
+  ShowOptions options = options_for("box");
+  options.teach = true;
+  options.out = store::whole_store("show_replaced");
+  const auto before = store::files_of(options.out);
+  int taken = 0;
+  const ShownFrames frames = [&]() -> std::optional<RgbdFrame> {
+    ++taken;
+    return std::nullopt;
+  };
+  EXPECT_EQ(line_of(options, frames),
+            options.out.string() +
+                ": holds 2 objects, expected --add to add to it, or --replace to put a new one in its place");
+  EXPECT_EQ(taken, 0);
+  ShowOptions adding = options;
+  adding.add = true;
+  EXPECT_EQ(line_of(adding, frames).find("a take: no frame"), 0U);
+  ShowOptions replacing = options;
+  replacing.replace = true;
+  EXPECT_EQ(line_of(replacing, frames).find("a take: no frame"), 0U);
+  options.teach = false;
+  EXPECT_EQ(line_of(options, frames).find("a take: no frame"), 0U) << "nothing goes into the store";
+  EXPECT_EQ(store::files_of(options.out), before);
 }
 
 }  // namespace
