@@ -5,6 +5,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/text/json_names.hpp"
 
 namespace houghstream {
 namespace {
@@ -24,9 +25,7 @@ int index_of(const std::string& key, const std::string& file) {
 }
 
 nlohmann::json read_json(const std::filesystem::path& file) {
-  const std::string text = read_file(file, "a JSON file");
-  check_json_nesting(text, file.string());
-  return nlohmann::json::parse(text, nullptr, false);
+  return parse_json(read_file(file, "a JSON file"), file.string());
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ using OrderedJson = nlohmann::ordered_json;
 /// JSON has no NaN and no infinity: null stands for what is not known.
 OrderedJson finite_or_null(double value);
 
-// Files whose lists lie within one another more than 64 times are refused (pipeline/base/files.hpp).
+// Files whose lists lie within one another more than 64 times are refused (pipeline/base/files.hpp), and those in which
+// a name stands twice in an object.
 
 /// Throws InputError when the file is missing or no JSON object.
 nlohmann::json read_json_object(const std::filesystem::path& file);
