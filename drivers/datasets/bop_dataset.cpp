@@ -2,10 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <set>
 
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {
@@ -111,12 +113,24 @@ const json& frame_list(const json& frames, int image_id, const std::string& wher
   return frames.at(key);
 }
 
+/// The objects of an image that scene_camera.json lacks would be left out without a word.
+void require_known_images(const json& frames, const std::vector<BopImage>& images, const std::string& where) {
+  std::set<std::string> known;
+  for (const BopImage& image : images) known.insert(std::to_string(image.image_id));
+  for (const auto& [key, entries] : frames.items()) {
+    require(known.count(key) > 0, "{}: image '{}' with {} entries is not in scene_camera.json", where, printable(key),
+            entries.size());
+  }
+}
+
 void read_objects(const fs::path& folder, std::vector<BopImage>& images) {
   const fs::path gt_file = folder / "scene_gt.json";
   if (!fs::exists(gt_file)) return;  // background: a scene without objects
   const fs::path info_file = folder / "scene_gt_info.json";
   const json gt = read_json_object(gt_file);
   const json info = fs::exists(info_file) ? read_json_object(info_file) : json::object();
+  require_known_images(gt, images, gt_file.string());
+  require_known_images(info, images, info_file.string());
   for (BopImage& image : images) {
     const json& entries = frame_list(gt, image.image_id, gt_file.string());
     const json& infos = frame_list(info, image.image_id, info_file.string());

@@ -1,10 +1,15 @@
 #include "drivers/files/json_file.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/text/json_names.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {
@@ -24,9 +29,7 @@ int index_of(const std::string& key, const std::string& file) {
 }
 
 nlohmann::json read_json(const std::filesystem::path& file) {
-  const std::string text = read_file(file, "a JSON file");
-  check_json_nesting(text, file.string());
-  return nlohmann::json::parse(text, nullptr, false);
+  return parse_json(read_file(file, "a JSON file"), file.string());
 }
 
 }  // namespace
@@ -63,6 +66,14 @@ std::string json_text(const nlohmann::json& value) {
   constexpr std::size_t kLongest = 200;
   const std::string text = value.dump();
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+void require_known_names(const nlohmann::json& object, const std::vector<std::string>& known,
+                         const std::string& where) {
+  for (const auto& [name, value] : object.items()) {
+    require(std::find(known.begin(), known.end(), name) != known.end(), "{}: '{}', expected one of {}", where,
+            printable(name), fmt::join(known, ", "));
+  }
 }
 
 double json_number(const nlohmann::json& object, const std::string& key, const std::string& where) {

@@ -14,7 +14,8 @@ using OrderedJson = nlohmann::ordered_json;
 /// JSON has no NaN and no infinity: null stands for what is not known.
 OrderedJson finite_or_null(double value);
 
-// Files whose lists lie within one another more than 64 times are refused (pipeline/base/files.hpp).
+// Files whose lists lie within one another more than 64 times are refused (pipeline/base/files.hpp), and those in which
+// a name stands twice in an object.
 
 /// Throws InputError when the file is missing or no JSON object.
 nlohmann::json read_json_object(const std::filesystem::path& file);
@@ -32,7 +33,12 @@ void write_json(const OrderedJson& json, const std::filesystem::path& file);
 /// The value for a message: what is long is cut.
 std::string json_text(const nlohmann::json& value);
 
-// The functions below throw InputError naming `where` (file and entry) when the key is missing or of another type.
+// The functions below throw InputError naming `where` (file and entry): those that give a value when the key is missing
+// or of another type.
+
+/// Where the object has a name that is none of these: for what nobody but this project writes. With its name damaged, a
+/// value that may be missing would be.
+void require_known_names(const nlohmann::json& object, const std::vector<std::string>& known, const std::string& where);
 
 double json_number(const nlohmann::json& object, const std::string& key, const std::string& where);
 int json_integer(const nlohmann::json& object, const std::string& key, const std::string& where);

@@ -60,6 +60,8 @@ StoredObject parse_object(const nlohmann::json& entry, const std::string& file) 
   StoredObject object;
   object.id = json_integer(entry, "id", file);
   const std::string where = fmt::format("{} object {}", file, object.id);
+  require_known_names(entry, {"id", "name", "mesh", "coloured", "views", "attitudes", "vote_centre_m", "quality"},
+                      where);
   require(object.id >= 1, "{}: expected an id from 1 on", where);
   object.name = text(entry, "name", where);
   object.mesh = text(entry, "mesh", where);
@@ -102,16 +104,23 @@ bool is_list_of_store(const fs::path& file) {
   return read_file(file, "the list of an object store").find(fmt::format("\"{}\"", kVersionKey)) != std::string::npos;
 }
 
-/// The models of the store must be those of its list.
+/// The models of the store must be those of its list, and nothing that is known of them a name that nobody reads.
 void check_models(const ObjectStore& store, const BopModels& models) {
-  const std::string info = (store.models_folder() / "models_info.json").string();
+  const fs::path info_file = store.models_folder() / "models_info.json";
+  const std::string info = info_file.string();
+  for (const auto& [id, entry] : read_json_by_id(info_file)) {
+    require_known_names(entry,
+                        {"diameter", "min_x", "min_y", "min_z", "size_x", "size_y", "size_z", "symmetries_discrete",
+                         "symmetries_continuous"},
+                        fmt::format("{} object {}", info, id));
+  }
   for (const StoredObject& object : store.objects) {
     require_file(models.mesh_file(object.id), store.folder);
-    const auto name = models.names.find(object.id);
-    require(name != models.names.end(), "{}: no object {}, expected '{}' of {}", info, object.id, object.name,
-            kJsonFile);
-    require(name->second == object.name, "{}: object {} is called '{}', expected '{}' as in {}",
-            (store.models_folder() / "names.json").string(), object.id, name->second, object.name, kJsonFile);
+    require(models.diameters.count(object.id) > 0, "{}: no object {}, expected '{}' of {}", info, object.id,
+            object.name, kJsonFile);
+    const std::string& name = models.names.at(object.id);  // each that has a diameter has one
+    require(name == object.name, "{}: object {} is called '{}', expected '{}' as in {}",
+            (store.models_folder() / "names.json").string(), object.id, name, object.name, kJsonFile);
   }
   require(models.diameters.size() == store.objects.size(), "{}: {} objects, expected the {} of {}", info,
           models.diameters.size(), store.objects.size(), kJsonFile);
@@ -162,6 +171,7 @@ ObjectStore read_store(const fs::path& folder) {
   const int version = json_integer(json, kVersionKey, file.string());
   require(version == kStoreVersion, "{}: object store of version {}, expected {}: teach it anew", file.string(),
           version, kStoreVersion);
+  require_known_names(json, {kVersionKey, "objects", "tone", "settings"}, file.string());
   ObjectStore store;
   store.folder = folder;
   store.objects = parse_objects(json, file.string());

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint64_t kMostPixels = 64'000'000;
 constexpr int kMostScans = 64;
+constexpr std::uint8_t kScan = 0xDA;  // a JPEG's marker
 constexpr std::array<std::uint8_t, 8> kPngStart = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
 constexpr std::size_t kPngHeader = 24;  // up to the height
 
@@ -61,6 +62,14 @@ std::uint64_t jpeg_pixels(const std::uint8_t* jpeg, std::size_t size) {
   return most;
 }
 
+/// Whether anything ends its last scan: a decoder fills up what is missing of one.
+bool has_jpeg_end(const std::uint8_t* jpeg, std::size_t size) {
+  constexpr std::array<std::uint8_t, 2> kEnd = {0xFF, 0xD9};
+  std::size_t scan = size;
+  walk_jpeg(jpeg, size, [&](std::uint8_t marker, std::size_t at) { scan = marker == kScan ? at : scan; });
+  return std::search(jpeg + scan, jpeg + size, kEnd.begin(), kEnd.end()) != jpeg + size;
+}
+
 /// What is of neither format is OpenCV's to judge.
 bool is_modest(const std::uint8_t* bytes, std::size_t size) {
   if (is_jpeg(bytes, size))
@@ -97,7 +106,9 @@ cv::Mat decode_image(const std::uint8_t* bytes, std::size_t size, int mode) {
 
 cv::Mat decode_image_file(const std::filesystem::path& file, int mode) {
   const std::vector<std::uint8_t> bytes = bytes_to_judge(file);
-  if (is_jpeg(bytes.data(), bytes.size())) return decode_image(bytes.data(), bytes.size(), mode);  // all of it is here
+  if (is_jpeg(bytes.data(), bytes.size())) {  // all of it is here
+    return has_jpeg_end(bytes.data(), bytes.size()) ? decode_image(bytes.data(), bytes.size(), mode) : cv::Mat();
+  }
   if (!is_modest(bytes.data(), bytes.size())) return {};
   try {
     return cv::imread(file.string(), mode);
@@ -107,7 +118,6 @@ cv::Mat decode_image_file(const std::filesystem::path& file, int mode) {
 }
 
 int count_jpeg_scans(const std::uint8_t* jpeg, std::size_t size) {
-  constexpr std::uint8_t kScan = 0xDA;
   int scans = 0;
   walk_jpeg(jpeg, size, [&](std::uint8_t marker, std::size_t /*at*/) { scans += marker == kScan ? 1 : 0; });
   return scans;

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/base/files.hpp"
 #include "pipeline/geometry/mesh_structure.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/text/json_names.hpp"
 
 namespace houghstream {
 namespace {
@@ -28,8 +27,7 @@ class GltfCheck {
   GltfCheck(std::string_view bytes, const std::filesystem::path& file) : file_(file), source_(file.string()) {
     text_ = bytes;
     if (bytes.substr(0, 4) == "glTF") take_chunks(bytes);
-    check_json_nesting(text_, source_);
-    json_ = parsed_text();
+    json_ = parse_json(text_, source_);
     require(json_.is_object(), "{}: no glTF, or cut: its JSON does not end", source_);
   }
 
@@ -69,20 +67,6 @@ class GltfCheck {
       has_binary_ = has_binary_ || is_binary;
       at += kChunkHeader + chunk.size();
     }
-  }
-
-  /// A name that stands twice in an object has two values: its first one for the library, its last one here.
-  Json parsed_text() const {
-    std::vector<std::set<std::string>> open;  // names in the objects that have begun
-    const auto note = [&](int /*depth*/, Json::parse_event_t event, const Json& parsed) {
-      if (event == Json::parse_event_t::object_start) open.emplace_back();
-      if (event == Json::parse_event_t::object_end) open.pop_back();
-      if (event == Json::parse_event_t::key)
-        require(open.back().insert(parsed.get<std::string>()).second, "{}: '{}' stands twice in an object", source_,
-                printable(parsed.get<std::string>()));
-      return true;
-    };
-    return Json::parse(text_, note, false);
   }
 
   const Json& list(const char* name) const {

@@ -1,5 +1,7 @@
 #include "pose/tracks/camera_places.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
@@ -56,6 +58,16 @@ double number_of(const cv::FileNode& node, const char* key, const std::string& o
   return node[key].real();
 }
 
+/// What has a damaged name, or one that another has too, would be left out without a word.
+void require_names(const cv::FileNode& map, const std::set<std::string>& known, const std::string& of) {
+  std::set<std::string> names;
+  for (const cv::FileNode& node : map) {
+    const std::string name = node.name();
+    require(known.count(name) > 0, "{}: '{}', expected one of {}", of, printable(name), fmt::join(known, ", "));
+    require(names.insert(name).second, "{}: '{}' stands twice", of, name);
+  }
+}
+
 Links links_of(const cv::FileStorage& yaml, const std::string& file) {
   Links links;
   const cv::FileNode cameras = yaml["cameras"];
@@ -65,9 +77,11 @@ Links links_of(const cv::FileStorage& yaml, const std::string& file) {
           "{}: expected 'cameras:' with names, or a list of 'transforms:'", file);
   for (const cv::FileNode& node : cameras) {
     const std::string of = fmt::format("{}: camera {}", file, node.name());
+    require(links.count(node.name()) == 0, "{} stands twice", of);
     const std::string parent = node["parent"].isString() ? std::string(node["parent"]) : "world";
     links[node.name()] = {parent, rigid(numbers_of<3>(node["translation"], of + ": translation"),
                                         numbers_of<4>(node["rotation"], of + ": rotation"), of)};
+    require_names(node, {"parent", "translation", "rotation"}, of);
   }
   for (const cv::FileNode& node : transforms) {
     require(node["child_frame_id"].isString() && node["header"]["frame_id"].isString(),
@@ -81,6 +95,7 @@ Links links_of(const cv::FileStorage& yaml, const std::string& file) {
         rigid({number_of(t, "x", of), number_of(t, "y", of), number_of(t, "z", of)},
               {number_of(q, "w", of), number_of(q, "x", of), number_of(q, "y", of), number_of(q, "z", of)}, of)};
   }
+  if (!links.empty()) require_names(yaml.root(), {"cameras", "transforms"}, file);
   return links;
 }
 

@@ -56,8 +56,8 @@ class CameraPlaces {
 ///
 /// (parent may be another camera; without it the world), and static transforms of ROS as `ros2 topic echo /tf_static`
 /// prints them: entries of `transforms` with header.frame_id, child_frame_id and transform, chained to the root frame,
-/// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, or goes round
-/// in a loop.
+/// which is the world. Metres. Throws InputError naming file and camera for what is missing, not rigid, goes round in
+/// a loop, has a name that is none of these, or stands twice.
 std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file);
 
 /// The value of an option --camera-pose: CHANNEL=x,y,z,qw,qx,qy,qz, T_world_camera. Throws InputError.

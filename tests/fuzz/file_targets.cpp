@@ -13,46 +13,22 @@
 #include "drivers/files/camera_info.hpp"
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/mat_file.hpp"
-#include "drivers/openni/recording/oni_times.hpp"
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/messages/codecs.hpp"
 #include "tests/detector/forest/random_forest.hpp"
 #include "tests/drivers/store/small_store.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
-#include "tests/tools/log/recordings.hpp"
-#include "tools/log/good_events.hpp"
-#include "tools/log/klg_file.hpp"
+#include "tests/pipeline/test_frame.hpp"
 
 namespace houghstream::fuzz {
 namespace {
 
 namespace fs = std::filesystem;
 
-Bytes content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return bytes_of_text(text.str());
-}
-
 fs::path scratch(const std::string& name) {
   const fs::path memory = fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
   return memory / fmt::format("houghstream_fuzz_{}_{}", getpid(), name);
-}
-
-void read_log(ByteView input) {
-  log_tools::LossAccount losses;
-  log_tools::GoodEvents events(as_file(input, "log"), losses);
-  while (events.next()) {
-  }
-}
-
-std::vector<Bytes> logs() {
-  const std::string file = as_file({}, "seed_log");
-  log_tools::TestLog log(file);
-  for (const std::string channel : {"LEFT", "RIGHT"}) log.add_bytes(channel, {1, 2, 3, 4, 5, 6, 7, 8, 9});
-  log.close();
-  return {content(file)};
 }
 
 /// Behind the line with the version: u64 length, u32 CRC-32, payload.
@@ -67,8 +43,9 @@ void repair_forest(Bytes& input) {
   std::memcpy(input.data() + line.size() + 8, &crc, sizeof crc);
 }
 
-void read_forest(ByteView input) {
-  load_forest(as_file(input, "forest"));
+Taken read_forest(ByteView input) {
+  const Forest forest = load_forest(as_file(input, "forest"));
+  return {forest.classes.size() + forest.nodes.size() + forest.leaves.size()};
 }
 
 std::vector<Bytes> forests() {
@@ -88,25 +65,11 @@ std::vector<Bytes> forests() {
   forest.leaf_classes = {entry, entry};
   const std::string file = as_file({}, "seed_forest");
   save_forest(forest, file);
-  return {content(file)};
+  return {content_of(file)};
 }
 
-void read_klg(ByteView input) {
-  log_tools::KlgFile klg(as_file(input, "klg"), 16, 12);
-  while (const std::optional<images_t> message = klg.next()) images_from_message(*message);
-}
-
-std::vector<Bytes> klgs() {
-  log_tools::KlgWriter writer(2);
-  writer.add(make_test_frame(5, 16, 12), true);
-  writer.add(make_test_frame(6, 16, 12), false);
-  const std::string file = as_file({}, "seed_klg");
-  writer.save(file);
-  return {content(file)};
-}
-
-void read_mat(ByteView input) {
-  read_mat_variable(as_file(input, "mat"), "bboxes");
+Taken read_mat(ByteView input) {
+  return {read_mat_variable(as_file(input, "mat"), "bboxes").count};
 }
 
 /// An array of two numbers, "MAT-File Format", The MathWorks: header, data element, its flags, sizes, name and values.
@@ -137,21 +100,30 @@ void write_parts(ByteView input, const fs::path& folder, const std::vector<std::
 
 const std::vector<std::string> kScene = {"scene_camera.json", "scene_gt.json", "scene_gt_info.json"};
 
-void read_scene(ByteView input) {
+/// Images and what is in them.
+Taken read_scene(ByteView input) {
   const fs::path folder = scratch("scene");
   fs::create_directories(folder);
   write_parts(input, folder, kScene);
-  BopScene scene(folder);
+  const BopScene scene(folder);
+  Taken taken;
+  for (const BopImage& image : scene.images()) taken.items += 1 + image.objects.size();
+  return taken;
 }
 
 std::vector<Bytes> scenes() {
-  return {
-      bytes_of_text(std::string(R"({"0":{"cam_K":[525,0,8,0,525,6,0,0,1],"depth_scale":1.0,"width":16,"height":12}})") +
-                    '\0' + R"({"0":[{"cam_R_m2c":[1,0,0,0,1,0,0,0,1],"cam_t_m2c":[0,0,700],"obj_id":1}]})" + '\0' +
-                    R"({"0":[{"bbox_visib":[1,2,3,4],"visib_fract":0.9}]})")};
+  const std::string camera = R"({"cam_K":[525,0,8,0,525,6,0,0,1],"depth_scale":1.0,"width":16,"height":12})";
+  const std::string truth = R"({"cam_R_m2c":[1,0,0,0,1,0,0,0,1],"cam_t_m2c":[0,0,700],"obj_id":1})";
+  const std::string info = R"({"bbox_visib":[1,2,3,4],"visib_fract":0.9})";
+  const auto twice = [](const std::string& first, const std::string& second) {
+    return fmt::format(R"({{"0":{},"1":{}}})", first, second);
+  };
+  const auto list = [](const std::string& entry) { return fmt::format("[{},{}]", entry, entry); };
+  return {bytes_of_text(twice(camera, camera) + '\0' + twice(list(truth), list(truth)) + '\0' +
+                        twice(list(info), list(info)))};
 }
 
-const std::vector<std::string> kStore = {"store.json", "models/models_info.json"};
+const std::vector<std::string> kStore = {"store.json", "models/models_info.json", "models/names.json"};
 
 fs::path store_folder() {
   fs::path folder = scratch("store");
@@ -161,25 +133,37 @@ fs::path store_folder() {
   return folder;
 }
 
-void read_stored(ByteView input) {
+/// Objects, what is known of them, and their triangles.
+Taken read_stored(ByteView input) {
   const fs::path folder = store_folder();
   write_parts(input, folder, kStore);
-  store::load_store_meshes(store::read_store(folder));
+  const store::ObjectStore stored = store::read_store(folder);
+  Taken taken{stored.objects.size() + stored.quality().size()};
+  for (const store::StoredObject& object : stored.objects) {
+    const Symmetries& symmetries = stored.symmetries.at(object.id);
+    taken.items += symmetries.discrete.size() + symmetries.continuous.size();
+  }
+  for (const auto& [name, mesh] : store::load_store_meshes(stored)) taken.items += mesh.triangles.size();
+  return taken;
 }
 
 std::vector<Bytes> stores() {
   const fs::path folder = scratch("seed_store");
   fs::create_directories(folder);
   store::fill_store(folder, "brick");
-  Bytes both = content(folder / kStore[0]);
-  both.push_back(0);
-  const Bytes info = content(folder / kStore[1]);
-  both.insert(both.end(), info.begin(), info.end());
-  return {both};
+  Bytes parts;
+  for (const std::string& name : kStore) {
+    if (!parts.empty()) parts.push_back(0);
+    const Bytes part = content_of(folder / name);
+    parts.insert(parts.end(), part.begin(), part.end());
+  }
+  return {parts};
 }
 
-void read_calibration(ByteView input) {
+/// All of a camera's six numbers or nothing.
+Taken read_calibration(ByteView input) {
   read_camera_info(as_file(input, "yaml"));
+  return {6};
 }
 
 std::vector<Bytes> calibrations() {
@@ -189,38 +173,32 @@ std::vector<Bytes> calibrations() {
                     "  data: [0, 0, 0, 0, 0]\n")};
 }
 
-void read_picture(ByteView input) {
-  read_colour_image(as_file(input, "png"));
+Taken read_png(ByteView input) {
+  return {read_colour_image(as_file(input, "colour.png")).total()};
 }
 
-std::vector<Bytes> pictures() {
+std::vector<Bytes> pngs() {
   const std::string file = as_file({}, "seed.png");
   write_png(make_test_frame(5, 16, 12).colour, file);
-  return {content(file), encode_jpeg(make_test_frame(5, 16, 12).colour, 90)};
+  return {content_of(file)};
 }
 
-void read_oni(ByteView input) {
-  openni::check_oni(as_file(input, "oni"));
+Taken read_depth(ByteView input) {
+  return {read_depth_image(as_file(input, "depth.png")).total()};
 }
 
-/// A file's head, a stream of one image, that image, its end.
-std::vector<Bytes> recordings() {
-  Bytes bytes = {'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};
-  bytes.resize(24);
-  const auto record = [&](std::uint32_t type, const Bytes& fields, std::uint32_t payload) {
-    for (const std::uint32_t word :
-         {0x0052494EU, type, 1U, 28 + static_cast<std::uint32_t>(fields.size()), payload, 0U, 0U}) {
-      for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(word >> shift));
-    }
-    bytes.insert(bytes.end(), fields.begin(), fields.end());
-    bytes.resize(bytes.size() + payload);
-  };
-  Bytes node(8 + 28);
-  node[8] = 1;
-  record(13, node, 0);
-  record(10, Bytes(20), 16);
-  record(11, {}, 0);
-  return {bytes};
+std::vector<Bytes> depth_pngs() {
+  const std::string file = as_file({}, "seed.png");
+  write_png(depth_to_millimetres(make_test_frame(5, 16, 12).depth), file);
+  return {content_of(file)};
+}
+
+Taken read_jpeg(ByteView input) {
+  return {read_colour_image(as_file(input, "jpg")).total()};
+}
+
+std::vector<Bytes> jpegs() {
+  return {encode_jpeg(make_test_frame(5, 16, 12).colour, 90)};
 }
 
 }  // namespace
@@ -232,30 +210,46 @@ std::string as_file(ByteView input, const std::string& ending) {
   return file.string();
 }
 
+Bytes content_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return bytes_of_text(text.str());
+}
+
 std::vector<FuzzTarget> file_targets() {
-  return {
-      {"log", read_log, logs, nullptr, {"\xED\xA1\xDA\x01"}},
-      {"forest", read_forest, forests, repair_forest, {"realtime", "paper", "gall"}},
-      {"klg", read_klg, klgs, nullptr, {}},
-      {"mat", read_mat, mats, nullptr, {"bboxes"}},
-      {"scene",
-       read_scene,
-       scenes,
-       nullptr,
-       {"cam_K", "cam_R_m2c", "cam_t_m2c", "bbox_visib", "obj_id", "null", "1e400"}},
-      {"store", read_stored, stores, nullptr, {"symmetries_discrete", "symmetries_continuous", "version", "objects"}},
-      {"calibration", read_calibration, calibrations, nullptr, {"!!opencv-matrix", "data:", "&a", "*a", "- [", "{"}},
-      {"picture",
-       read_picture,
-       pictures,
-       nullptr,
-       {"IHDR", "IDAT", "PLTE", "tRNS", "IEND", "\xFF\xDA", "\xFF\xC2", "\xFF\x01"}},
-      {"oni", read_oni, recordings, nullptr, {"NIR"}}};
+  const std::vector<std::string> png_words = {"IHDR", "IDAT", "PLTE", "tRNS", "IEND"};
+  return {{"forest", read_forest, forests, repair_forest, {"realtime", "paper", "gall"}, 4096, kAnyDamage},
+          {"mat", read_mat, mats, nullptr, {"bboxes"}, 4096, {true, {}}},
+          {"scene",
+           read_scene,
+           scenes,
+           nullptr,
+           {"cam_K", "cam_R_m2c", "cam_t_m2c", "bbox_visib", "obj_id", "null", "1e400"},
+           4096,
+           kAnyDamage},
+          {"store",
+           read_stored,
+           stores,
+           nullptr,
+           {"symmetries_discrete", "symmetries_continuous", "version", "objects"},
+           4096,
+           kAnyDamage},
+          {"calibration",
+           read_calibration,
+           calibrations,
+           nullptr,
+           {"!!opencv-matrix", "data:", "&a", "*a", "- [", "{"},
+           4096,
+           kAnyDamage},
+          {"png", read_png, pngs, nullptr, png_words, 4096, kAnyDamage},
+          {"depth", read_depth, depth_pngs, nullptr, png_words, 4096, kAnyDamage},
+          // It states its size once, without a checksum: who knows the camera sees that it is another one.
+          {"jpeg", read_jpeg, jpegs, nullptr, {"\xFF\xDA", "\xFF\xC2", "\xFF\x01"}, 4096, {true, {}}}};
 }
 
 std::vector<FuzzTarget> fuzz_targets() {
   std::vector<FuzzTarget> all;
-  for (const auto& some : {message_targets(), file_targets(), mesh_targets(), text_targets()})
+  for (const auto& some : {message_targets(), file_targets(), recording_targets(), mesh_targets(), text_targets()})
     all.insert(all.end(), some.begin(), some.end());
   return all;
 }

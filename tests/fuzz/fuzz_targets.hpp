@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +17,25 @@ namespace houghstream::fuzz {
 
 using Bytes = std::vector<std::uint8_t>;
 
+/// What a reader took of an input.
+struct Taken {
+  std::size_t items = 0;    ///< events, frames, nodes, pixels, triangles: of what the format holds many
+  bool tells_loss = false;  ///< it went on behind damage, and says so
+};
+
+/// Which damage of a whole input a reader knows, wherever it is: it then refuses it, tells of a loss, or takes as many
+/// items as of the whole one. Never are they fewer without a word.
+struct KnownDamage {
+  bool cuts = false;
+  /// Flipped bits, but for those that take so many items at most; nothing = there are some that may take any number.
+  std::optional<std::size_t> flips{};
+};
+inline constexpr KnownDamage kAnyDamage = {true, 0};
+
 struct FuzzTarget {
   std::string name;
   /// Reads the input. Throws InputError where it refuses it; anything else that it throws is a fault.
-  void (*run)(ByteView input);
+  Taken (*run)(ByteView input);
   /// Whole inputs, which it takes.
   std::vector<Bytes> (*seeds)();
   /// Makes a checksum right that would keep mutations from being read any further; null = there is none.
@@ -26,10 +44,12 @@ struct FuzzTarget {
   std::vector<std::string> words;
   /// Longest input that is tried, bytes.
   int longest = 4096;
+  KnownDamage known{};
 };
 
 std::vector<FuzzTarget> message_targets();
 std::vector<FuzzTarget> file_targets();
+std::vector<FuzzTarget> recording_targets();
 std::vector<FuzzTarget> mesh_targets();
 std::vector<FuzzTarget> text_targets();
 
@@ -38,6 +58,8 @@ std::vector<FuzzTarget> fuzz_targets();
 
 /// The input as a file with this ending, in memory where the machine has such a folder; the same file each time.
 std::string as_file(ByteView input, const std::string& ending);
+
+Bytes content_of(const std::filesystem::path& file);
 
 inline Bytes bytes_of_text(const std::string& text) {
   return {text.begin(), text.end()};

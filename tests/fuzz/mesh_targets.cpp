@@ -9,24 +9,24 @@
 namespace houghstream::fuzz {
 namespace {
 
-void read_ply(ByteView input) {
-  load_mesh(as_file(input, "mesh.ply"));
+Taken read_ply(ByteView input) {
+  return {load_mesh(as_file(input, "mesh.ply")).triangles.size()};
 }
 
-void read_obj(ByteView input) {
-  load_mesh(as_file(input, "mesh.obj"));
+Taken read_obj(ByteView input) {
+  return {load_mesh(as_file(input, "mesh.obj")).triangles.size()};
 }
 
 /// The materials of a mesh that is whole.
-void read_mtl(ByteView input) {
+Taken read_mtl(ByteView input) {
   const std::string materials = std::filesystem::path(as_file(input, "paint.mtl")).filename().string();
   const Bytes mesh =
       bytes_of_text("mtllib " + materials + "\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 2\n");
-  load_mesh(as_file({mesh.data(), mesh.size()}, "painted.obj"));
+  return {load_mesh(as_file({mesh.data(), mesh.size()}, "painted.obj")).triangles.size()};
 }
 
-void read_glb(ByteView input) {
-  load_mesh(as_file(input, "mesh.glb"));
+Taken read_glb(ByteView input) {
+  return {load_mesh(as_file(input, "mesh.glb")).triangles.size()};
 }
 
 template <typename Number>
@@ -52,10 +52,11 @@ std::vector<Bytes> plys() {
   return {bytes_of_text(text), binary};
 }
 
+/// Its last vertex is in its last face only, so that every cut can be told.
 std::vector<Bytes> objs() {
   return {
-      bytes_of_text("o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl red\nf 1/1/1 2/1/1 3/1/1\n"
-                    "f -4/1/1 -2/1/1 -1/1/1\n")};
+      bytes_of_text("o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nusemtl red\n"
+                    "f 1/1/1 2/1/1 3/1/1\nf 1/1/1 3/1/1 4/1/1\nf 2/1/1 3/1/1 4/1/1\nf -4/1/1 -2/1/1 -1/1/1\n")};
 }
 
 std::vector<Bytes> mtls() {
@@ -104,8 +105,16 @@ std::vector<FuzzTarget> mesh_targets() {
            plys,
            nullptr,
            {"element ", "property ", "list ", "vertex_index", "end_header", "double ", "short "},
-           1024},
-          {"obj", read_obj, objs, nullptr, {"v ", "vt ", "vn ", "f ", "mtllib ", "usemtl ", "//", "\\\n", "nan"}, 1024},
+           1024,
+           kAnyDamage},
+          // It states no counts: a face may become a group ('f' to 'g'), or a part of the name in the line before it.
+          {"obj",
+           read_obj,
+           objs,
+           nullptr,
+           {"v ", "vt ", "vn ", "f ", "mtllib ", "usemtl ", "//", "\\\n", "nan"},
+           1024,
+           {true, 1}},
           {"mtl",
            read_mtl,
            mtls,
@@ -117,7 +126,8 @@ std::vector<FuzzTarget> mesh_targets() {
            glbs,
            repair_glb,
            {"\"children\"", "\"matrix\"", "\"mode\"", "\"TEXCOORD_0\"", "\"byteStride\"", "\"images\"", "\"textures\""},
-           2048}};
+           2048,
+           {true, {}}}};
 }
 
 }  // namespace houghstream::fuzz

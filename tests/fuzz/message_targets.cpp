@@ -11,9 +11,9 @@
 namespace houghstream::fuzz {
 namespace {
 
-void read_frame(ByteView input) {
+Taken read_frame(ByteView input) {
   read_frame_header(input);
-  frame_from_message(decode_message<images_t>(input), "LEFT", std::nullopt);
+  return {frame_from_message(decode_message<images_t>(input), "LEFT", std::nullopt).colour.total()};
 }
 
 std::vector<Bytes> frames() {
@@ -26,7 +26,7 @@ std::vector<Bytes> frames() {
 }
 
 /// Every other message of ours, by its fingerprint.
-void read_result(ByteView input) {
+Taken read_result(ByteView input) {
   const std::int64_t fingerprint = log_tools::fingerprint_of(input);
   if (fingerprint == detections_t::getHash()) detections_from_message(decode_message<detections_t>(input));
   if (fingerprint == object_poses_t::getHash()) poses_from_message(decode_message<object_poses_t>(input));
@@ -35,6 +35,7 @@ void read_result(ByteView input) {
   if (fingerprint == known_objects_t::getHash()) decode_message<known_objects_t>(input);
   if (fingerprint == objects_t::getHash()) world_from_message(decode_message<objects_t>(input));
   if (fingerprint == rigid_transform_t::getHash()) transform_from_message(decode_message<rigid_transform_t>(input));
+  return {};
 }
 
 WorldObjects world_of(const FrameId& frame) {
@@ -92,9 +93,10 @@ std::vector<Bytes> results() {
           encode_message(to_message(7, Eigen::Isometry3d::Identity()))};
 }
 
-void read_foreign(ByteView input) {
+Taken read_foreign(ByteView input) {
   const bool is_drake = log_tools::fingerprint_of(input) == drake_image_array_t::getHash();
-  images_from_message(is_drake ? log_tools::images_from_drake(input) : log_tools::images_from_kinect(input));
+  return {images_from_message(is_drake ? log_tools::images_from_drake(input) : log_tools::images_from_kinect(input))
+              .colour.total()};
 }
 
 std::vector<Bytes> foreign_frames() {
@@ -106,9 +108,16 @@ std::vector<Bytes> foreign_frames() {
 }  // namespace
 
 std::vector<FuzzTarget> message_targets() {
-  return {{"frame", read_frame, frames, nullptr, {"houghstream.camera", "houghstream.sequence", "houghstream.run"}},
+  constexpr KnownDamage kCuts = {true, {}};
+  return {{"frame",
+           read_frame,
+           frames,
+           nullptr,
+           {"houghstream.camera", "houghstream.sequence", "houghstream.run"},
+           4096,
+           kCuts},
           {"result", read_result, results, nullptr, {}},
-          {"foreign", read_foreign, foreign_frames, nullptr, {}}};
+          {"foreign", read_foreign, foreign_frames, nullptr, {}, 4096, kCuts}};
 }
 
 }  // namespace houghstream::fuzz

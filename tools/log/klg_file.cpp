@@ -44,7 +44,11 @@ std::vector<std::uint8_t> KlgFile::read(std::uint64_t bytes, const char* what) {
 }
 
 std::optional<images_t> KlgFile::next() {
-  if (index_ == frames_) return std::nullopt;
+  if (index_ == frames_) {
+    require(bytes_left() == 0, "{}: states {} frames, but {} bytes lie behind them: is it damaged, or was not ended?",
+            file_, frames_, bytes_left());
+    return std::nullopt;
+  }
   const std::vector<std::uint8_t> head = read(16, "a frame's head");
   const auto utime = little_endian<std::int64_t>(head, 0);
   const auto depth_bytes = little_endian<std::int32_t>(head, 8);

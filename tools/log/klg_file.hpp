@@ -19,7 +19,7 @@ class KlgFile {
   KlgFile(const std::filesystem::path& file, int width, int height);
 
   /// The next frame as it was recorded, or nothing at the end. Throws InputError where the file is cut or damaged; what
-  /// follows cannot be found then.
+  /// follows cannot be found then. So it does behind the last frame, where the file goes on.
   std::optional<images_t> next();
 
   /// Bytes from the next frame to the end.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <fstream>
+#include <map>
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
@@ -92,24 +93,46 @@ std::vector<std::uint64_t> times_in(const RecordHeader& record, std::uint64_t at
   return places;
 }
 
-/// OpenNI2 makes place for as many images as a node states.
-void check_images(OniFile& oni, const RecordHeader& record, std::uint64_t at) {
-  require(record.fields >= kRecordHeader + kImages, "{}: a stream of {} bytes at byte {}", oni.name(), record.fields,
-          at);
-  const auto images = oni.read<std::uint32_t>(at + record.fields - kImages);
-  require(images <= oni.size() / kRecordHeader, "{}: states {} images, expected at most what {} bytes hold", oni.name(),
-          images, oni.size());
+/// What a stream states, and what there is of it.
+struct StreamContent {
+  std::uint32_t stated = 0;             // images
+  std::vector<std::uint64_t> times;     // of its images
+  std::vector<std::uint64_t> in_table;  // likewise, of its seek table
+};
+
+void note_record(OniFile& oni, const RecordHeader& record, std::uint64_t at, StreamContent& stream) {
+  const auto type = static_cast<Type>(record.type);
+  const std::uint64_t least = kRecordHeader + (type == Type::kNodeAdded ? kImages : sizeof(std::uint64_t));
+  require(record.fields >= least || (type != Type::kNodeAdded && type != Type::kNewData),
+          "{}: a record of {} bytes at byte {}, expected {} or more", oni.name(), record.fields, at, least);
+  if (type == Type::kNodeAdded) stream.stated = oni.read<std::uint32_t>(at + record.fields - kImages);
+  if (type == Type::kNewData) stream.times.push_back(oni.read<std::uint64_t>(times_in(record, at).front()));
+  if (type != Type::kSeekTable) return;
+  for (const std::uint64_t place : times_in(record, at)) stream.in_table.push_back(oni.read<std::uint64_t>(place));
 }
 
 }  // namespace
 
-void check_oni(const std::filesystem::path& file) {
+std::size_t check_oni(const std::filesystem::path& file) {
   OniFile oni(file);
+  std::map<std::uint32_t, StreamContent> streams;
   std::uint64_t at = kFileHeader;
-  for (RecordHeader record = oni.record(at); static_cast<Type>(record.type) != Type::kEnd; record = oni.record(at)) {
-    if (static_cast<Type>(record.type) == Type::kNodeAdded) check_images(oni, record, at);
+  RecordHeader record = oni.record(at);
+  for (; static_cast<Type>(record.type) != Type::kEnd; record = oni.record(at)) {
+    note_record(oni, record, at, streams[record.node]);
     at += record.fields + record.payload;
   }
+  at += record.fields + record.payload;
+  require(at == oni.size(), "{}: {} bytes lie behind its end", oni.name(), oni.size() - at);
+  std::size_t images = 0;
+  for (const auto& [node, stream] : streams) {
+    require(stream.times.size() == stream.stated, "{}: stream {} states {} images, {} are there", oni.name(), node,
+            stream.stated, stream.times.size());
+    require(stream.in_table.empty() || stream.in_table == stream.times,
+            "{}: the images of stream {} are not at the times of its seek table", oni.name(), node);
+    images += stream.times.size();
+  }
+  return images;
 }
 
 void delay_oni_node(const std::filesystem::path& file, OniNode node, std::int64_t delay_us) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 
@@ -8,9 +9,10 @@ namespace houghstream::openni {
 /// The streams of a .oni file in the order in which they were attached to OpenNI2's recorder.
 enum class OniNode : std::uint32_t { kFirst = 1, kSecond = 2 };
 
-/// Throws InputError unless the file is a whole recording of OpenNI2's (version 1.0.1) as far as its records and their
-/// lengths go: OpenNI2 itself asks for as much memory as the file states.
-void check_oni(const std::filesystem::path& file);
+/// Images of all streams of a recording. Throws InputError unless the file is a whole one of OpenNI2's (version 1.0.1):
+/// records up to its end and nothing behind it, of each stream as many images as it states, and those at the times of
+/// its seek table. OpenNI2 itself asks for as much memory as the file states, and plays as many images.
+std::size_t check_oni(const std::filesystem::path& file);
 
 /// Adds `delay_us`, which is not negative, to all times of one stream in a finished .oni file: those of its images, of
 /// its seek table and of its range. OpenNI2's recorder begins each stream at zero (OniRecorder.cpp), whenever its first

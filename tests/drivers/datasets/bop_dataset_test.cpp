@@ -79,6 +79,7 @@ TEST(BopScene, ObjectsMayHaveABoxOnlyOrNoBox) {
 
 TEST(BopScene, DepthIsScaledAndSizesComeFromTheImageWhereBopHasNone) {
   const fs::path folder = write_scene("bop_scale");
+  fs::remove(folder / "scene_gt.json");  // of the other images too
   write_text(folder / "scene_camera.json", R"({"7": {"cam_K": [60,0,31.5, 0,61,23.5, 0,0,1], "depth_scale": 0.1}})");
   fs::rename(folder / "rgb/000000.png", folder / "rgb/000007.png");
   fs::rename(folder / "depth/000000.png", folder / "depth/000007.png");
@@ -125,6 +126,13 @@ TEST(BopScene, AbsurdNumbersAreRefused) {
   expect_refused("scene_gt_info.json", "20,", "60,");
   expect_refused("scene_gt_info.json", "\"3\": [", "\"99\": [");
   expect_refused("scene_gt_info.json", "{", "[");
+}
+
+// What one flipped bit makes of an image's number.
+TEST(BopScene, ObjectsOfAnImageThatIsNotThereAreRefused) {
+  expect_refused("scene_camera.json", "\"11\": {", "\"31\": {");
+  expect_refused("scene_camera.json", "\"11\": {", "\"10\": {");
+  expect_refused("scene_gt.json", "\"11\": [", "\"10\": [");
 }
 
 /// A scene with one object of this "rotation".

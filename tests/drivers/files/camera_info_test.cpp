@@ -45,6 +45,18 @@ TEST(CameraInfo, ReadsAMessageAsRosPrintsIt) {
   EXPECT_THROW(read_camera_info(file), InputError);
 }
 
+// Behind its matrix a cut cannot be told, and takes nothing but the warning of a distortion.
+TEST(CameraInfo, ACutFileIsRefusedOrGivesTheSameCamera) {
+  const auto file = fresh_folder("camera_info_cut") / "camera.yaml";
+  const std::size_t matrix_end = kCalibration.find(']') + 1;
+  for (std::size_t length = 0; length < kCalibration.size(); ++length) {
+    write_text(file, kCalibration.substr(0, length));
+    const std::string error = error_of([&] { EXPECT_TRUE(read_camera_info(file) == kCalibrated) << length; });
+    EXPECT_TRUE(length >= matrix_end || !error.empty()) << length;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
 TEST(CameraInfo, TheOptionTakesNumbersToo) {
   EXPECT_TRUE(camera_of_option("640x480,528.5,529,315.25,240.5") == kCalibrated);
   EXPECT_THROW(camera_of_option("no_such_file.yaml"), InputError);

@@ -51,6 +51,22 @@ TEST(ImageFile, WhatIsMissingNoImageOrCannotBeWrittenIsAnError) {
   EXPECT_THROW(write_png(cv::Mat(4, 6, CV_8UC(7), cv::Scalar(0)), folder / "seven.png"), InputError);
 }
 
+// Whose rows its decoder would fill up without a word.
+TEST(ImageFile, ACutJpegIsRefused) {
+  const fs::path folder = fresh_folder("image_file_cut");
+  cv::Mat colour(40, 30, CV_8UC3);
+  cv::randu(colour, 0, 256);
+  write_image(colour, folder / "whole.jpg");
+  EXPECT_EQ(read_colour_image(folder / "whole.jpg").size(), colour.size());
+  const std::string whole = read_text(folder / "whole.jpg");
+  for (const std::size_t missing : {1U, 2U, 100U, 1000U}) {
+    write_text(folder / "cut.jpg", whole.substr(0, whole.size() - missing));
+    EXPECT_THROW(read_colour_image(folder / "cut.jpg"), InputError) << missing << " of " << whole.size();
+  }
+  write_text(folder / "more.jpg", whole + "what a camera's maker adds");
+  EXPECT_EQ(read_colour_image(folder / "more.jpg").size(), colour.size());
+}
+
 TEST(ImageFile, TheFormatIsKnownByTheEndingBeforeThereIsAnImage) {
   for (const char* name : {"a.png", "A.JPG", "b.c/d.jpeg"}) EXPECT_NO_THROW(require_image_format(name)) << name;
   for (const char* name : {"", "a", "a.nosuch", "a.png/b"})

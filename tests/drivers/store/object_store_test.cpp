@@ -1,14 +1,9 @@
 #include "drivers/store/object_store.hpp"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <vector>
 
 #include "tests/drivers/store/small_store.hpp"
+#include "tests/expect_says.hpp"
 
 namespace houghstream::store {
 namespace {
@@ -21,11 +16,6 @@ std::string error_of_reading(const fs::path& folder) {
 
 std::string error_of_loading(const fs::path& folder) {
   return error_of([&] { load_store_meshes(read_store(folder)); });
-}
-
-void expect_says(const std::string& error, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(error.find(part), std::string::npos) << part << " in: " << error;
-  EXPECT_EQ(error.find('\n'), std::string::npos) << error;
 }
 
 TEST(ObjectStore, WhatIsWrittenIsReadBack) {
@@ -101,8 +91,27 @@ TEST(ObjectStore, AToneIsARangeOfGreyValuesOrHoldsEveryPicture) {
   expect_says(error_of_reading(folder), {"store.json: 'tone' is {", "121.0", "expected grey values of 0 to 255"});
   replace_in_file(folder / "store.json", "121.0", "\"dark\"");
   expect_says(error_of_reading(folder), {"store.json", "least_mean"});
-  replace_in_file(folder / "store.json", "\"tone\": {", "\"old\": {");
+  nlohmann::json without = read_json_object(folder / "store.json");
+  without.erase("tone");
+  write_text(folder / "store.json", without.dump());
   EXPECT_EQ(read_store(folder).tone.most_deviation, 255.0F);
+}
+
+// What may be missing would be, without a word.
+TEST(ObjectStore, ADamagedNameOfAValueIsRefused) {
+  const std::vector<std::vector<std::string>> damaged = {
+      {"store.json", "\"tone\"", "\"tonf\""},
+      {"store.json", "\"settings\"", "\"settingc\""},
+      {"store.json", "\"vote_centre_m\"", "\"vote_centre_l\""},
+      {"store.json", "\"quality\"", "\"qualitx\""},
+      {"models/models_info.json", "\"symmetries_discrete\"", "\"symmetries_discretd\""},
+      {"models/models_info.json", "\"min_x\"", "\"min_X\""}};
+  for (const std::vector<std::string>& change : damaged) {
+    const fs::path folder = whole_store("store_names_of_values");
+    replace_in_file(folder / change[0], change[1], change[2]);
+    const std::string quoted = "'" + change[2].substr(1, change[2].size() - 2) + "'";
+    expect_says(error_of_reading(folder), {(folder / change[0]).string(), quoted, "expected one of"});
+  }
 }
 
 TEST(ObjectStore, ANameIsUtf8) {
@@ -126,6 +135,9 @@ TEST(ObjectStore, PartsThatContradictOneAnotherAreRefused) {
   const fs::path names = whole_store("store_names");
   replace_in_file(names / "models" / "names.json", "brick", "stone");
   expect_says(error_of_reading(names), {"names.json", "'stone'", "expected 'brick'"});
+  const fs::path number = whole_store("store_number");
+  replace_in_file(number / "models" / "models_info.json", "\"2\": {", "\"3\": {");
+  expect_says(error_of_reading(number), {"models_info.json", "no object 2", "expected 'mug'"});
   const fs::path twice = whole_store("store_twice");
   replace_in_file(twice / "store.json", "\"brick\"", "\"mug\"");
   expect_says(error_of_reading(twice), {"store.json", "'mug'", "expected one of each name"});
@@ -138,173 +150,6 @@ TEST(ObjectStore, PartsThatContradictOneAnotherAreRefused) {
                 require_same_objects(store, {"brick", "bowl"});
               }),
               {"forest", "knows bowl, brick", "expected", "brick, mug"});
-}
-
-TEST(StoreBuild, TheOldStoreStaysWholeUntilTheNewOneIs) {
-  const fs::path folder = whole_store("store_swap");
-  {
-    StoreBuild build(folder);
-    fill_store(build.folder(), "bowl");
-    EXPECT_EQ(read_store(folder).objects[1].name, "brick") << "before it is published";
-    build.publish();
-  }
-  EXPECT_EQ(read_store(folder).objects[1].name, "bowl");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
-}
-
-TEST(StoreBuild, WhatIsGivenUpLeavesNothing) {
-  const fs::path folder = whole_store("store_given_up");
-  {
-    StoreBuild build(folder);
-    write_text(build.folder() / "forest", "half");
-  }
-  EXPECT_EQ(read_store(folder).objects[1].name, "brick");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1);
-}
-
-TEST(StoreBuild, WhatAnInterruptedTeachingLeftIsRemoved) {
-  const fs::path folder = whole_store("store_interrupted");
-  const fs::path left = folder.parent_path() / ".store.partial-99999999";
-  fs::create_directories(left / "models");
-  const StoreBuild build(folder);
-  EXPECT_FALSE(fs::exists(left));
-  EXPECT_EQ(read_store(folder).objects[1].name, "brick");
-  fs::remove_all(build.folder());
-}
-
-TEST(StoreBuild, AnOldStoreThatWasPutAsideComesBack) {
-  const fs::path folder = whole_store("store_aside");
-  fs::rename(folder, folder.parent_path() / ".store.before");
-  const StoreBuild build(folder);
-  EXPECT_EQ(read_store(folder).objects[1].name, "brick");
-}
-
-TEST(StoreBuild, OneAtATimeAndNothingElseIsReplaced) {
-  const fs::path folder = whole_store("store_alone");
-  const StoreBuild first(folder);
-  expect_says(error_of([&] { StoreBuild second(folder); }), {folder.string(), "another teaching"});
-  const fs::path other = fresh_folder("store_other");
-  write_text(other / "holiday.jpg", "");
-  expect_says(error_of([&] { StoreBuild build(other); }), {other.string(), "not replaced"});
-  EXPECT_TRUE(fs::exists(other / "holiday.jpg"));
-  EXPECT_NO_THROW(require_place_for_store(folder)) << "whoever works on it";
-  expect_says(error_of([&] { require_place_for_store(other); }), {other.string(), "not replaced"});
-  expect_says(error_of([&] { require_place_for_store("/dev/null/store"); }), {"/dev/null", "cannot be a folder"});
-}
-
-TEST(StoreBuild, AStoreJsonOfAnybodyElseMakesNoStore) {
-  const fs::path shop = fresh_folder("store_shop");
-  write_text(shop / "store.json", "{\"opens\": 9}");
-  EXPECT_FALSE(may_be_replaced(shop));
-  expect_says(error_of([&] { StoreBuild build(shop); }), {shop.string(), "holds no store.json of an object store"});
-  const fs::path torn = whole_store("store_torn");
-  const std::string text = read_text(torn / "store.json");
-  write_text(torn / "store.json", text.substr(0, text.size() / 2));
-  EXPECT_TRUE(may_be_replaced(torn)) << "what is left of a store";
-}
-
-/// Of another process: says 'y' where it works on the store, else 'n', and works until `go_on` is closed.
-[[noreturn]] void begin_and_tell(const fs::path& folder, int told, int go_on) {
-  const auto tell = [&](char byte) {
-    if (write(told, &byte, 1) != 1) _exit(2);
-  };
-  try {
-    const StoreBuild build(folder);
-    tell('y');
-    char byte = 0;
-    while (read(go_on, &byte, 1) > 0) continue;
-  } catch (const InputError&) {
-    tell('n');
-  } catch (...) {
-    _exit(3);
-  }
-  _exit(0);
-}
-
-TEST(StoreBuild, OfManyThatBeginTogetherOneWorks) {
-  constexpr int kMany = 8;
-  const fs::path folder = whole_store("store_together");
-  for (int round = 0; round < 20; ++round) {
-    int told[2];
-    int go_on[2];
-    ASSERT_EQ(pipe(told), 0);
-    ASSERT_EQ(pipe(go_on), 0);
-    std::vector<pid_t> children;
-    for (int i = 0; i < kMany; ++i) {
-      const pid_t child = fork();
-      if (child == 0) {
-        close(go_on[1]);
-        begin_and_tell(folder, told[1], go_on[0]);
-      }
-      children.push_back(child);
-    }
-    close(told[1]);
-    std::string answers;
-    for (char byte = 0; static_cast<int>(answers.size()) < kMany && read(told[0], &byte, 1) == 1;) answers += byte;
-    for (const int file : {told[0], go_on[0], go_on[1]}) close(file);
-    for (const pid_t child : children) waitpid(child, nullptr, 0);
-    EXPECT_EQ(answers.size(), static_cast<std::size_t>(kMany)) << "round " << round;
-    EXPECT_EQ(std::count(answers.begin(), answers.end(), 'y'), 1) << "round " << round;
-  }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
-}
-
-TEST(StoreBuild, AStoreThatALinkNamesIsExchangedWhereItLies) {
-  const fs::path folder = whole_store("store_linked");
-  const fs::path link = folder.parent_path() / "link";
-  fs::create_directory_symlink(folder, link);
-  exchange(link, "bowl");
-  EXPECT_TRUE(fs::is_symlink(link));
-  EXPECT_EQ(read_store(folder).objects[1].name, "bowl");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 2);
-  fs::remove_all(folder);
-  expect_says(error_of([&] { StoreBuild build(link); }), {link.string(), "a symbolic link to nothing"});
-}
-
-TEST(StoreBuild, WhoReadsBeforeItsChangesBringsTheOldOneBack) {
-  const fs::path folder = whole_store("store_brought_back");
-  const fs::path aside = folder.parent_path() / ".store.before";
-  fs::rename(folder, aside);
-  bring_back_store(folder);
-  EXPECT_FALSE(fs::exists(aside));
-  EXPECT_EQ(read_store(folder).objects[1].name, "brick");
-  bring_back_store(folder.parent_path() / "nowhere");
-  EXPECT_FALSE(fs::exists(folder.parent_path() / "nowhere")) << "nothing is made";
-  const StoreBuild at_work(folder);
-  fs::rename(folder, aside);
-  expect_says(error_of([&] { bring_back_store(folder); }), {folder.string(), "another teaching"});
-  EXPECT_TRUE(fs::exists(aside)) << "he puts his own there in a moment";
-}
-
-/// The name of the second object; throws where any part of the store is missing or of another one.
-std::string second_of(const fs::path& folder) {
-  const ObjectStore store = read_store(folder);
-  load_store_meshes(store);
-  return store.objects.at(1).name;
-}
-
-TEST(StoreBuild, WhoeverIsKilledAtAnyMomentLeavesAWholeStore) {
-  const fs::path folder = whole_store("store_killed");
-  int published = 0;
-  for (int i = 0; i < 60; ++i) {
-    const std::string before = second_of(folder);
-    const std::string after = "thing_" + std::to_string(i);
-    const pid_t child = fork();
-    if (child == 0) {
-      exchange(folder, after);
-      _exit(0);
-    }
-    usleep(static_cast<useconds_t>(i * 60));
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-    const std::string now = second_of(folder);
-    EXPECT_TRUE(now == before || now == after) << now;
-    if (now == after) ++published;
-  }
-  EXPECT_LT(published, 60) << "some were killed before they were done";
-  exchange(folder, "last");
-  EXPECT_EQ(second_of(folder), "last");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/geometry/mesh.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
@@ -149,6 +150,23 @@ TEST(MeshStructure, CutFilesAreRefused) {
     if (vertices_end != std::string::npos) {
       EXPECT_EQ(triangles_of(kind, kind.bytes.substr(0, vertices_end - 5)), std::nullopt) << "in its header";
     }
+  }
+}
+
+TEST(MeshStructure, APlyThatEndsBehindAnyOfItsLinesIsRefused) {
+  const std::string whole = text_ply();
+  for (std::size_t end = whole.find('\n') + 1; end < whole.size(); end = whole.find('\n', end) + 1)
+    EXPECT_THROW(check_ply(whole.substr(0, end), "cut.ply"), InputError) << end << " of " << whole.size();
+}
+
+// An OBJ states no counts: behind a face, with every vertex in one, it may be whole.
+TEST(MeshStructure, AnObjThatEndsBehindALineIsRefusedUnlessEveryVertexHasAFace) {
+  const std::string whole = obj();
+  const std::size_t last_vertex_used = whole.find(" 42\n") + 4;
+  for (std::size_t end = whole.find('\n') + 1; end < whole.size(); end = whole.find('\n', end) + 1) {
+    const bool is_refused = !error_of([&] { check_obj(whole.substr(0, end), "cut.obj"); }).empty();
+    // Before its first vertex it has none that lacks a face; that it has no face is seen where it is read.
+    EXPECT_EQ(is_refused, end < last_vertex_used && end > whole.find("v ")) << end << " of " << whole.size();
   }
 }
 

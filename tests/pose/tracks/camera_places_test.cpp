@@ -142,6 +142,27 @@ TEST(CameraPlaces, BadFilesAreOneLine) {
             std::string::npos);
 }
 
+// What has them would be left out without a word.
+TEST(CameraPlaces, NamesThatNobodyReadsOrThatStandTwiceAreRefused) {
+  const std::string place = "translation: [0, 0, 0], rotation: [1, 0, 0, 0]}\n";
+  const auto error_with = [&](const std::string& text) {
+    const auto file = written("names.yaml", text);
+    return error_of([&] { read_camera_places(file); });
+  };
+  EXPECT_EQ(error_with("cameras:\n  A: {parent: world, " + place + "  B: {parent: A, " + place), "");
+  EXPECT_NE(error_with("cameras:\n  A: {parenu: B, " + place + "  B: {" + place)
+                .find("camera A: 'parenu', expected one of parent, rotation, translation"),
+            std::string::npos);
+  EXPECT_NE(error_with("cameras:\n  A: {" + place + "B: {" + place).find("'B', expected one of cameras, transforms"),
+            std::string::npos);
+  EXPECT_NE(error_with("cameras:\n  A: {" + place + "  A: {" + place).find("camera A stands twice"), std::string::npos);
+  const std::string message =
+      "transforms:\n- header:\n    frame_id: map\n  child_frame_id: A\n  transform:\n"
+      "    translation: {x: 0.0, y: 0.5, z: 0.0}\n    rotation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\n---\n";
+  EXPECT_EQ(error_with(message), "");
+  EXPECT_NE(error_with(message + message).find("'transforms' stands twice"), std::string::npos);
+}
+
 TEST(CameraPlaces, WhatIsNoNumberOrLiesTooDeepIsRefused) {
   const auto words = written("words.yaml", "cameras:\n  A: {translation: [a, 0, 0], rotation: [1, 0, 0, 0]}\n");
   EXPECT_NE(error_of([&] { read_camera_places(words); }).find("camera A: translation: expected 3 numbers"),

@@ -49,6 +49,16 @@ TEST(KlgFile, ACutFileSaysWhere) {
   EXPECT_THROW(more_promised.next(), InputError);
 }
 
+// The number is written last: it is 0 where the recorder was killed, and may be a smaller one where a bit has flipped.
+TEST(KlgFile, FramesBehindTheStatedNumberAreTold) {
+  KlgFile klg(write_klg("klg_fewer", 1), 64, 48);
+  EXPECT_TRUE(klg.next().has_value());
+  EXPECT_NE(error_of([&] { klg.next(); }).find("states 1 frames, but "), std::string::npos);
+  EXPECT_EQ(klg.bytes_left(), 16U + 64 * 48 * 5);
+  KlgFile none(write_klg("klg_none_stated", 0), 64, 48);
+  EXPECT_THROW(none.next(), InputError);
+}
+
 TEST(KlgFile, WhatIsNoneIsRefused) {
   const fs::path folder = fresh_folder("klg_none");
   EXPECT_THROW(KlgFile(folder / "missing.klg", 64, 48), InputError);

@@ -5,6 +5,7 @@
 #include "drivers/datasets/bop_writer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 #include "tools/teach/mesh_checks.hpp"
@@ -23,11 +24,6 @@ MeshSources from(const fs::path& source) {
   MeshSources sources;
   sources.sources = {source.string()};
   return sources;
-}
-
-void expect_says(const std::string& error, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(error.find(part), std::string::npos) << part << " in: " << error;
-  EXPECT_EQ(error.find('\n'), std::string::npos) << error;
 }
 
 /// What the log says meanwhile.

@@ -121,5 +121,29 @@ TEST_F(OniTimes, ARecordingThatStatesMoreThanItHoldsIsRefused) {
   EXPECT_THROW(check_oni(file), InputError) << "cut";
 }
 
+// OpenNI2 plays as many images as a stream states, up to the first record that is an end.
+TEST_F(OniTimes, NoFlippedBitLeavesImagesOutWithoutAWord) {
+  const std::string whole = TinyOni().bytes();
+  write_text(file, whole);
+  ASSERT_EQ(check_oni(file), 4U);
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    std::string bytes = whole;
+    bytes[bit / 8] ^= static_cast<char>(1U << bit % 8);
+    write_text(file, bytes);
+    const std::string error = error_of([&] { EXPECT_EQ(check_oni(file), 4U) << "bit " << bit; });
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
+TEST_F(OniTimes, AnImageThatIsNotWhereItsTableSaysIsRefused) {
+  const TinyOni oni;
+  std::string bytes = oni.bytes();
+  bytes[oni.times(2).at(3)] ^= 1;  // of its second image
+  write_text(file, bytes);
+  EXPECT_NE(error_of([&] { check_oni(file); }).find("stream 2 are not at the times"), std::string::npos);
+  write_text(file, oni.bytes() + "more");
+  EXPECT_NE(error_of([&] { check_oni(file); }).find("4 bytes lie behind its end"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace houghstream::openni
