@@ -116,20 +116,17 @@ class LongRun:
 
     def stop(self):
         """In the order in which frames go, so that none is on its way to who is there no more."""
-        self._stop("capture")
-        time.sleep(UNDER_WAY_S)
-        self._stop("observe", *CHAIN[1:])
-
-    def _stop(self, *names):
         by_name = self.running.by_name
-        self.running.stop(*(name for name in names if name in by_name and by_name[name].runs()))
+        for names, rest_s in ((("capture",), UNDER_WAY_S), (("observe", *CHAIN[1:]), 0.0)):
+            try:
+                self.running.stop(*(name for name in names if name in by_name and by_name[name].runs()))
+            except ProcessFailed as error:
+                self.failed = self.failed or str(error)
+            time.sleep(rest_s)
 
     def end(self, beside):
         """Ends the run and writes it. `beside`: the rates that ran at the same time. Returns what was seen."""
-        try:
-            self.stop()
-        except (ProcessFailed, OSError) as error:
-            self.failed = self.failed or str(error)
+        self.stop()
         samples = {name: of_process for name, of_process in self.samples.items() if of_process}
         minutes = max((of_process[-1]["s"] / 60 for of_process in samples.values()), default=0.0)
         seen = {"rate_hz": self.rate, "minutes": round(minutes, 1), "of_minutes": self.options.minutes, "beside_hz": beside,

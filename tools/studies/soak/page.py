@@ -17,8 +17,9 @@ def read_earlier(file):
     """By part. What does not say of which commit it is, speaks of none."""
     try:
         old = read_json_if_any(file) or {}
-        return {part: {name: seen for name, seen in old.get(part, {}).items() if "about" in seen} for part in PARTS}
-    except (ValueError, AttributeError, TypeError) as error:
+        return {part: {name: seen for name, seen in old.get(part, {}).items() if isinstance(seen, dict) and "about" in seen}
+                for part in PARTS}  # fmt: skip
+    except (ValueError, AttributeError) as error:
         die(f"{file}: {error}, expected the JSON that this has written; remove it to measure anew")
 
 
