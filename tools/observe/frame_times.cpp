@@ -76,7 +76,7 @@ std::size_t FrameTimes::frames() const {
 std::optional<FrameTimes::Time> FrameTimes::start() const {
   std::optional<Time> first;
   for (const auto& [id, row] : rows_) {
-    for (const auto& time : {row.frame, row.detections, row.poses}) {
+    for (const auto& time : {row.frame, row.detections, row.poses, row.objects}) {
       if (time) first = std::min(first.value_or(*time), *time);
     }
   }
@@ -88,10 +88,10 @@ std::string FrameTimes::csv() const {
   const auto cell = [&](const std::optional<Time>& time) {
     return time ? fmt::format("{:.6f}", seconds(*time - *zero)) : std::string();
   };
-  std::string text = "utime,channel,t_frame,t_detections,t_poses\n";
+  std::string text = "utime,channel,t_frame,t_detections,t_poses,t_objects\n";
   for (const auto& [id, row] : rows_) {
-    text +=
-        fmt::format("{},{},{},{},{}\n", id.utime, id.channel, cell(row.frame), cell(row.detections), cell(row.poses));
+    text += fmt::format("{},{},{},{},{},{}\n", id.utime, id.channel, cell(row.frame), cell(row.detections),
+                        cell(row.poses), cell(row.objects));
   }
   return text;
 }

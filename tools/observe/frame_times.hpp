@@ -29,8 +29,8 @@ class FrameTimes {
 
   std::size_t frames() const;
 
-  /// One row for each frame in the order of utimes: utime, channel, t_frame, t_detections, t_poses; seconds since the
-  /// first arrival, empty where it has not come.
+  /// One row for each frame in the order of utimes: utime, channel, t_frame, t_detections, t_poses, t_objects;
+  /// seconds since the first arrival, empty where it has not come.
   std::string csv() const;
 
   /// `sent`: how many frames were published, where it is known. `start_utime`: the csv's zero, microseconds since the

@@ -116,7 +116,7 @@ TEST(FrameTimes, WithoutMessagesThereAreNoNumbers) {
   EXPECT_EQ(summary["frames_received"], 0);
   EXPECT_TRUE(summary["latency_ms"]["detect"]["p50"].is_null());
   EXPECT_TRUE(summary["frame_rate_hz"].is_null());
-  EXPECT_EQ(FrameTimes().csv(), "utime,channel,t_frame,t_detections,t_poses\n");
+  EXPECT_EQ(FrameTimes().csv(), "utime,channel,t_frame,t_detections,t_poses,t_objects\n");
 }
 
 TEST(FrameTimes, ForgedProcessesDoNotFillTheMemory) {
@@ -135,8 +135,17 @@ TEST(FrameTimes, RowsLeaveEmptyWhatHasNotCome) {
   times.note_frame({"LEFT", 7}, at_ms(500));
   times.note_frame({"LEFT", 8}, at_ms(33));
   times.note_detections({"LEFT", 8}, at_ms(50));
-  EXPECT_EQ(times.csv(), "utime,channel,t_frame,t_detections,t_poses\n7,LEFT,0.000000,,\n8,LEFT,0.033000,0.050000,\n");
+  times.note_objects({"LEFT", 8}, at_ms(80));
+  EXPECT_EQ(times.csv(),
+            "utime,channel,t_frame,t_detections,t_poses,t_objects\n7,LEFT,0.000000,,,\n8,LEFT,0.033000,0.050000,,"
+            "0.080000\n");
   EXPECT_EQ(times.frames(), 2U);
+}
+
+TEST(FrameTimes, ObjectsOfAFrameThatNobodySawAreTheFirstArrival) {
+  FrameTimes times;
+  times.note_objects({"LEFT", 7}, at_ms(0));
+  EXPECT_EQ(times.csv(), "utime,channel,t_frame,t_detections,t_poses,t_objects\n7,LEFT,,,,0.000000\n");
 }
 
 }  // namespace

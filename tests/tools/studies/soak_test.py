@@ -1,13 +1,20 @@
 """Tests of what tools/soak sends and counts. Usage: PYTHONPATH=tools:build/python soak_test.py"""
 
+import argparse
+import json
+import os
 import pathlib
+import signal
 import struct
 import tempfile
+import threading
+import time
+import types
 import unittest
 
 from studies.encoded import utime_of
 from studies.soak import __main__ as soak
-from studies.soak import faults, frames, relay, wire
+from studies.soak import faults, frames, long_account, long_run, page, relay, wire
 from studies.stream import ProcessFailed
 
 
@@ -66,12 +73,167 @@ class Counts(unittest.TestCase):
         self.assertEqual(faults.said(Said("12:00:00.000 a x\n12:00:01.000 a x\n12:00:01.000 b\n"), "x"), ["a x"])
 
     def test_the_page_names_each_fault(self):
-        seen = {"good": True, "sent": 3, "processed": 2, "skipped": 0, "lost": 1, "refused": 0, "load": 0.1, "reported": ["words"]}
-        page = soak.page({"faults": {"loss": seen, "kill": {"good": False, "failed": "why", "load": 2.0}}})
-        self.assertIn("| loss | good | 3 sent = 2 + 0 + 1 + 0 |", page)
-        self.assertIn("| kill | **WRONG** |", page)
-        self.assertIn("    words\n", page)
-        self.assertIn("failed why", page)
+        seen = {"good": True, "sent": 3, "processed": 2, "skipped": 0, "lost": 1, "refused": 0, "load": 0.1, "reported": ["words"],
+                "about": {"commit": "first"}}  # fmt: skip
+        kill = {"good": False, "failed": "why", "load": 2.0, "about": {"commit": "second"}}
+        text = page.page({"faults": {"loss": seen, "kill": kill}, "long": {}})
+        self.assertIn("| loss | good | 3 sent = 2 + 0 + 1 + 0 | – | 0.1 | first |", text)
+        self.assertIn("| kill | **WRONG** |", text)
+        self.assertIn("    words\n", text)
+        self.assertIn("failed why", text)
+
+
+def sampled(minutes, mb=lambda _: 50.0, descriptors=lambda _: 12):
+    """Every five seconds; both functions are of the minute."""
+    return [{"s": s, "mb": mb(s / 60), "descriptors": descriptors(s / 60), "threads": 4, "cpu_s": 0.5 * s}
+            for s in range(0, 60 * minutes + 1, 5)]  # fmt: skip
+
+
+class LongAccount(unittest.TestCase):
+    def test_what_is_taken_before_minute_two_is_no_growth(self):
+        taken = long_account.cost(sampled(60, lambda minute: 40.0 if minute < 2 else 50.0))
+        self.assertEqual((taken["memory_mb"], taken["growth_most"], taken["cores"], taken["growing"]), (50.0, 0.0, 0.5, []))
+
+    def test_memory_is_looked_at_in_each_minute(self):
+        taken = long_account.cost(sampled(60, lambda minute: 55.0 if 30 <= minute < 31 else 50.0))
+        self.assertEqual((taken["growth_most"], taken["growth_end"]), (0.1, 0.0))
+        self.assertEqual(list(long_account.wrong_of_process("pose", taken)),
+                         ["hs-pose: memory 10.0% above minute 2, expected at most 2%"])  # fmt: skip
+
+    def test_a_descriptor_that_stays_open_grows_one_that_comes_and_goes_does_not(self):
+        now_and_then = long_account.cost(sampled(10, descriptors=lambda minute: 13 if minute % 1 < 0.5 else 12))
+        self.assertEqual((now_and_then["descriptors"], now_and_then["growing"]), ([12, 13], []))
+        kept = long_account.cost(sampled(10, descriptors=lambda minute: 13 if minute > 6 else 12))
+        self.assertEqual(kept["growing"], ["descriptors"])
+
+    def test_a_short_run_is_looked_at_in_quarters_of_its_second_half(self):
+        windows = long_account.windows(sampled(2))
+        self.assertEqual([window[0]["s"] for window in windows], [60, 75, 90, 105])
+        self.assertEqual(len(long_account.windows(sampled(0))), 1)
+
+    def test_frames_are_accounted_for_from_process_to_process(self):
+        self.assertEqual(long_account.captured("1:2 hs-capture: 100 frames of 9.5 kB to F, 3.3 s, 30.0 Hz\n"), (100, 30.0))
+        self.assertIsNone(long_account.captured("hs-capture: no camera\n"))
+        names = ("received", "processed", "skipped", "lost", "refused")
+        counts = {name: dict(zip(names, each)) for name, each in
+                  (("detect", (99, 97, 2, 1, 0)), ("pose", (97, 97, 0, 0, 0)), ("track", (96, 96, 0, 0, 0)))}  # fmt: skip
+        told = long_account.accounts(100, counts)
+        self.assertEqual([one["missing"] for one in told.values()], [1, 0, 1])
+        self.assertEqual(told["detect"]["passed_over"], 0.0202)
+        calm = {"growth_most": 0.0, "growing": []}
+        wrong = long_account.wrong({"rate_hz": 30, "sent_hz": 20.0, "processes": {name: one | calm for name, one in told.items()},
+                                    "latency_ms": {"poses": {"frames": 0}, "objects": {"frames": 1}}})  # fmt: skip
+        self.assertEqual(wrong, ["hs-capture: 20.0 Hz, expected 30", "hs-detect: 1 lost", "hs-detect: 1 missing",
+                                 "hs-detect: 2.02% passed over, expected at most 1%", "hs-track: 1 missing",
+                                 "no poses have come"])  # fmt: skip
+
+    def test_latency_is_told_of_the_whole_run_and_of_each_minute(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "times.csv")
+            file.write_text("utime,channel,t_frame,t_detections,t_poses,t_objects\n1,F,0.0,,0.5,0.75\n2,F,59.0,,59.25,\n"
+                            "3,F,61.0,,62.0,\n4,F,62.0,,,\n5,F,,,63.0,\n")  # fmt: skip
+            found = long_account.latencies(file)
+        self.assertEqual(found["poses"], {"frames": 3, "p50": 500.0, "p99": 1000.0,
+                                          "minutes": [{"minute": 0, "p50": 500.0, "p99": 500.0},
+                                                      {"minute": 1, "p50": 1000.0, "p99": 1000.0}]})  # fmt: skip
+        self.assertEqual((found["objects"]["frames"], found["objects"]["p50"]), (1, 750.0))
+
+
+class Kept(unittest.TestCase):
+    def test_what_is_not_measured_now_stays_with_its_commit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "summary.json")
+            loss = {"good": True, "load": 0.1, "about": {"commit": "older"}}
+            file.write_text(json.dumps({"faults": {"loss": loss, "kill": loss}, "long": {"minutes": 60, "good": True}}))
+            record = page.Record(pathlib.Path(folder))
+            record.note("faults", "kill", {"good": False, "load": 0.2}, "tools/soak --faults-only")
+            self.assertFalse(record.good)
+            summary = json.loads(file.read_text())
+            self.assertEqual(summary["faults"]["loss"], loss)
+            self.assertEqual(summary["faults"]["kill"]["about"]["command"], "tools/soak --faults-only")
+            self.assertEqual(summary["long"], {}, "it does not say of which commit it is")
+            self.assertIn("| 0.1 | older |", pathlib.Path(folder, "report.md").read_text())
+
+    def test_another_file_of_that_name_is_refused_in_a_line(self):
+        for text in ("[]x", "[1]", '{"faults": 3}'):
+            with tempfile.TemporaryDirectory() as folder:
+                pathlib.Path(folder, "summary.json").write_text(text)
+                with self.assertRaisesRegex(SystemExit, "summary.json: [^\n]+, expected the JSON that this has written[^\n]*$"):
+                    page.Record(pathlib.Path(folder))
+
+    def test_rates_are_numbers_each_once(self):
+        self.assertEqual(soak.rates("30,60"), [30, 60])
+        for text in ("", "30,", "30,30", "0", "x"):
+            with self.assertRaises(argparse.ArgumentTypeError, msg=text):
+                soak.rates(text)
+
+
+# Says that it is ready, and in the end what the program in whose place it is says.
+STAND_IN = """#!/usr/bin/python3
+import os, signal, sys, time
+name = os.path.basename(sys.argv[0])
+def end(*_):
+    if name == "hs-capture":
+        print("1:2 hs-capture: 100 frames of 9.5 kB to F, 3.3 s, 30.0 Hz", flush=True)
+    elif name == "hs-observe":
+        with open(sys.argv[sys.argv.index("--csv") + 1], "w") as csv:
+            csv.write("utime,channel,t_frame,t_detections,t_poses,t_objects\\n1,F,0.0,0.01,0.02,0.03\\n")
+    else:
+        print(f"1:2 {name}: ends: 100 received, 100 processed, 0 skipped, 0 lost, 0 refused", flush=True)
+    sys.exit()
+signal.signal(signal.SIGINT, end)
+print("ready", *sys.argv, flush=True)
+time.sleep(60)
+"""
+
+
+class Long(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.folder = pathlib.Path(place.name)
+        for name in ("hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-observe"):
+            (self.folder / name).write_text(STAND_IN)
+            (self.folder / name).chmod(0o755)
+        self.options = types.SimpleNamespace(programs=self.folder, data=self.folder / "data", minutes=1, rate=[30, 60],
+                                             together=True)  # fmt: skip
+
+    def end_when_all_run(self, how):
+        """From a thread, once both cameras are ready."""
+
+        def wait_and_end():
+            logs = [self.folder / f"long_{rate}" / "capture.txt" for rate in (30, 60)]
+            while not all(log.exists() and "ready" in log.read_text() for log in logs):
+                time.sleep(0.02)
+            how()
+
+        threading.Thread(target=wait_and_end, daemon=True).start()
+
+    def test_a_run_that_is_ended_keeps_what_it_has(self):
+        self.end_when_all_run(lambda: os.kill(os.getpid(), signal.SIGTERM))
+        seen = dict(long_run.long_runs(self.options, self.folder))
+        self.assertEqual(set(seen), {30, 60})
+        for rate, one in seen.items():
+            self.assertNotIn("failed", one)
+            self.assertEqual((one["of_minutes"], one["beside_hz"], one["sent"]), (1, [90 - rate], 100))
+            self.assertLess(one["minutes"], 1.0)
+            self.assertEqual(one["latency_ms"]["objects"], {"frames": 1, "p50": 30.0, "p99": 30.0})
+            self.assertEqual(one["processes"]["track"]["received"], 100)
+            kept = json.loads((self.folder / f"long_run_{rate}.json").read_text())
+            self.assertEqual(set(kept["samples"]), set(long_account.CHAIN))
+            self.assertTrue((self.folder / f"long_run_{rate}.png").read_bytes().startswith(b"\x89PNG"))
+        self.assertEqual(seen[60]["wrong"][0], "hs-capture: 30.0 Hz, expected 60")
+        buses = {(self.folder / f"long_{rate}" / "track.txt").read_text().split(":")[2].split("?")[0] for rate in seen}
+        self.assertEqual(buses, {"7668", "7669"})
+
+    def test_a_process_that_dies_is_told_and_its_run_is_written(self):
+        (self.folder / "hs-pose").write_text(STAND_IN.replace("time.sleep(60)", 'time.sleep(0.5)\nsys.exit("out of memory")'))
+        self.options.rate, self.options.together = [30], False
+        _, seen = next(iter(long_run.long_runs(self.options, self.folder)))
+        self.assertFalse(seen["good"])
+        self.assertRegex(seen["failed"], "(?s)pose ended.*out of memory")
+        self.assertEqual(seen["latency_ms"]["poses"]["frames"], 1, "others have ended as they do")
+        self.assertTrue((self.folder / "long_run_30.json").exists())
 
 
 if __name__ == "__main__":

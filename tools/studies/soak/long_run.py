@@ -1,93 +1,204 @@
-"""A stream that runs for long: what is lost, and whether memory, descriptors and threads stay what they were."""
+"""Streams that run for long: hs-capture, hs-detect, hs-pose and hs-track, what they lose and pass over, how long frames
+take, and whether memory, descriptors and threads stay what they were."""
 
+import contextlib
 import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import time
 
 from studies.command import step
+from studies.measured import write_atomically
+from studies.soak.faults import account, said
+from studies.soak.long_account import CHAIN, accounts, captured, cost, latencies, wrong
 from studies.soak.wire import bus
-from studies.stream import Processes, resident_mb
+from studies.stream import Processes, ProcessFailed, cpu_seconds, resident_mb
 
-PORT = 7668
-SETTLED_S = 120  # from then on nothing may grow
-MOST_GROWTH = 0.02
+PORT = 7668  # of the first rate's bus; the others' follow
+PERIOD_S = 5.0  # between samples
+KEEP_S = 60.0  # between writings of what has been sampled
+UNDER_WAY_S = 1.0  # what is sent has gone through all processes by then
 
 
-def sample(pid):
+class StopSignals:
+    """Meanwhile SIGINT, SIGTERM and the end of the terminal do not end this program: it is told that one came."""
+
+    def __init__(self):
+        self.came = False
+
+    def __enter__(self):
+        numbers = [signal.SIGINT, signal.SIGTERM]
+        if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:  # as nohup asks for
+            numbers.append(signal.SIGHUP)
+        self.before = {number: signal.signal(number, self._note) for number in numbers}
+        return self
+
+    def __exit__(self, *_):
+        for number, handler in self.before.items():
+            signal.signal(number, handler)
+
+    def _note(self, *_):
+        self.came = True
+
+    def nap(self, seconds):
+        """Until one comes, but for a fifth of a second."""
+        end = time.monotonic() + seconds
+        while not self.came and time.monotonic() < end:
+            time.sleep(max(0.0, min(0.2, end - time.monotonic())))
+
+
+def taken(pid):
+    """What a process has of the machine now."""
     folder = pathlib.Path(f"/proc/{pid}")
     threads = int(re.search(r"Threads:\s+(\d+)", (folder / "status").read_text()).group(1))
-    return {"mb": resident_mb(pid), "descriptors": len(os.listdir(folder / "fd")), "threads": threads}
+    return {"mb": round(resident_mb(pid), 3), "descriptors": len(os.listdir(folder / "fd")), "threads": threads,
+            "cpu_s": cpu_seconds(pid)}  # fmt: skip
 
 
-def start_all(options, running):
-    programs, data, url = options.programs, options.data, bus(PORT)
-    running.start("detect", programs / "hs-detect", "--forest", data / "forest", "-l", url)
-    running.start("pose", programs / "hs-pose", "--models", data / "training" / "models", "-l", url)
-    for name in ("detect", "pose"):
-        running.by_name[name].wait_until_ready()
-    running.start("capture", programs / "hs-capture", "--source", f"bop:{data / 'scene'}", "--loop", "--rate", options.rate,
-                  "-l", url)  # fmt: skip
+class LongRun:
+    """The processes of one rate, on a bus of their own. hs-observe, which stamps what goes by, is not judged: it keeps a row
+    of each frame. Use with `with`."""
 
+    def __init__(self, options, out, rate, port):
+        self.options, self.rate, self.url = options, rate, bus(port)
+        self.folder, self.file = out / f"long_{rate}", out / f"long_run_{rate}.json"
+        self.partial = self.file.with_name(self.file.name + ".partial")
+        self.samples = {name: [] for name in CHAIN}
+        self.failed = None
 
-def watch(running, minutes):
-    """Samples every five seconds, by process."""
-    samples = {name: [] for name in running.by_name}
-    start = time.monotonic()
-    while time.monotonic() - start < 60 * minutes:
-        for name, process in running.by_name.items():
+    def __enter__(self):
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.running = Processes(self.folder)
+        return self
+
+    def __exit__(self, *_):
+        self.running.__exit__()
+
+    def attempt(self, work):
+        """What fails ends this run; one beside it goes on."""
+        try:
+            if not self.failed:
+                work()
+        except (ProcessFailed, OSError) as error:
+            self.failed = str(error)
+
+    def start_listeners(self):
+        models = ("--models", self.options.data / "training" / "models")
+        self._start("detect", "hs-detect", "--forest", self.options.data / "forest")
+        self._start("pose", "hs-pose", *models)
+        self._start("track", "hs-track", *models)
+        self._start("observe", "hs-observe", "--out", self.folder / "observe.json", "--csv", self.folder / "frame_times.csv")
+        for process in self.running.by_name.values():
+            process.wait_until_ready(60)
+
+    def start_camera(self):
+        self._start("capture", "hs-capture", "--source", f"bop:{self.options.data / 'scene'}", "--loop", "--rate", self.rate)
+        self.began = time.monotonic()
+
+    def _start(self, name, program, *words):
+        # In a session of its own, where Ctrl-C does not reach it: it is ended after those that send to it.
+        self.running.start(name, "setsid", self.options.programs / program, *words, "-l", self.url)
+
+    def sample(self):
+        now = round(time.monotonic() - self.began, 1)
+        for name, process in self.running.by_name.items():
             if not process.runs():
                 process.fail("ended")
-            samples[name].append({"s": round(time.monotonic() - start, 1), **sample(process.process.pid)})
-        time.sleep(5)
-    return samples
+            if name in CHAIN:
+                self.samples[name].append({"s": now, **taken(process.process.pid)})
+
+    def keep(self):
+        """What has been sampled outlives this program."""
+        write_atomically(self.partial, json.dumps({"rate_hz": self.rate, "samples": self.samples}) + "\n")
+
+    def stop(self):
+        """In the order in which frames go, so that none is on its way to who is there no more."""
+        by_name = self.running.by_name
+        for names, rest_s in ((("capture",), UNDER_WAY_S), (("observe", *CHAIN[1:]), 0.0)):
+            try:
+                self.running.stop(*(name for name in names if name in by_name and by_name[name].runs()))
+            except ProcessFailed as error:
+                self.failed = self.failed or str(error)
+            time.sleep(rest_s)
+
+    def end(self, beside):
+        """Ends the run and writes it. `beside`: the rates that ran at the same time. Returns what was seen."""
+        self.stop()
+        samples = {name: of_process for name, of_process in self.samples.items() if of_process}
+        minutes = max((of_process[-1]["s"] / 60 for of_process in samples.values()), default=0.0)
+        seen = {"rate_hz": self.rate, "minutes": round(minutes, 1), "of_minutes": self.options.minutes, "beside_hz": beside,
+                "processes": {name: cost(of_process) for name, of_process in samples.items()}}  # fmt: skip
+        seen["cores"] = round(sum(one["cores"] for one in seen["processes"].values()), 3)
+        self.attempt(lambda: self.add_counts(seen))
+        latency = {}
+        with contextlib.suppress(FileNotFoundError):  # who could not observe has been told of
+            latency = latencies(self.folder / "frame_times.csv")
+        seen["latency_ms"] = {result: {key: value for key, value in whole.items() if key != "minutes"}
+                              for result, whole in latency.items()}  # fmt: skip
+        self.write(samples, latency)
+        if self.failed:
+            seen["failed"] = self.failed
+        seen["wrong"] = wrong(seen)
+        return seen | {"good": not seen["wrong"]}
+
+    def add_counts(self, seen):
+        processes = self.running.by_name
+        told = captured(processes["capture"].log.read_text(errors="replace"))
+        if told is None:
+            processes["capture"].fail("has not said what it sent")
+        seen["sent"], seen["sent_hz"] = told
+        for name, counts in accounts(told[0], {name: account(processes[name]) for name in CHAIN[1:]}).items():
+            seen["processes"][name].update(counts)
+        seen["reported"] = [line for name in CHAIN[1:] for line in said(processes[name], "ends:")]
+
+    def write(self, samples, latency):
+        """The samples and the latency of each minute, and both drawn."""
+        from studies.soak.long_chart import draw  # matplotlib, only where a chart is drawn
+
+        minutes = {result: whole["minutes"] for result, whole in latency.items()}
+        write_atomically(self.file, json.dumps({"rate_hz": self.rate, "samples": samples, "latency_ms": minutes}) + "\n")
+        draw(samples, latency, self.file.with_suffix(".png"))
+        self.partial.unlink(missing_ok=True)
 
 
-def growth(samples):
-    """Of the memory's median at the end over that at the second minute."""
-    settled = [one["mb"] for one in samples if one["s"] >= min(SETTLED_S, samples[-1]["s"] / 2)]
-    part = max(len(settled) // 10, 1)
-    first, last = sorted(settled[:part])[part // 2], sorted(settled[-part:])[part // 2]
-    return round(last / first - 1, 4)
+def watch(runs, minutes, signals):
+    """Until the time is over, a stop signal comes, or all have failed."""
+    for run in runs:
+        run.attempt(run.start_listeners)
+    for run in runs:
+        run.attempt(run.start_camera)
+    seconds = 60 * minutes
+    period = min(PERIOD_S, max(1.0, seconds / 120))
+    start = kept = time.monotonic()
+    while True:
+        for run in runs:
+            run.attempt(run.sample)
+        now = time.monotonic()
+        if now - kept >= KEEP_S:
+            kept = now
+            for run in runs:
+                run.attempt(run.keep)
+        if signals.came or now - start >= seconds or all(run.failed for run in runs):
+            return
+        signals.nap(min(period, start + seconds - now))
 
 
-def draw(samples, file):
-    import matplotlib  # noqa: PLC0415, only where a chart is drawn
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot  # noqa: PLC0415
-
-    figure, axes = pyplot.subplots(3, 1, figsize=(9, 9), sharex=True)
-    for axis, key, label in zip(axes, ("mb", "descriptors", "threads"), ("resident memory, MB", "descriptors", "threads")):
-        for name, of_process in samples.items():
-            axis.plot([one["s"] / 60 for one in of_process], [one[key] for one in of_process], label=f"hs-{name}")
-        axis.set_ylabel(label)
-        axis.set_ylim(bottom=0)
-    axes[0].legend()
-    axes[-1].set_xlabel("minutes")
-    figure.savefig(file, dpi=110)
-
-
-def long_run(options, out):
-    step(f"a run of {options.minutes} minutes at {options.rate} Hz")
-    with Processes(out / "long") as running:
-        start_all(options, running)
-        samples = watch(running, options.minutes)
-        for name in ("capture", "pose", "detect"):
-            running.by_name[name].process.send_signal(signal.SIGINT)
-            running.by_name[name].wait(10)
-        words = running.by_name["detect"].log.read_text(errors="replace")
-    counts = re.search(r"ends: (\d+) received, (\d+) processed, (\d+) skipped, (\d+) lost, (\d+) refused", words)
-    received, processed, skipped, lost, refused = (int(count) for count in counts.groups())
-    (out / "long_run.json").write_text(json.dumps(samples) + "\n")
-    draw(samples, out / "long_run.png")
-    grown = {name: growth(of_process) for name, of_process in samples.items()}
-    seen = {"minutes": options.minutes, "rate_hz": options.rate, "received": received, "processed": processed,
-            "passed_over": skipped, "lost": lost, "refused": refused, "memory_growth": grown,
-            "descriptors": {name: sorted({one["descriptors"] for one in each[2:]}) for name, each in samples.items()},
-            "threads": {name: sorted({one["threads"] for one in each[2:]}) for name, each in samples.items()}}  # fmt: skip
-    seen["good"] = lost == 0 and refused == 0 and all(share <= MOST_GROWTH for share in grown.values())
-    step(f"{'ok   ' if seen['good'] else 'WRONG'} a long run: {json.dumps(seen)}")
-    return seen
+def long_runs(options, out):
+    """One of each rate, at the same time or one after another: yields rate and what was seen. A stop signal ends them, with
+    what there is."""
+    runs = [LongRun(options, out, rate, PORT + number) for number, rate in enumerate(options.rate)]
+    with StopSignals() as signals:
+        for group in [runs] if options.together else [[run] for run in runs]:
+            if signals.came:
+                return
+            rates = [run.rate for run in group]
+            step(f"{options.minutes} minutes at {' and '.join(map(str, rates))} Hz")
+            with contextlib.ExitStack() as stack:
+                for run in group:
+                    stack.enter_context(run)
+                watch(group, options.minutes, signals)
+                seen = [run.end([rate for rate in rates if rate != run.rate]) for run in group]
+            yield from zip(rates, seen)

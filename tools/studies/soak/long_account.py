@@ -1,0 +1,110 @@
+"""What the samples, arrivals and accounts of a long run say, and what in it is not as it should be."""
+
+import csv
+import re
+import statistics
+
+from studies.measured import percentiles
+
+SETTLED_S, WINDOW_S = 120, 60  # from minute two on nothing may grow; it is looked at minute by minute
+MOST_GROWTH = 0.02  # of memory
+MOST_PASSED_OVER = 0.01  # of the frames of each process
+LEAST_RATE = 0.98  # of the rate that was asked for
+CHAIN = ("capture", "detect", "pose", "track")  # each works on what the one before it sends
+ARRIVALS = {"poses": "t_poses", "objects": "t_objects"}  # columns of hs-observe's CSV
+CAPTURED = re.compile(r"(\d+) frames of .*, ([\d.]+) Hz$", re.MULTILINE)
+
+
+def windows(samples):
+    """The samples of each minute from the second on; of a shorter run those of each quarter of its second half."""
+    end = samples[-1]["s"]
+    start = min(SETTLED_S, end / 2)
+    length = min(WINDOW_S, (end - start) / 4)
+    last = max(int((end - start) / length + 1e-6), 1) - 1 if length else 0  # what is left of a minute belongs to the one before
+    found = [[] for _ in range(last + 1)]
+    for one in samples:
+        if one["s"] >= start:
+            found[min(int((one["s"] - start) / length), last) if length else 0].append(one)
+    return [window for window in found if window]
+
+
+def grows(settled, key):
+    """Whether there is a window in which the count never came down to the least of the first: a file that is open while it
+    is read does not count."""
+    least = [min(one[key] for one in window) for window in settled]
+    return max(least) > least[0]
+
+
+def cost(samples):
+    """What one process takes, and how far that grows from minute two on."""
+    settled = windows(samples)
+    mb = [statistics.median(one["mb"] for one in window) for window in settled]
+    seconds = samples[-1]["s"] - samples[0]["s"]
+    return {
+        "cores": round((samples[-1]["cpu_s"] - samples[0]["cpu_s"]) / seconds, 3) if seconds else 0.0,
+        "memory_mb": round(mb[0], 1),
+        "growth_most": round(max(mb) / mb[0] - 1, 4),
+        "growth_end": round(mb[-1] / mb[0] - 1, 4),
+        **{key: sorted({one[key] for window in settled for one in window}) for key in ("descriptors", "threads")},
+        "growing": [key for key in ("descriptors", "threads") if grows(settled, key)],
+    }
+
+
+def captured(words):
+    """(frames, Hz) of what hs-capture says in the end, or None."""
+    found = CAPTURED.search(words)
+    return (int(found.group(1)), float(found.group(2))) if found else None
+
+
+def accounts(sent, counts):
+    """What each process says of its frames, which share it passed over, and how many of the results of the one before it
+    never came to it: what is lost behind the last that comes its own count cannot know."""
+    found, before = {}, sent
+    for name in CHAIN[1:]:
+        one = counts[name]
+        share = round(one["skipped"] / max(one["received"], 1), 5)
+        found[name] = {**one, "missing": before - one["received"], "passed_over": share}
+        before = one["processed"]
+    return found
+
+
+def latencies(file):
+    """Milliseconds from a frame's arrival to that of its poses, and to that of the world's objects after it: of the whole
+    run, and of each minute."""
+    found = {result: {} for result in ARRIVALS}
+    with open(file, newline="") as text:
+        for row in csv.DictReader(text):
+            for result, column in ARRIVALS.items():
+                if row["t_frame"] and row[column]:
+                    frame = float(row["t_frame"])
+                    found[result].setdefault(int(frame // 60), []).append(1e3 * (float(row[column]) - frame))
+    return {result: of_result(by_minute) for result, by_minute in found.items()}
+
+
+def of_result(by_minute):
+    whole = [value for values in by_minute.values() for value in values]
+    minutes = [{"minute": minute, **percentiles(by_minute[minute], (50, 99))} for minute in sorted(by_minute)]
+    return {"frames": len(whole), **percentiles(whole, (50, 99)), "minutes": minutes}
+
+
+def wrong_of_process(name, one):
+    """In words."""
+    for count in ("lost", "missing", "refused"):
+        if one.get(count):
+            yield f"hs-{name}: {one[count]} {count}"
+    if one.get("passed_over", 0) > MOST_PASSED_OVER:
+        yield f"hs-{name}: {one['passed_over']:.2%} passed over, expected at most {MOST_PASSED_OVER:.0%}"
+    if one["growth_most"] > MOST_GROWTH:
+        yield f"hs-{name}: memory {one['growth_most']:.1%} above minute 2, expected at most {MOST_GROWTH:.0%}"
+    for key in one["growing"]:
+        yield f"hs-{name}: more {key} than in minute 2"
+
+
+def wrong(seen):
+    """What is not as it should be; nothing where the run is good."""
+    found = [seen["failed"]] if "failed" in seen else []
+    if "sent_hz" in seen and seen["sent_hz"] < LEAST_RATE * seen["rate_hz"]:
+        found.append(f"hs-capture: {seen['sent_hz']} Hz, expected {seen['rate_hz']}")
+    for name, one in seen["processes"].items():
+        found += wrong_of_process(name, one)
+    return found + [f"no {result} have come" for result, one in seen.get("latency_ms", {}).items() if not one["frames"]]
