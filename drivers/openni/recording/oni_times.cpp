@@ -122,8 +122,6 @@ std::size_t check_oni(const std::filesystem::path& file) {
     note_record(oni, record, at, streams[record.node]);
     at += record.fields + record.payload;
   }
-  at += record.fields + record.payload;
-  require(at == oni.size(), "{}: {} bytes lie behind its end", oni.name(), oni.size() - at);
   std::size_t images = 0;
   for (const auto& [node, stream] : streams) {
     require(stream.times.size() == stream.stated, "{}: stream {} states {} images, {} are there", oni.name(), node,

@@ -10,8 +10,8 @@ namespace houghstream::openni {
 enum class OniNode : std::uint32_t { kFirst = 1, kSecond = 2 };
 
 /// Images of all streams of a recording. Throws InputError unless the file is a whole one of OpenNI2's (version 1.0.1):
-/// records up to its end and nothing behind it, of each stream as many images as it states, and those at the times of
-/// its seek table. OpenNI2 itself asks for as much memory as the file states, and plays as many images.
+/// records up to its end (OpenNI2 leaves room behind it), of each stream as many images as it states, and those at the
+/// times of its seek table. OpenNI2 itself asks for as much memory as the file states, and plays as many images.
 std::size_t check_oni(const std::filesystem::path& file);
 
 /// Adds `delay_us`, which is not negative, to all times of one stream in a finished .oni file: those of its images, of

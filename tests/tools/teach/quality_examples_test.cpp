@@ -50,7 +50,7 @@ void add(FoundPoses& found, const std::string& class_name, const cv::Rect& box_p
   if (x) pose.T_camera_object = at(*x);
   found.frames[0].detections->detections.push_back(detection);
   found.frames[0].poses->poses.push_back(pose);
-  found.terms[0].push_back(x ? std::optional<QualityTerms>(terms) : std::nullopt);
+  found.terms[0].push_back(x ? std::optional<FoundTerms>({terms, terms}) : std::nullopt);
 }
 
 TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
@@ -61,6 +61,7 @@ TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
     ASSERT_EQ(examples.size(), 1U);
     EXPECT_EQ(examples[0].scene, "desk");
     EXPECT_EQ(examples[0].is_right, x < 0.02) << x;
+    EXPECT_EQ(examples[0].of_other_print.has_value(), x < 0.02) << "of a wrong pose another print says nothing";
   }
 }
 

@@ -117,8 +117,8 @@ TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
   learnt.settings.typical = {};
   EXPECT_EQ(to_initialisers(learnt.settings),
             "double bias = -3.71;\n"
-            "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00};\n"
-            "QualityTerms typical = {0.00, 0.00, 0.00, 0.00, 0.00, 0.00};\n"
+            "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00, 0.00};\n"
+            "QualityTerms typical = {0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 0.00};\n"
             "float least = 0.60F;\n");
   const OrderedJson json = to_json(learnt);
   EXPECT_EQ(json["weights"]["chroma_conflict"], 2.0);
