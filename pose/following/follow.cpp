@@ -67,7 +67,7 @@ void judge_followed(const SeenObject& seen, const ExpectedObject& expected, cons
   const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
   const Eigen::Isometry3d& T = followed.T_camera_object;
   const ViewLook look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
-  PoseEvidence evidence{expected.score, {}, compare_print(seen.colours, look, tolerance)};
+  PoseEvidence evidence{expected.score, {}, compare_print(seen, look, tolerance)};
   if (expected.verified) {
     evidence.depth = verify_look(look, tolerance);
     evidence.depth.outline_ends = expected.verified->outline_ends;

@@ -105,18 +105,24 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   return compare(sums.means(), sums.count());
 }
 
-std::optional<ColourComparison> compare_print(const LabRegion& colours, const ViewLook& seen,
+std::optional<ColourComparison> compare_print(const SeenObject& seen, const ViewLook& look,
                                               const DepthTolerance& tolerance) {
-  constexpr int kAveraged = 5;  // pixels
-  constexpr int kReach = 2;
-  if (colours.lab.empty()) return std::nullopt;
+  constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
+  constexpr double kMost = 5.0;     // or so many pixels,
+  constexpr int kAlready = 3;       // which LabRegion's are averaged over
+  const LabRegion& colours = seen.colours;
+  if (colours.lab.empty() || !(look.depth > 0.0)) return std::nullopt;
+  const double detail_m = 2.0 * static_cast<double>(seen.model.radius) / ModelSettings{}.pixels_per_diameter;
+  const double averaged_px = std::min(kDetails * detail_m / seen.frame.camera.metres_per_px(look.depth), kMost);
+  const int side = 2 * static_cast<int>(0.5 * averaged_px) + 1;
+  const int reach = side > kAlready ? 2 : 1;
   LabRegion moved = colours;
-  cv::blur(colours.lab, moved.lab, cv::Size(kAveraged, kAveraged));
+  if (side > kAlready) cv::blur(colours.lab, moved.lab, cv::Size(side, side));
   std::optional<ColourComparison> best;
-  for (const int dy : {0, -kReach, kReach}) {
-    for (const int dx : {0, -kReach, kReach}) {
+  for (const int dy : {0, -reach, reach}) {
+    for (const int dx : {0, -reach, reach}) {
       moved.origin_px = colours.origin_px + cv::Point(dx, dy);
-      const std::optional<ColourComparison> here = compare_colours(moved, seen, tolerance);
+      const std::optional<ColourComparison> here = compare_colours(moved, look, tolerance);
       if (here && (!best || here->agreement > best->agreement)) best = here;
     }
   }

@@ -28,10 +28,10 @@ struct ColourComparison {
 std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
                                                 const DepthTolerance& tolerance);
 
-/// The same with the seen colours averaged over as much as the model's are, and moved by up to two pixels to where they
-/// agree best: cameras' colours are registered to their depth, and poses found, no better than that. For judging a
-/// pose, not for choosing between poses, which differ by less.
-std::optional<ColourComparison> compare_print(const LabRegion& colours, const ViewLook& seen,
+/// The same with the seen colours averaged over little more than the model's are, and moved by up to two pixels to
+/// where they agree best (less where the object is small): cameras' colours are registered to their depth, and poses
+/// found, no better than that. For judging a pose, not for choosing between poses, which differ by less.
+std::optional<ColourComparison> compare_print(const SeenObject& seen, const ViewLook& look,
                                               const DepthTolerance& tolerance);
 
 /// Depth and colour together: the square root of `depth_value` (DepthScore::value), whose noise would else drown what

@@ -56,7 +56,7 @@ std::optional<PoseEvidence> evidence_of_other_print(const SeenObject& seen, cons
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
   const ViewLook other{view, look.T, look.depth, look.looks};
   PoseEvidence evidence = own;
-  evidence.colour = compare_print(seen.colours, other, tolerance);
+  evidence.colour = compare_print(seen, other, tolerance);
   if (!evidence.colour) return std::nullopt;
   return evidence;
 }

@@ -19,7 +19,7 @@ PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
   const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
   return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance),
-          compare_print(seen.colours, look, tolerance)};
+          compare_print(seen, look, tolerance)};
 }
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {

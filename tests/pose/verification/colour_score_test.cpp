@@ -94,8 +94,8 @@ TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
     RgbdFrame frame = coloured_frame(box, kPose, 1);
     const cv::Mat move = (cv::Mat_<double>(2, 3) << 1.0, 0.0, moved_px, 0.0, 1.0, 0.0);
     cv::warpAffine(frame.colour, frame.colour, move, frame.colour.size());
-    const LabRegion colours = lab_region(frame, cv::Rect(0, 0, 640, 480), {});
-    return compare_print(colours, look_at_view(frame, model, T_camera_object, 400), kTolerance)->agreement;
+    const SeenObject seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
+    return compare_print(seen, look_at_view(frame, model, T_camera_object, 400), kTolerance)->agreement;
   };
   EXPECT_GT(judged(kPose, 2.0), judged(kPose, 0.0) - 0.02F);
   EXPECT_LT(judged(kPose, 12.0), judged(kPose, 0.0) - 0.1F);
