@@ -120,6 +120,9 @@ class LongAccount(unittest.TestCase):
         told = long_account.accounts(100, counts)
         self.assertEqual([one["missing"] for one in told.values()], [1, 0, 1])
         self.assertEqual(told["detect"]["passed_over"], 0.0202)
+        followed = long_account.accounts(100, counts | {"pose": counts["pose"] | {"received": 100}}, follows=True)
+        self.assertEqual([one["missing"] for one in followed.values()], [1, 0, 1])
+        self.assertNotIn("passed_over", followed["detect"], "hs-detect looks at some frames only")
         calm = {"growth_most": 0.0, "growing": []}
         wrong = long_account.wrong({"rate_hz": 30, "sent_hz": 20.0, "processes": {name: one | calm for name, one in told.items()},
                                     "latency_ms": {"poses": {"frames": 0}, "objects": {"frames": 1}}})  # fmt: skip
@@ -196,7 +199,7 @@ class Long(unittest.TestCase):
             (self.folder / name).write_text(STAND_IN)
             (self.folder / name).chmod(0o755)
         self.options = types.SimpleNamespace(programs=self.folder, data=self.folder / "data", minutes=1, rate=[30, 60],
-                                             together=True)  # fmt: skip
+                                             together=True, follow=False)  # fmt: skip
 
     def end_when_all_run(self, how):
         """From a thread, once both cameras are ready."""

@@ -59,6 +59,7 @@ def read_options():
     parts = parser.add_mutually_exclusive_group()
     parts.add_argument("--faults-only", action="store_true", help="no long run")
     parts.add_argument("--long-only", action="store_true", help="no faults")
+    parser.add_argument("--follow", action="store_true", help="the long run's poses by hs-pose --follow, of few detections a second")
     parser.add_argument("--only", metavar="WORDS", default="", help="faults whose names hold these words")
     parser.add_argument("--objects", metavar="STORE", help="kill the processes of a stream of this store's objects too")
     options = parser.parse_args()
@@ -77,7 +78,8 @@ def read_options():
 
 def long_command(options):
     listed = ",".join(map(str, options.rate))
-    return f"tools/soak --long-only --minutes {options.minutes} --rate {listed}{' --together' if options.together else ''}"
+    given = "".join(f" --{word}" for word in ("together", "follow") if getattr(options, word))
+    return f"tools/soak --long-only --minutes {options.minutes} --rate {listed}{given}"
 
 
 def main():

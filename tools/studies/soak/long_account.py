@@ -56,15 +56,18 @@ def captured(words):
     return (int(found.group(1)), float(found.group(2))) if found else None
 
 
-def accounts(sent, counts):
+def accounts(sent, counts, follows=False):
     """What each process says of its frames, which share it passed over, and how many of the results of the one before it
-    never came to it: what is lost behind the last that comes its own count cannot know."""
+    never came to it: what is lost behind the last that comes its own count cannot know. Of hs-pose --follow, which takes
+    each frame itself, hs-detect looks at some only, as it is told to."""
     found, before = {}, sent
     for name in CHAIN[1:]:
         one = counts[name]
-        share = round(one["skipped"] / max(one["received"], 1), 5)
-        found[name] = {**one, "missing": before - one["received"], "passed_over": share}
-        before = one["processed"]
+        found[name] = {**one, "missing": before - one["received"]}
+        looks = follows and name == "detect"
+        if not looks:
+            found[name]["passed_over"] = round(one["skipped"] / max(one["received"], 1), 5)
+        before = sent if looks else one["processed"]
     return found
 
 

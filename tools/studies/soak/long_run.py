@@ -87,8 +87,12 @@ class LongRun:
 
     def start_listeners(self):
         models = ("--models", self.options.data / "training" / "models")
-        self._start("detect", "hs-detect", "--forest", self.options.data / "forest")
-        self._start("pose", "hs-pose", *models)
+        from studies.following import LOOKS  # needs the messages' package
+
+        follows = self.options.follow
+        self._start("detect", "hs-detect", "--forest", self.options.data / "forest",
+                    *(("--looks-per-second", LOOKS, "--threads", 1) if follows else ()))  # fmt: skip
+        self._start("pose", "hs-pose", *models, *(("--follow",) if follows else ()))
         self._start("track", "hs-track", *models)
         self._start("observe", "hs-observe", "--out", self.folder / "observe.json", "--csv", self.folder / "frame_times.csv")
         for process in self.running.by_name.values():
@@ -130,7 +134,7 @@ class LongRun:
         samples = {name: of_process for name, of_process in self.samples.items() if of_process}
         minutes = max((of_process[-1]["s"] / 60 for of_process in samples.values()), default=0.0)
         seen = {"rate_hz": self.rate, "minutes": round(minutes, 1), "of_minutes": self.options.minutes, "beside_hz": beside,
-                "processes": {name: cost(of_process) for name, of_process in samples.items()}}  # fmt: skip
+                "follows": self.options.follow, "processes": {name: cost(of_process) for name, of_process in samples.items()}}  # fmt: skip
         seen["cores"] = round(sum(one["cores"] for one in seen["processes"].values()), 3)
         self.attempt(lambda: self.add_counts(seen))
         latency = {}
@@ -150,7 +154,8 @@ class LongRun:
         if told is None:
             processes["capture"].fail("has not said what it sent")
         seen["sent"], seen["sent_hz"] = told
-        for name, counts in accounts(told[0], {name: account(processes[name]) for name in CHAIN[1:]}).items():
+        told_by = {name: account(processes[name]) for name in CHAIN[1:]}
+        for name, counts in accounts(told[0], told_by, self.options.follow).items():
             seen["processes"][name].update(counts)
         seen["reported"] = [line for name in CHAIN[1:] for line in said(processes[name], "ends:")]
 
