@@ -1,5 +1,6 @@
 #include "drivers/openni/camera_source.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -197,8 +198,8 @@ TEST(CameraSource, EndsSoonWhenAskedThoughItsColourNeverComes) {
 
 TEST(CameraSource, EndsWhenAskedThoughNoCameraIsThere) {
   const VirtualCamera camera("stop", "");
-  bool stop = false;
-  const auto source = open_camera_source("", CameraOptions{}, {[&] { return stop; }, {}, {}});
+  std::atomic<bool> stop = false;
+  const auto source = open_camera_source("", CameraOptions{}, {[&] { return stop.load(); }, {}, {}});
   ASSERT_TRUE(source->next().has_value());
   camera.change("plugged no\n");
   std::thread hand([&] {
@@ -208,7 +209,7 @@ TEST(CameraSource, EndsWhenAskedThoughNoCameraIsThere) {
   while (source->next().has_value()) {
   }
   hand.join();
-  EXPECT_TRUE(stop);
+  EXPECT_TRUE(stop.load());
 }
 
 }  // namespace
