@@ -12,16 +12,18 @@ ModelView with_opposite_colours(const ModelView& view) {
   ModelView other = view;
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   for (const Eigen::Vector3f& point : view.points) middle += point / static_cast<float>(view.points.size());
-  const auto across = [&](const Eigen::Vector3f& point) {
+  std::vector<Eigen::Vector3f> across;  // from the middle, across the line of sight
+  across.reserve(view.points.size());
+  for (const Eigen::Vector3f& point : view.points) {
     const Eigen::Vector3f from_middle = point - middle;
-    return Eigen::Vector3f(from_middle - from_middle.dot(view.direction) * view.direction);
-  };
-  for (std::size_t i = 0; i < view.points.size(); ++i) {
-    const Eigen::Vector3f opposite = -across(view.points[i]);
-    const auto nearest = std::min_element(view.points.begin(), view.points.end(), [&](const auto& a, const auto& b) {
-      return (across(a) - opposite).squaredNorm() < (across(b) - opposite).squaredNorm();
+    across.emplace_back(from_middle - from_middle.dot(view.direction) * view.direction);
+  }
+  for (std::size_t i = 0; i < across.size(); ++i) {
+    const Eigen::Vector3f opposite = -across[i];
+    const auto nearest = std::min_element(across.begin(), across.end(), [&](const auto& a, const auto& b) {
+      return (a - opposite).squaredNorm() < (b - opposite).squaredNorm();
     });
-    other.colours[i] = view.colours[static_cast<std::size_t>(nearest - view.points.begin())];
+    other.colours[i] = view.colours[static_cast<std::size_t>(nearest - across.begin())];
   }
   return other;
 }
