@@ -36,7 +36,8 @@ final class ObjectsTable extends AbstractTableModel {
   private static boolean isRefuted(detection_t detection, object_pose_t pose) {
     if (pose == null || detection.score >= 0.8F) return false;
     return switch (pose.status) {
-      case object_pose_t.REJECTED_BY_DEPTH, object_pose_t.LOW_SCORE, object_pose_t.REJECTED_BY_OUTLINE, object_pose_t.REJECTED_BY_COLOUR -> pose.quality < 0.02F;
+      case object_pose_t.REJECTED_BY_DEPTH, object_pose_t.LOW_SCORE, object_pose_t.REJECTED_BY_OUTLINE,
+          object_pose_t.REJECTED_BY_COLOUR -> pose.quality < 0.02F;
       default -> false;
     };
   }
