@@ -14,7 +14,7 @@ namespace houghstream::openni {
 namespace {
 
 constexpr std::size_t kRemembered = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
-constexpr std::size_t kCompared = 8;      // recorded images of a stream
+constexpr std::size_t kCompared = 24;     // recorded images of a stream: enough where only some are seen
 
 /// Fewer where a recording is shorter.
 FirstImages first_recorded(const std::string& file) {
@@ -25,13 +25,6 @@ FirstImages first_recorded(const std::string& file) {
     if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
   }
   return first;
-}
-
-std::int64_t device_start_us(const std::string& stream, const std::vector<Remembered>& recorded,
-                             const std::vector<Remembered>& live, bool loses) {
-  const std::optional<RecordedStart> start = find_recorded_start(recorded, live);
-  require(start && (loses || start->difference == 0.0), "{}: its first images are not among those seen", stream);
-  return start->device_us;
 }
 
 }  // namespace
@@ -56,8 +49,10 @@ void OpenniRecording::note(const SensorImage& image) {
 }
 
 void OpenniRecording::mend_times(const FirstImages& recorded) {
-  const std::int64_t colour_later_us = device_start_us(file_ + ", colour", recorded.colour, live_.colour, jpeg_) -
-                                       device_start_us(file_ + ", depth", recorded.depth, live_.depth, false);
+  const std::optional<RecordedStarts> starts = find_recorded_starts(recorded, live_);
+  require(starts && starts->depth.difference == 0.0 && (jpeg_ || starts->colour.difference == 0.0),
+          "{}: its first images are not among those seen", file_);
+  const std::int64_t colour_later_us = starts->colour.device_us - starts->depth.device_us;
   const OniNode later = colour_later_us > 0 ? OniNode::kSecond : OniNode::kFirst;
   if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
 }

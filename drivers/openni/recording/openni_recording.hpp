@@ -13,15 +13,6 @@
 
 namespace houghstream::openni {
 
-/// The first images of a camera's two streams.
-struct FirstImages {
-  std::vector<Remembered> depth;
-  std::vector<Remembered> colour;
-  std::vector<Remembered>& of(SensorImage::Sensor sensor) {
-    return sensor == SensorImage::Sensor::kDepth ? depth : colour;
-  }
-};
-
 /// OpenNI2's recorder lets each stream begin at zero, so that colour and depth that were taken together lie apart in
 /// the file wherever their first images were not. What was seen live tells when those were taken, and with it the times
 /// in the file are mended once it is finished.

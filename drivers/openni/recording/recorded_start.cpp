@@ -1,12 +1,16 @@
 #include "drivers/openni/recording/recorded_start.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 
 namespace houghstream::openni {
 namespace {
 
 constexpr int kStep = 8;
+constexpr std::size_t kFewest = 4;              // images that tell a place from others
+constexpr std::int64_t kMostApartUs = 500'000;  // one recorder starts both streams
 
 /// How well what is recorded fits what was seen at the same times, if the recording begins at `start_us`.
 RecordedStart start_at(std::int64_t start_us, const std::vector<Remembered>& recorded,
@@ -25,8 +29,34 @@ RecordedStart start_at(std::int64_t start_us, const std::vector<Remembered>& rec
   return start;
 }
 
-bool fits_better(const RecordedStart& a, const RecordedStart& b) {
-  return a.difference < b.difference || (a.difference == b.difference && a.images > b.images);
+/// The places where enough was seen, the earliest first.
+std::vector<RecordedStart> possible_starts(const std::vector<Remembered>& recorded,
+                                           const std::vector<Remembered>& live) {
+  std::vector<std::int64_t> starts;
+  for (const Remembered& seen : live) {
+    for (const Remembered& image : recorded) starts.push_back(seen.time_us - image.time_us);
+  }
+  std::sort(starts.begin(), starts.end());
+  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
+  const std::size_t fewest = std::min(kFewest, (recorded.size() + 1) / 2);
+  std::vector<RecordedStart> possible;
+  for (const std::int64_t start_us : starts) {
+    const RecordedStart start = start_at(start_us, recorded, live);
+    if (start.images >= fewest) possible.push_back(start);
+  }
+  return possible;
+}
+
+std::int64_t apart_us(const RecordedStarts& starts) {
+  return std::abs(starts.colour.device_us - starts.depth.device_us);
+}
+
+bool fits_better(const RecordedStarts& a, const RecordedStarts& b) {
+  const auto key = [](const RecordedStarts& starts) {
+    const auto images = static_cast<std::int64_t>(starts.depth.images + starts.colour.images);
+    return std::make_tuple(starts.depth.difference + starts.colour.difference, -images, apart_us(starts));
+  };
+  return key(a) < key(b);
 }
 
 }  // namespace
@@ -37,18 +67,14 @@ Remembered remember(const SensorImage& image) {
   return small;
 }
 
-std::optional<RecordedStart> find_recorded_start(const std::vector<Remembered>& recorded,
-                                                 const std::vector<Remembered>& live) {
-  std::vector<std::int64_t> starts;
-  for (const Remembered& seen : live) {
-    for (const Remembered& image : recorded) starts.push_back(seen.time_us - image.time_us);
-  }
-  std::sort(starts.begin(), starts.end());
-  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
-  std::optional<RecordedStart> best;
-  for (const std::int64_t start_us : starts) {
-    const RecordedStart start = start_at(start_us, recorded, live);
-    if (start.images > 0 && 2 * start.images >= recorded.size() && (!best || fits_better(start, *best))) best = start;
+std::optional<RecordedStarts> find_recorded_starts(const FirstImages& recorded, const FirstImages& live) {
+  const std::vector<RecordedStart> of_colour = possible_starts(recorded.colour, live.colour);
+  std::optional<RecordedStarts> best;
+  for (const RecordedStart& depth : possible_starts(recorded.depth, live.depth)) {
+    for (const RecordedStart& colour : of_colour) {
+      const RecordedStarts starts{depth, colour};
+      if (apart_us(starts) <= kMostApartUs && (!best || fits_better(starts, *best))) best = starts;
+    }
   }
   return best;
 }

@@ -16,6 +16,15 @@ struct Remembered {
 
 Remembered remember(const SensorImage& image);
 
+/// The first images of a camera's two streams.
+struct FirstImages {
+  std::vector<Remembered> depth;
+  std::vector<Remembered> colour;
+  std::vector<Remembered>& of(SensorImage::Sensor sensor) {
+    return sensor == SensorImage::Sensor::kDepth ? depth : colour;
+  }
+};
+
 /// Where a recorded stream begins on the device's clock.
 struct RecordedStart {
   std::int64_t device_us = 0;
@@ -23,11 +32,16 @@ struct RecordedStart {
   std::size_t images = 0;   ///< recorded ones that were seen live
 };
 
-/// Finds the first images of a recorded stream, with times that count from some zero, among those that were seen live,
-/// with times of the device: intervals are the same in both. Either may lack an image. Where several places fit equally
-/// well (a sensor that sees nothing), the one with most images, the earliest of those. Nothing where no place has at
-/// least half of the recorded ones.
-std::optional<RecordedStart> find_recorded_start(const std::vector<Remembered>& recorded,
-                                                 const std::vector<Remembered>& live);
+struct RecordedStarts {
+  RecordedStart depth;
+  RecordedStart colour;
+};
+
+/// Finds the first images of both recorded streams, with times that count from some zero, among those that were seen
+/// live, with times of the device: intervals are the same in both. Either may lack images, as where this machine is too
+/// busy to see all. Both streams start within half a second of one another. Where several places fit equally well (a
+/// sensor that sees nothing, a picture that comes again), those with most images, then those closest together, then the
+/// earliest. Nothing where no places have four images of each stream, or half of those of a short recording.
+std::optional<RecordedStarts> find_recorded_starts(const FirstImages& recorded, const FirstImages& live);
 
 }  // namespace houghstream::openni
