@@ -43,8 +43,8 @@ std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
 }  // namespace
 
 FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
-    : models_(load_models(settings)),
-      window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
+    : window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
+      models_(load_models(settings)),
       page_(settings.http.empty() ? nullptr : std::make_unique<LivePage>(settings.http)),
       page_alone_(page_ && !settings.writes()),
       outputs_(settings.outputs),

@@ -62,9 +62,9 @@ class FrameShow {
   std::shared_ptr<const ClassModels> models() const;
   void remember(const ViewedFrame& viewed);
 
+  std::unique_ptr<ViewWindow> window_;  // first: it forks, which a process does before it has threads
   std::shared_ptr<const ClassModels> models_;
   std::unique_ptr<store::StoreWatch<ClassModels>> store_;
-  std::unique_ptr<ViewWindow> window_;
   std::unique_ptr<LivePage> page_;
   bool page_alone_;  // nobody but the page wants pictures
   ViewOutputs outputs_;
