@@ -139,8 +139,10 @@ endif()
 # For the environment of tests: what libraries never free is not looked for, nor what threads of theirs do. A forest takes
 # minutes to train where each of its reads is noted.
 set(HOUGHSTREAM_TEST_SECONDS 300)
+set(HOUGHSTREAM_LONG_TEST_SECONDS 600)
 if(HOUGHSTREAM_SANITIZE STREQUAL thread)
   set(HOUGHSTREAM_TEST_SECONDS 1200)
+  set(HOUGHSTREAM_LONG_TEST_SECONDS 2400)
   set(HOUGHSTREAM_SANITIZER_OPTIONS
       "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/.cmake/thread_suppressions.txt:print_suppressions=0")
 else()
