@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
+#include "tools/render/world/objects/nearly_alike.hpp"
 #include "tools/render/world/objects/objects.hpp"
 #include "tools/render/world/optics/light.hpp"
 #include "tools/render/world/optics/pixel_noise.hpp"
@@ -20,78 +20,6 @@ constexpr int kMostObjects = 7;
 constexpr int kMostDistractors = 12;
 constexpr int kMostLookAlikes = 3;
 constexpr double kTaughtColours = 0.3;  // share of the distractors' surfaces
-
-/// Turned hues, or next to none where there were some; darker or brighter.
-cv::Mat recoloured(const cv::Mat& bgr, Random& random) {
-  constexpr double kGreyed = 0.35;
-  constexpr double kColourful = 80.0;  // mean saturation, of 255
-  cv::Mat hsv_image;
-  cv::cvtColor(bgr, hsv_image, cv::COLOR_BGR2HSV);
-  const bool is_grey = chance(random, kGreyed) && cv::mean(hsv_image)[1] > kColourful;
-  const int turn = random.between(40, 140);
-  const double strength = random.uniform(0.0, 0.4);
-  const double lightness = random.uniform(is_grey ? 0.15 : 0.5, 1.2);
-  for (int y = 0; y < hsv_image.rows; ++y) {
-    for (int x = 0; x < hsv_image.cols; ++x) {
-      cv::Vec3b& pixel = hsv_image.at<cv::Vec3b>(y, x);
-      if (is_grey) {
-        pixel[1] = cv::saturate_cast<std::uint8_t>(strength * pixel[1]);
-      } else {
-        pixel[0] = static_cast<std::uint8_t>((pixel[0] + turn) % 180);
-        pixel[1] = std::max<std::uint8_t>(pixel[1], 60);  // what is grey takes on a colour
-      }
-      pixel[2] = cv::saturate_cast<std::uint8_t>(lightness * pixel[2]);
-    }
-  }
-  cv::Mat out;
-  cv::cvtColor(hsv_image, out, cv::COLOR_HSV2BGR);
-  return out;
-}
-
-/// The same picture, begun elsewhere: what is printed where changes.
-cv::Mat moved_round(const cv::Mat& picture, Random& random) {
-  const int right = static_cast<int>(picture.cols * random.uniform(0.2, 0.8));
-  const int down = static_cast<int>(picture.rows * random.uniform(0.2, 0.8));
-  cv::Mat out(picture.size(), picture.type());
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x)
-      out.at<cv::Vec3b>((y + down) % picture.rows, (x + right) % picture.cols) = picture.at<cv::Vec3b>(y, x);
-  }
-  return out;
-}
-
-/// The mesh in other colours, and with another print or not. Another print alone would leave what is plain as it is.
-void repaint(bool other_print, Random& random, Mesh& mesh) {
-  const auto painted = [&](const cv::Mat& picture) {
-    return recoloured(other_print ? moved_round(picture, random) : picture, random);
-  };
-  if (!mesh.texture.empty()) {
-    mesh.texture = painted(mesh.texture);
-    return;
-  }
-  const cv::Mat colours = painted(cv::Mat(1, static_cast<int>(mesh.colours.size()), CV_8UC3, mesh.colours.data()));
-  std::copy_n(colours.clone().ptr<cv::Vec3b>(), mesh.colours.size(), mesh.colours.begin());
-}
-
-/// Nearly the object: clearly smaller or larger, of other proportions, or in other colours and often with another
-/// print, as other packages are.
-ThingPtr look_alike(const Thing& thing, Random& random) {
-  Mesh mesh = thing.mesh;
-  const double sort = random.uniform();
-  if (sort < 0.25) {
-    const auto size = static_cast<float>(chance(random, 0.5) ? random.uniform(0.55, 0.75) : random.uniform(1.33, 1.7));
-    for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= size;
-  } else if (sort < 0.5) {
-    const Eigen::Vector3f sizes(static_cast<float>(random.uniform(0.5, 1.6)),
-                                static_cast<float>(random.uniform(0.5, 1.6)),
-                                static_cast<float>(random.uniform(0.5, 1.6)));
-    for (Eigen::Vector3f& vertex : mesh.vertices) vertex = vertex.cwiseProduct(sizes);
-    compute_normals(mesh);
-  } else {
-    repaint(chance(random, 0.6), random, mesh);
-  }
-  return make_thing(thing.name, std::move(mesh), thing.gloss);
-}
 
 /// Of its box, in its own frame.
 Eigen::Vector3d middle_of(const Thing& thing) {
@@ -166,8 +94,9 @@ World PracticeScenes::furnished(int room) const {
   const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMostObjects));
   for (int i = 0; i < count; ++i) {
     const PracticeObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];
-    const ThingPtr thing = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
-    setter.put(put_down(object, thing, object.id, random), middle);
+    const ThingPtr painted = object.has_colour ? object.thing : plainly_painted(*object.thing, random);
+    Random shape(aspect_seed(own, 50U + static_cast<std::uint64_t>(i)));
+    setter.put(put_down(object, next_of_its_kind(*painted, shape), object.id, random), middle);
   }
   const int most_look_alikes = std::min(kMostLookAlikes, (count + 1) / 2);  // such as they are, they are the fewer ones
   for (int i = random.between(0, most_look_alikes); i > 0; --i) {
