@@ -7,7 +7,7 @@
 namespace houghstream::world {
 namespace {
 
-const Camera kCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
+const Camera kShadingCamera{160, 120, 150.0, 150.0, 79.5, 59.5};
 
 // A white floor, a lamp above it to the right, and a plate between the two.
 World floor_under_a_plate() {
@@ -26,16 +26,16 @@ World floor_under_a_plate() {
 TEST(Shading, APlateCastsItsShadowAwayFromTheLamp) {
   World world = floor_under_a_plate();
   const Eigen::Isometry3d T_camera_world = look_at({0, 0, 2}, {0, 0, 0});
-  const Eigen::Vector2d shadow_px = kCamera.project(T_camera_world * Eigen::Vector3d(0.0, 0.0, 0.0));
-  const Eigen::Vector2d lit_px = kCamera.project(T_camera_world * Eigen::Vector3d(-0.4, 0.0, 0.0));
+  const Eigen::Vector2d shadow_px = kShadingCamera.project(T_camera_world * Eigen::Vector3d(0.0, 0.0, 0.0));
+  const Eigen::Vector2d lit_px = kShadingCamera.project(T_camera_world * Eigen::Vector3d(-0.4, 0.0, 0.0));
   const auto brightness = [](const ShadedView& view, const Eigen::Vector2d& pixel) {
     return view.radiance.at<cv::Vec3f>(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()))[1];
   };
-  const ShadedView view = shade_view(light_world(world), kCamera, T_camera_world);
+  const ShadedView view = shade_view(light_world(world), kShadingCamera, T_camera_world);
   EXPECT_NEAR(brightness(view, shadow_px), 0.1, 0.01);  // ambient light only
   EXPECT_GT(brightness(view, lit_px), 0.5);
   world.lights[0].casts_shadow = false;
-  EXPECT_GT(brightness(shade_view(light_world(world), kCamera, T_camera_world), shadow_px), 0.5);
+  EXPECT_GT(brightness(shade_view(light_world(world), kShadingCamera, T_camera_world), shadow_px), 0.5);
 }
 
 TEST(Shading, TextureIsWhereItBelongs) {
@@ -43,7 +43,7 @@ TEST(Shading, TextureIsWhereItBelongs) {
   cv::Mat halves(64, 64, CV_8UC3, cv::Scalar(255, 0, 0));
   halves.colRange(32, 64).setTo(cv::Scalar(0, 0, 255));
   world.items = {{make_thing("sign", box({1, 0.1, 1}, halves), 0.0F), Eigen::Isometry3d::Identity(), 0, true}};
-  const ShadedView view = shade_view(light_world(world), kCamera, look_at({0, -2, 0}, {0, 0, 0}));
+  const ShadedView view = shade_view(light_world(world), kShadingCamera, look_at({0, -2, 0}, {0, 0, 0}));
   const cv::Vec3f left = view.radiance.at<cv::Vec3f>(60, 60);
   const cv::Vec3f right = view.radiance.at<cv::Vec3f>(60, 100);
   EXPECT_GT(left[0], 10 * left[2]);
@@ -56,7 +56,7 @@ ShadedView seen_from_a_corner(const ThingPtr& thing) {
   world.items = {{thing, Eigen::Isometry3d::Identity(), 0, true}};
   world.lights = {Light{{1.0, -2.0, 2.0}, Eigen::Vector3f::Ones(), 0.01, true}};
   world.ambient_bgr.setConstant(0.1F);
-  return shade_view(light_world(world), kCamera, look_at({0.5, -1, 0.8}, {0, 0, 0}));
+  return shade_view(light_world(world), kShadingCamera, look_at({0.5, -1, 0.8}, {0, 0, 0}));
 }
 
 TEST(Shading, ColoursOfVerticesShadeAsATextureOfTheSameColour) {
@@ -84,9 +84,9 @@ TEST(Shading, ColoursOfVerticesBlendBetweenThem) {
     mesh.colours.push_back(vertex.x() < 0.0F ? cv::Vec3b(255, 0, 0) : cv::Vec3b(0, 0, 255));
   World world;
   world.items = {{make_thing("box", mesh, 0.0F), Eigen::Isometry3d::Identity(), 0, true}};
-  const ShadedView view = shade_view(light_world(world), kCamera, look_at({0, -1, 0}, {0, 0, 0}));
+  const ShadedView view = shade_view(light_world(world), kShadingCamera, look_at({0, -1, 0}, {0, 0, 0}));
   const auto at = [&](double x) {
-    const Eigen::Vector2d px = kCamera.project(look_at({0, -1, 0}, {0, 0, 0}) * Eigen::Vector3d(x, -0.15, 0.0));
+    const Eigen::Vector2d px = kShadingCamera.project(look_at({0, -1, 0}, {0, 0, 0}) * Eigen::Vector3d(x, -0.15, 0.0));
     return view.radiance.at<cv::Vec3f>(static_cast<int>(px.y()), static_cast<int>(px.x()));
   };
   EXPECT_GT(at(-0.19)[0], 10 * at(-0.19)[2]);
