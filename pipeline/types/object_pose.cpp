@@ -1,8 +1,18 @@
 #include "pipeline/types/object_pose.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace houghstream {
+namespace {
+
+float log_odds(float probability) {
+  constexpr float kMargin = 0.001F;  // exactly 0 or 1 is not certainty
+  const float p = std::clamp(probability, kMargin, 1.0F - kMargin);
+  return std::log(p / (1.0F - p));
+}
+
+}  // namespace
 
 const char* to_string(PoseStatus status) {
   switch (status) {
@@ -28,15 +38,20 @@ const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_inde
   return found == poses.poses.end() ? nullptr : &*found;
 }
 
+float presence_probability(float score, float quality) {
+  constexpr float kBias = 0.27F;
+  constexpr float kOfScore = 0.26F;
+  constexpr float kOfQuality = 0.68F;
+  return 1.0F / (1.0F + std::exp(-(kBias + kOfScore * log_odds(score) + kOfQuality * log_odds(quality))));
+}
+
 bool is_refuted(const Detection& detection, const ObjectPose* pose) {
-  constexpr float kContradicted = 0.02F;
-  constexpr float kSureByItself = 0.8F;
-  if (pose == nullptr || detection.score >= kSureByItself) return false;
+  if (pose == nullptr) return false;
   switch (pose->status) {
     case PoseStatus::kRejectedByDepth:
     case PoseStatus::kLowScore:
     case PoseStatus::kRejectedByOutline:
-    case PoseStatus::kRejectedByColour: return pose->quality < kContradicted;
+    case PoseStatus::kRejectedByColour: return presence_probability(detection.score, pose->quality) < 0.5F;
     default: return false;  // valid, or none was found that could be judged
   }
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -22,7 +23,8 @@ TEST(IsReported, ACandidateIsConfirmedByAValidPoseAlone) {
   Detection detection;
   ObjectPose pose;
   pose.status = PoseStatus::kRejectedByDepth;
-  pose.quality = 0.1F;
+  pose.quality = 0.5F;
+  detection.score = 0.7F;
   EXPECT_TRUE(is_reported(detection, nullptr));
   EXPECT_TRUE(is_reported(detection, &pose)) << "found, though its pose is withheld";
   detection.reported = false;
@@ -42,8 +44,20 @@ TEST(IsReported, ADetectionThatIsNotSureIsRefutedByAPoseThatIsContradicted) {
   pose.status = PoseStatus::kTooFewPoints;
   EXPECT_TRUE(is_reported(detection, &pose)) << "no pose was judged";
   pose.status = PoseStatus::kRejectedByColour;
-  detection.score = 0.9F;
-  EXPECT_TRUE(is_reported(detection, &pose)) << "sure by itself";
+  pose.quality = 0.2F;
+  EXPECT_FALSE(is_reported(detection, &pose));
+  detection.score = 0.95F;
+  EXPECT_TRUE(is_reported(detection, &pose)) << "nearly sure by itself";
+}
+
+TEST(PresenceProbability, RisesWithScoreAndQualityAndStaysOne) {
+  EXPECT_GT(presence_probability(0.9F, 0.5F), presence_probability(0.6F, 0.5F));
+  EXPECT_GT(presence_probability(0.6F, 0.9F), presence_probability(0.6F, 0.5F));
+  EXPECT_NEAR(presence_probability(0.5F, 0.5F), 1.0F / (1.0F + std::exp(-0.27F)), 1e-6F);
+  for (const float end : {0.0F, 1.0F}) {
+    EXPECT_GT(presence_probability(end, end), 0.0F);
+    EXPECT_LT(presence_probability(end, end), 1.0F);
+  }
 }
 
 TEST(FindPose, GoesByTheDetectionNotByTheOrder) {

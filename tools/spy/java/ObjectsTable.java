@@ -34,12 +34,17 @@ final class ObjectsTable extends AbstractTableModel {
   }
 
   private static boolean isRefuted(detection_t detection, object_pose_t pose) {
-    if (pose == null || detection.score >= 0.8F) return false;
+    if (pose == null) return false;
     return switch (pose.status) {
       case object_pose_t.REJECTED_BY_DEPTH, object_pose_t.LOW_SCORE, object_pose_t.REJECTED_BY_OUTLINE,
-          object_pose_t.REJECTED_BY_COLOUR -> pose.quality < 0.02F;
+          object_pose_t.REJECTED_BY_COLOUR -> 0.27 + 0.26 * logOdds(detection.score) + 0.68 * logOdds(pose.quality) < 0.0;
       default -> false;
     };
+  }
+
+  private static double logOdds(double probability) {
+    double p = Math.min(Math.max(probability, 0.001), 0.999);
+    return Math.log(p / (1.0 - p));
   }
 
   static object_pose_t poseOf(int detection, object_poses_t poses) {
