@@ -120,8 +120,10 @@ class LongAccount(unittest.TestCase):
         told = long_account.accounts(100, counts)
         self.assertEqual([one["missing"] for one in told.values()], [1, 0, 1])
         self.assertEqual(told["detect"]["passed_over"], 0.0202)
-        followed = long_account.accounts(100, counts | {"pose": counts["pose"] | {"received": 100}}, follows=True)
+        twice = counts["track"] | {"received": 96 + 97, "skipped": 97}  # a look at a frame gives a second result of it
+        followed = long_account.accounts(100, counts | {"pose": counts["pose"] | {"received": 100}, "track": twice}, follows=True)
         self.assertEqual([one["missing"] for one in followed.values()], [1, 0, 1])
+        self.assertEqual(followed["track"]["passed_over"], 0.0)
         self.assertNotIn("passed_over", followed["detect"], "hs-detect looks at some frames only")
         calm = {"growth_most": 0.0, "growing": []}
         wrong = long_account.wrong({"rate_hz": 30, "sent_hz": 20.0, "processes": {name: one | calm for name, one in told.items()},

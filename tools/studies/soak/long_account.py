@@ -59,14 +59,16 @@ def captured(words):
 def accounts(sent, counts, follows=False):
     """What each process says of its frames, which share it passed over, and how many of the results of the one before it
     never came to it: what is lost behind the last that comes its own count cannot know. Of hs-pose --follow, which takes
-    each frame itself, hs-detect looks at some only, as it is told to."""
+    each frame itself, hs-detect looks at some only, as it is told to; what comes of such a look is a second result of its
+    frame, which hs-track passes over when it has the first."""
     found, before = {}, sent
     for name in CHAIN[1:]:
         one = counts[name]
-        found[name] = {**one, "missing": before - one["received"]}
         looks = follows and name == "detect"
+        second = counts["detect"]["processed"] if follows and name == "track" else 0
+        found[name] = {**one, "missing": before + second - one["received"]}
         if not looks:
-            found[name]["passed_over"] = round(one["skipped"] / max(one["received"], 1), 5)
+            found[name]["passed_over"] = round(max(one["skipped"] - second, 0) / max(one["received"] - second, 1), 5)
         before = sent if looks else one["processed"]
     return found
 
