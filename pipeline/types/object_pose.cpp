@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/base/log_odds.hpp"
+
 namespace houghstream {
-namespace {
-
-float log_odds(float probability) {
-  constexpr float kMargin = 0.001F;  // exactly 0 or 1 is not certainty
-  const float p = std::clamp(probability, kMargin, 1.0F - kMargin);
-  return std::log(p / (1.0F - p));
-}
-
-}  // namespace
-
 const char* to_string(PoseStatus status) {
   switch (status) {
     case PoseStatus::kInvalid: return "invalid";
@@ -39,10 +31,11 @@ const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_inde
 }
 
 float presence_probability(float score, float quality) {
-  constexpr float kBias = 0.27F;
-  constexpr float kOfScore = 0.26F;
-  constexpr float kOfQuality = 0.68F;
-  return 1.0F / (1.0F + std::exp(-(kBias + kOfScore * log_odds(score) + kOfQuality * log_odds(quality))));
+  constexpr double kBias = 0.27;
+  constexpr double kOfScore = 0.26;
+  constexpr double kOfQuality = 0.68;
+  const double sum = kBias + kOfScore * log_odds(score) + kOfQuality * log_odds(quality);
+  return static_cast<float>(1.0 / (1.0 + std::exp(-sum)));
 }
 
 bool is_refuted(const Detection& detection, const ObjectPose* pose) {

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/base/log_odds.hpp"
 #include "pipeline/types/frame_id.hpp"
 
 namespace houghstream {
 namespace {
-
-double log_odds(double probability, double margin) {
-  const double p = std::clamp(probability, margin, 1.0 - margin);
-  return std::log(p / (1.0 - p));
-}
 
 /// Beside another one's of the same object, where small differences count.
 double quality_log_odds(double quality) {

@@ -3,17 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/base/log_odds.hpp"
+
 namespace houghstream {
-namespace {
-
-double log_odds(double probability) {
-  constexpr double kMargin = 0.001;  // a score of exactly 0 or 1 is not certainty
-  const double p = std::clamp(probability, kMargin, 1.0 - kMargin);
-  return std::log(p / (1.0 - p));
-}
-
-}  // namespace
-
 PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
                              const VerificationSettings& settings) {
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
