@@ -115,12 +115,23 @@ std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, c
 }
 
 /// The objects' views are the last of the forest's.
-void learn_scores(const Rooms& rooms, const Profile& profile, Forest& forest) {
+void learn_scores(const Rooms& rooms, const Profile& profile, const Progress& progress, Forest& forest) {
   std::set<int> class_ids;
   for (const TrainingView* view : rooms.objects) class_ids.insert(view->class_id);
   const auto first_view = static_cast<std::uint32_t>(forest.views.size() - rooms.objects.size());
-  train_score_model(composed_frames(rooms.objects, rooms.for_score, profile.training), class_ids, first_view, profile,
-                    forest);
+  ValidationSource frames = composed_frames(rooms.objects, rooms.for_score, profile.training);
+  std::mutex progress_mutex;
+  int asked = 0;
+  frames.frame = [&, compose = frames.frame](int index) {
+    {
+      const std::lock_guard lock(progress_mutex);
+      ++asked;
+      if (asked * 10 / frames.count > (asked - 1) * 10 / frames.count)
+        progress(fmt::format("score: {} of {} composed pictures", asked, frames.count));
+    }
+    return compose(index);
+  };
+  train_score_model(frames, class_ids, first_view, profile, forest);
 }
 
 /// Gives the views class numbers that the forest has not used yet. Throws InputError for a name that it knows.
@@ -159,7 +170,7 @@ Forest train_forest(const std::vector<TrainingView>& views, const Profile& profi
   pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
   if (!learns_scores(settings)) return forest;
-  learn_scores(rooms, profile, forest);
+  learn_scores(rooms, profile, progress, forest);
   progress(
       fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
   return forest;
@@ -192,7 +203,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   pack_trees(forest);
   carry_masses(old, forest);
   calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
-  if (learns_scores(profile.training)) learn_scores(rooms, profile, forest);
+  if (learns_scores(profile.training)) learn_scores(rooms, profile, progress, forest);
   return forest;
 }
 

@@ -117,9 +117,9 @@ object_pose_t pose_to_message(const ObjectPose& pose) {
 }
 
 ObjectPose pose_from_message(const object_pose_t& message) {
-  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::OCCLUDED,
+  require(message.status > object_pose_t::INVALID && message.status <= object_pose_t::REFUTED,
           "{}: pose status {}, expected {} to {}", message.class_name, message.status, object_pose_t::VALID,
-          object_pose_t::OCCLUDED);
+          object_pose_t::REFUTED);
   const bool are_shares = is_share(message.inlier_fraction) && is_share(message.visible_fraction) &&
                           is_share(message.free_space_violation) && is_share(message.quality);
   require(are_shares, "{}: shares {}, {}, {} and {}, expected 0 to 1", message.class_name, message.inlier_fraction,

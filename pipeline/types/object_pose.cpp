@@ -1,9 +1,6 @@
 #include "pipeline/types/object_pose.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "pipeline/base/log_odds.hpp"
 
 namespace houghstream {
 const char* to_string(PoseStatus status) {
@@ -19,6 +16,7 @@ const char* to_string(PoseStatus status) {
     case PoseStatus::kRejectedByOutline: return "rejected by outline";
     case PoseStatus::kRejectedByColour: return "rejected by colour";
     case PoseStatus::kOccluded: return "occluded";
+    case PoseStatus::kRefuted: return "refuted";
   }
   return "unknown";
 }
@@ -30,28 +28,9 @@ const ObjectPose* find_pose(const ObjectPoses& poses, std::size_t detection_inde
   return found == poses.poses.end() ? nullptr : &*found;
 }
 
-float presence_probability(float score, float quality) {
-  constexpr double kBias = 0.27;
-  constexpr double kOfScore = 0.26;
-  constexpr double kOfQuality = 0.68;
-  const double sum = kBias + kOfScore * log_odds(score) + kOfQuality * log_odds(quality);
-  return static_cast<float>(1.0 / (1.0 + std::exp(-sum)));
-}
-
-bool is_refuted(const Detection& detection, const ObjectPose* pose) {
-  if (pose == nullptr) return false;
-  switch (pose->status) {
-    case PoseStatus::kRejectedByDepth:
-    case PoseStatus::kLowScore:
-    case PoseStatus::kRejectedByOutline:
-    case PoseStatus::kRejectedByColour: return presence_probability(detection.score, pose->quality) < 0.5F;
-    default: return false;  // valid, or none was found that could be judged
-  }
-}
-
 bool is_reported(const Detection& detection, const ObjectPose* pose) {
-  if (pose != nullptr && pose->status == PoseStatus::kValid) return true;
-  return detection.reported && !is_refuted(detection, pose);
+  if (pose == nullptr) return detection.reported;
+  return pose->status == PoseStatus::kValid || (detection.reported && pose->status != PoseStatus::kRefuted);
 }
 
 }  // namespace houghstream

@@ -25,6 +25,7 @@ enum class PoseStatus : std::int8_t {
   kRejectedByOutline = 8,  ///< the measured surface goes on where the model ends
   kRejectedByColour = 9,   ///< the model's colours do not explain those that are seen
   kOccluded = 10,          ///< followed, and mostly hidden by what was measured in front of it
+  kRefuted = 11,           ///< the best pose makes it less probable that the object is there than that it is not
 };
 
 /// One line per status for logs and reports.
@@ -48,17 +49,8 @@ struct ObjectPose {
   float free_space_violation = 0.0F;  ///< rendered pixels in front of what was measured, 0 to 1
 };
 
-/// Probability, 0 to 1, that the object is there, whether its pose is right or not, of a detection with such a score
-/// whose pose has such a quality. Logistic regression on the log odds of both, of 3108 detections in hs-teach's
-/// practice rooms (seven objects of YCB-V, three stores); 331 of one object of LINEMOD's give nearly the same weights.
-float presence_probability(float score, float quality);
-
-/// Whether a pose was judged and makes it less probable that the object is there than that it is not. `pose` is that of
-/// the detection; null where there is none.
-bool is_refuted(const Detection& detection, const ObjectPose* pose);
-
-/// Whether the object counts as found: its detection is sure enough by itself and not refuted by its pose, or is a
-/// candidate and has a valid pose. `pose` is that of the detection; null where there is none.
+/// Whether the object counts as found: its detection is sure enough by itself and not refuted by its pose, or it is a
+/// candidate whose pose is valid. `pose` is that of the detection; null where there is none.
 bool is_reported(const Detection& detection, const ObjectPose* pose);
 
 /// The poses of one detector's detections in one frame, in their order.

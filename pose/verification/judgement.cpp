@@ -1,6 +1,11 @@
 #include "pose/verification/judgement.hpp"
 
 namespace houghstream {
+namespace {
+
+constexpr float kRefutedBelow = 0.5F;  // less probably there than not
+
+}  // namespace
 
 void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
            const PoseSettings& settings, ObjectPose& pose) {
@@ -10,11 +15,14 @@ void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_objec
   pose.visible_fraction = evidence.depth.visible_fraction();
   pose.free_space_violation = evidence.depth.free_space_violation();
   pose.quality = pose_quality(terms, quality);
-  if (pose.quality < (reported ? quality.least : quality.least_of_candidates)) {
-    pose.status = reason_against(terms, quality, evidence.colour.has_value());
-  } else {
+  const float presence = presence_probability(evidence.detection_score, pose.quality, quality.presence);
+  if (pose.quality >= (reported ? quality.least : quality.least_of_candidates)) {
     pose.status = PoseStatus::kValid;
     pose.T_camera_object = T_camera_object;
+  } else if (reported && presence < kRefutedBelow) {
+    pose.status = PoseStatus::kRefuted;
+  } else {
+    pose.status = reason_against(terms, quality, evidence.colour.has_value());
   }
 }
 

@@ -6,6 +6,7 @@
 #include "pipeline/types/object_pose.hpp"
 #include "pose/region.hpp"
 #include "pose/verification/colour_score.hpp"
+#include "pose/verification/presence.hpp"
 #include "pose/verification/verification.hpp"
 
 namespace houghstream {
@@ -53,6 +54,7 @@ struct QualitySettings {
   QualityTerms typical = {2.16, 3.05, -0.17, 1.64, -0.23, 0.77, -4.1};
   float least = 0.8F;                ///< poses of lower quality are not published...
   float least_of_candidates = 0.8F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
+  PresenceSettings presence;         ///< what the quality says of whether the object is there at all
 };
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);

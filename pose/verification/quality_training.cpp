@@ -1,6 +1,7 @@
 #include "pose/verification/quality_training.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "pipeline/base/logistic_regression.hpp"
 
@@ -33,6 +34,42 @@ QualityTerms mean_of_right(const std::vector<QualityExample>& examples, const Qu
   return sum;
 }
 
+using ExamplesByName = std::map<std::string, std::vector<QualityExample>>;
+
+constexpr double kStiffness = 10.0;  // of what objects have in common: few poses of one object do not tell its weights
+
+std::map<std::string, QualitySettings> fit_each(const ExamplesByName& examples) {
+  std::vector<QualityExample> all;
+  for (const auto& [name, own] : examples) all.insert(all.end(), own.begin(), own.end());
+  const QualitySettings common = fit_quality_settings(all, QualitySettings{}, 1.0);
+  std::map<std::string, QualitySettings> fitted;
+  for (const auto& [name, own] : examples) fitted[name] = fit_quality_settings(own, common, kStiffness);
+  return fitted;
+}
+
+ExamplesByName of_half(int half, const ExamplesByName& examples) {
+  ExamplesByName out;
+  for (const auto& [name, own] : examples) {
+    std::vector<QualityExample>& here = out[name];
+    std::copy_if(own.begin(), own.end(), std::back_inserter(here),
+                 [half](const QualityExample& example) { return example.half == half; });
+  }
+  return out;
+}
+
+/// Each with the quality that the other half of all teaches.
+std::map<std::string, std::vector<PresenceExample>> presence_examples(const ExamplesByName& examples) {
+  std::map<std::string, std::vector<PresenceExample>> out;
+  for (const int half : {0, 1}) {
+    const std::map<std::string, QualitySettings> fitted = fit_each(of_half(1 - half, examples));
+    for (const auto& [name, own] : of_half(half, examples)) {
+      for (const QualityExample& example : own)
+        out[name].push_back({example.score, pose_quality(example.terms, fitted.at(name)), example.is_there});
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
@@ -52,6 +89,16 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
     settings.weights.*kQualityTerms[i] = weights[static_cast<Eigen::Index>(i) + 1];
   settings.typical = mean_of_right(examples, prior.typical);
   return settings;
+}
+
+std::map<std::string, QualitySettings> learn_qualities(const ExamplesByName& examples) {
+  std::map<std::string, QualitySettings> learnt = fit_each(examples);
+  const std::map<std::string, std::vector<PresenceExample>> presence = presence_examples(examples);
+  std::vector<PresenceExample> all;
+  for (const auto& [name, own] : presence) all.insert(all.end(), own.begin(), own.end());
+  const PresenceSettings common = fit_presence(all, PresenceSettings{}, 1.0);
+  for (const auto& [name, own] : presence) learnt.at(name).presence = fit_presence(own, common, kStiffness);
+  return learnt;
 }
 
 }  // namespace houghstream

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pose/verification/quality.hpp"
@@ -13,11 +15,20 @@ struct QualityExample {
   bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
   /// Of a right pose, what speaks for it if the object had another print: the fit tells the two apart.
   std::optional<QualityTerms> of_other_print = std::nullopt;
+  float score = 0.0F;     ///< of the detection
+  bool is_there = false;  ///< the object that was detected, whether the pose is right or not
+  int half = 0;           ///< 0 or 1: of which half of all that was practised
 };
 
 /// Bias, weights and typical values that explain the examples best (maximum a posteriori, a Gaussian about each weight
 /// of `prior`, as strong as `stiffness` examples): few examples move them little from there. `least` is the prior's.
 QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples, const QualitySettings& prior,
                                      double stiffness);
+
+/// What the poses of several objects, by name, teach of each: its quality, which is drawn to what they have in common,
+/// and what that says of its presence. The latter is learnt from qualities that did not know the examples (those of one
+/// half from the other half), as later ones will not.
+std::map<std::string, QualitySettings> learn_qualities(
+    const std::map<std::string, std::vector<QualityExample>>& examples);
 
 }  // namespace houghstream

@@ -164,6 +164,7 @@ TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   doubtful.weights = {};
   doubtful.weights.detection_log_odds = 1.0;
   doubtful.typical.detection_log_odds = 5.0;
+  doubtful.presence.bias = 100.0;
   const ObjectPose withheld = found("mug", doubtful);
   EXPECT_LT(withheld.quality, 0.01F);
   EXPECT_EQ(withheld.status, PoseStatus::kLowScore) << "by its own weights and typical values";
@@ -171,6 +172,26 @@ TEST(PoseEstimator, AClassThatHasAQualityOfItsOwnIsJudgedByThat) {
   doubtful.least = 0.0F;
   EXPECT_EQ(found("mug", doubtful).status, PoseStatus::kValid) << "by its own least quality";
   EXPECT_EQ(found("box", doubtful).quality, by_default.quality) << "another class's";
+}
+
+TEST(PoseEstimator, AReportedDetectionIsRefutedWhereItsObjectIsLessProbablyThereThanNot) {
+  const StandingScene scene(mug(), -0.05, standing(30.0, 30.0, 1.0), 3);
+  Detection detection = detection_of("mug", scene.object, scene.truth, 5);
+  PoseSettings settings;
+  QualitySettings& learnt = settings.class_quality["mug"] = QualitySettings{};
+  learnt.presence = {-0.1, 0.0, 0.0};
+  const auto found = [&] {
+    return estimator_for("mug", mug(), settings).estimate(scene.frame, only(detection)).poses.at(0).status;
+  };
+  EXPECT_EQ(found(), PoseStatus::kValid) << "what is published refutes nothing";
+  publish_from(1.0F, settings);
+  EXPECT_EQ(found(), PoseStatus::kRefuted);
+  learnt.presence.bias = 0.1;
+  const PoseStatus withheld = found();
+  EXPECT_TRUE(withheld != PoseStatus::kValid && withheld != PoseStatus::kRefuted) << to_string(withheld);
+  learnt.presence.bias = -0.1;
+  detection.reported = false;
+  EXPECT_NE(found(), PoseStatus::kRefuted) << "a candidate is not reported by its score";
 }
 
 TEST(PublishFrom, IsTheLimitOfEachClassAndOfCandidates) {

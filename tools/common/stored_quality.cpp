@@ -24,10 +24,26 @@ QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, co
   return terms;
 }
 
+/// Of a store that was written before it was learnt: what `otherwise` says.
+PresenceSettings presence_from(const nlohmann::json& entry, const PresenceSettings& otherwise,
+                               const std::string& where) {
+  if (!entry.contains("presence")) return otherwise;
+  const nlohmann::json& presence = entry["presence"];
+  require(presence.is_object() && presence.size() == 3,
+          "{}: 'presence' of the quality expected, with bias, of_score and of_quality", where);
+  return {json_number(presence, "bias", where), json_number(presence, "of_score", where),
+          json_number(presence, "of_quality", where)};
+}
+
 }  // namespace
 
 nlohmann::json quality_to_json(const QualitySettings& settings) {
-  return {{"bias", settings.bias}, {"weights", to_json(settings.weights)}, {"typical", to_json(settings.typical)}};
+  const PresenceSettings& presence = settings.presence;
+  return {
+      {"bias", settings.bias},
+      {"weights", to_json(settings.weights)},
+      {"typical", to_json(settings.typical)},
+      {"presence", {{"bias", presence.bias}, {"of_score", presence.of_score}, {"of_quality", presence.of_quality}}}};
 }
 
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects,
@@ -39,6 +55,7 @@ std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& 
     settings.bias = json_number(entry, "bias", where);
     settings.weights = terms_from(entry, "weights", where);
     settings.typical = terms_from(entry, "typical", where);
+    settings.presence = presence_from(entry, others.presence, where);
     learnt[name] = settings;
   }
   return learnt;

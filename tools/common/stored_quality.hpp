@@ -16,11 +16,13 @@ namespace houghstream {
 constexpr float kStoreQuality = 0.6F;
 constexpr float kStoreCandidateQuality = 0.75F;
 
-/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }}.
+/// As the object store holds it: {"bias", "weights": {TERM: }, "typical": {TERM: }, "presence": {"bias", "of_score",
+/// "of_quality"}}.
 nlohmann::json quality_to_json(const QualitySettings& settings);
 
 /// What the store has learnt of its objects' qualities, by name; the limits of each are those of `others`. Throws
-/// InputError naming the store for a missing or unknown number.
+/// InputError naming the store for a missing or unknown number. A store that was
+/// taught before presence was learnt has that of `others`.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
 
 /// What hs-pose needs to know of a store beside its meshes: qualities, and where detections' centres are. Poses are

@@ -137,6 +137,19 @@ quality::FoundPoses find_poses(const Practised& practised, const quality::PosedM
   return found;
 }
 
+std::map<std::string, std::vector<QualityExample>> quality_examples(const quality::FoundPoses& found,
+                                                                    const std::map<std::string, PoseModel>& models) {
+  std::map<std::string, std::vector<QualityExample>> by_name;
+  for (const auto& [name, model] : models) {
+    std::vector<QualityExample>& own = by_name[name];
+    for (const quality::Example& example : quality::judge_examples(found, {{name, model}})) {
+      own.push_back({example.terms, example.is_right, example.of_other_print, example.score, example.is_there,
+                     half_of(example.frame)});
+    }
+  }
+  return by_name;
+}
+
 }  // namespace
 
 std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,
@@ -175,19 +188,10 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
   }
   const quality::FoundPoses found = find_poses({frames, examples, new_ids, settings.threads}, models, forest);
   training::fit_scores(examples, new_ids, kScoreStiffness, forest);
-  std::map<std::string, std::vector<QualityExample>> by_class;
-  std::vector<QualityExample> all;
-  for (const auto& [name, model] : judged_by) {
-    for (const quality::Example& example : quality::judge_examples(found, {{name, model}}))
-      by_class[name].push_back({example.terms, example.is_right, example.of_other_print});
-    all.insert(all.end(), by_class[name].begin(), by_class[name].end());
-  }
-  const QualitySettings common = fit_quality_settings(all, QualitySettings{}, 1.0);
-  constexpr double kStiffness = 10.0;  // as of scores: few poses of one object do not tell its weights
+  std::map<std::string, QualitySettings> all = learn_qualities(quality_examples(found, judged_by));
   std::map<std::string, QualitySettings> learnt;
   for (const PractisedObject& object : objects) {
-    if (new_ids.count(object.in_room.id) > 0)
-      learnt[object.name] = fit_quality_settings(by_class[object.name], common, kStiffness);
+    if (new_ids.count(object.in_room.id) > 0) learnt[object.name] = all.at(object.name);
   }
   return learnt;
 }

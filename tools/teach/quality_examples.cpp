@@ -27,11 +27,13 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
     for (const JudgedDetection& judged : judge_detections(found.frames, name, DetectionRules{})) {
       const std::optional<FoundTerms>& terms = found.terms[judged.frame][judged.index];
       if (!terms || judged.verdict == Verdict::kIgnored) continue;
-      Example example{found.scene, terms->own};
+      Example example{found.scene, judged.frame, terms->own};
+      example.score = judged.score;
       if (judged.verdict == Verdict::kTrue) {
         const EvaluatedFrame& frame = found.frames[judged.frame];
         const TrueObject& truth = frame.objects[judged.object].truth;
         if (!truth.has_pose) continue;
+        example.is_there = true;
         const Eigen::Isometry3d& T_camera_object = *frame.poses->poses[judged.index].T_camera_object;
         const double error = add_s_error(model.points, T_camera_object, truth.T_camera_object);
         example.is_right = error < kRightBelow * model.diameter;

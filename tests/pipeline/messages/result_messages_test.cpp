@@ -156,7 +156,7 @@ TEST(ResultMessages, AbsurdPosesAreRefused) {
     EXPECT_THROW(poses_from_message(bad), InputError);
   };
   refused([](object_pose_t& p) { p.status = 0; });
-  refused([](object_pose_t& p) { p.status = object_pose_t::OCCLUDED + 1; });
+  refused([](object_pose_t& p) { p.status = object_pose_t::REFUTED + 1; });
   refused([](object_pose_t& p) { p.trans[0] = kNan; });
   refused([](object_pose_t& p) { p.quat[0] = 2.0; });
   refused([](object_pose_t& p) { p.visible_fraction = 1.5F; });

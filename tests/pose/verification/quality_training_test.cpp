@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "pipeline/base/random.hpp"
 
@@ -92,6 +94,43 @@ TEST(QualityTraining, TypicalValuesAreTheMeansOfRightPosesAndTheLeastQualityIsTh
   const QualitySettings none_right = fit_quality_settings({examples[2]}, prior, 1.0);
   EXPECT_DOUBLE_EQ(none_right.typical.outline, prior.typical.outline);
   EXPECT_LT(none_right.bias, prior.bias) << "a wrong pose speaks against all";
+}
+
+/// Of each of two halves the same examples. The object is there where the pose is right, and where it is not in
+/// `there_anyway` of all cases.
+std::vector<QualityExample> practised(double there_anyway) {
+  std::vector<QualityExample> examples = drawn(600);
+  Random random(11);
+  for (QualityExample& example : examples) {
+    example.score = 0.5F;
+    example.is_there = example.is_right || random.uniform() < there_anyway;
+  }
+  const std::vector<QualityExample> again = examples;
+  examples.insert(examples.end(), again.begin(), again.end());
+  for (std::size_t i = again.size(); i < examples.size(); ++i) examples[i].half = 1;
+  return examples;
+}
+
+TEST(LearnQualities, WhatABadPoseSaysOfPresenceIsEachObjectsOwn) {
+  const std::map<std::string, QualitySettings> learnt =
+      learn_qualities({{"easily posed", practised(0.0)}, {"hardly posed", practised(0.8)}});
+  ASSERT_EQ(learnt.size(), 2U);
+  EXPECT_LT(presence_probability(0.5F, 0.02F, learnt.at("easily posed").presence), 0.2F);
+  EXPECT_GT(presence_probability(0.5F, 0.02F, learnt.at("hardly posed").presence), 0.5F);
+}
+
+TEST(LearnQualities, PresenceIsLearntFromQualitiesThatDidNotKnowTheExamples) {
+  // In one half the first term says that a pose is right, in the other one that it is wrong: what one half teaches says
+  // the opposite in the other, which a quality of both would not.
+  std::vector<QualityExample> examples(400);
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    QualityExample& example = examples[i];
+    example.half = i < examples.size() / 2 ? 0 : 1;
+    example.is_right = example.is_there = i % 2 == 0;
+    example.score = 0.5F;
+    example.terms.detection_log_odds = example.is_right == (example.half == 0) ? 1.0 : -1.0;
+  }
+  EXPECT_LT(learn_qualities({{"mug", examples}}).at("mug").presence.of_quality, 0.0);
 }
 
 }  // namespace

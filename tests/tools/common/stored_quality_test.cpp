@@ -15,6 +15,7 @@ QualitySettings learnt() {
     settings.weights.*term = value += 0.1;
     settings.typical.*term = -(value / 3.0);
   }
+  settings.presence = {1.5, 0.25, -0.5};
   settings.least = 0.9F;
   return settings;
 }
@@ -40,7 +41,18 @@ TEST(StoredQuality, ComesBackFromJsonAsItWas) {
     EXPECT_EQ(mug.weights.*term, learnt().weights.*term);
     EXPECT_EQ(mug.typical.*term, learnt().typical.*term);
   }
+  EXPECT_EQ(mug.presence.bias, learnt().presence.bias);
+  EXPECT_EQ(mug.presence.of_score, learnt().presence.of_score);
+  EXPECT_EQ(mug.presence.of_quality, learnt().presence.of_quality);
   EXPECT_EQ(mug.least, 0.35F) << "the threshold is its reader's";
+}
+
+TEST(StoredQuality, AStoreThatKnowsNothingOfPresenceIsReadWithThatOfOthers) {
+  nlohmann::json json = quality_to_json(learnt());
+  json.erase("presence");
+  QualitySettings others;
+  others.presence.of_quality = 0.125;
+  EXPECT_EQ(stored_quality(store_with(json), others).at("mug").presence.of_quality, 0.125);
 }
 
 TEST(StoredQuality, TermsAreHeldByTheirNames) {
@@ -73,6 +85,11 @@ TEST(StoredQuality, AMissingOrUnknownNumberIsRefusedNamingTheStore) {
   json = whole;
   json["typical"]["visible"] = "much";
   expect_refused(json, "'visible'");
+  json = whole;
+  json["presence"].erase("of_score");
+  expect_refused(json, "'presence'");
+  json["presence"]["of_colour"] = 1.0;
+  expect_refused(json, "'of_score'");
   json = whole;
   json["weights"] = 3;
   expect_refused(json, "'weights'");

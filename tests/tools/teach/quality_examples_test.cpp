@@ -60,6 +60,8 @@ TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
     const std::vector<Example> examples = judge_examples(found, corner());
     ASSERT_EQ(examples.size(), 1U);
     EXPECT_EQ(examples[0].scene, "desk");
+    EXPECT_EQ(examples[0].score, 0.9F);
+    EXPECT_TRUE(examples[0].is_there) << "whether its pose is right or not";
     EXPECT_EQ(examples[0].is_right, x < 0.02) << x;
     EXPECT_EQ(examples[0].of_other_print.has_value(), x < 0.02) << "of a wrong pose another print says nothing";
   }
@@ -74,6 +76,7 @@ TEST(QualityExamples, OfFalseDetectionsEveryPoseIsWrong) {
   ASSERT_EQ(examples.size(), 2U);
   EXPECT_TRUE(examples[0].is_right);
   EXPECT_FALSE(examples[1].is_right);
+  EXPECT_FALSE(examples[1].is_there);
   EXPECT_EQ(examples[1].terms.visible, 1.0) << "with its own evidence";
 }
 

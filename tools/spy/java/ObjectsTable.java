@@ -26,25 +26,11 @@ final class ObjectsTable extends AbstractTableModel {
     fireTableDataChanged();
   }
 
-  /** A candidate counts where its pose is valid, another detection where its pose does not refute it (see
-   *  pipeline/types/object_pose.hpp). `pose` may be null. */
+  /** A candidate counts where its pose is valid, another detection where its pose does not refute it. `pose` may be
+   *  null. */
   static boolean isReported(detection_t detection, object_pose_t pose) {
-    if (pose != null && pose.status == object_pose_t.VALID) return true;
-    return detection.reported && !isRefuted(detection, pose);
-  }
-
-  private static boolean isRefuted(detection_t detection, object_pose_t pose) {
-    if (pose == null) return false;
-    return switch (pose.status) {
-      case object_pose_t.REJECTED_BY_DEPTH, object_pose_t.LOW_SCORE, object_pose_t.REJECTED_BY_OUTLINE,
-          object_pose_t.REJECTED_BY_COLOUR -> 0.27 + 0.26 * logOdds(detection.score) + 0.68 * logOdds(pose.quality) < 0.0;
-      default -> false;
-    };
-  }
-
-  private static double logOdds(double probability) {
-    double p = Math.min(Math.max(probability, 0.001), 0.999);
-    return Math.log(p / (1.0 - p));
+    if (pose == null) return detection.reported;
+    return pose.status == object_pose_t.VALID || (detection.reported && pose.status != object_pose_t.REFUTED);
   }
 
   static object_pose_t poseOf(int detection, object_poses_t poses) {
@@ -79,6 +65,7 @@ final class ObjectsTable extends AbstractTableModel {
       case object_pose_t.REJECTED_BY_OUTLINE -> "rejected by outline";
       case object_pose_t.REJECTED_BY_COLOUR -> "rejected by colour";
       case object_pose_t.OCCLUDED -> "occluded";
+      case object_pose_t.REFUTED -> "refuted";
       default -> "status " + status;
     };
   }

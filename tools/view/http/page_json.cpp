@@ -115,6 +115,8 @@ std::string why_no_pose(const ObjectPose* pose) {
     case PoseStatus::kOccluded:
       return "Something stands before it: it is followed on where it was expected, and has no pose until it is seen.";
     case PoseStatus::kRejectedByColour: return "The model's colours do not explain those that are seen.";
+    case PoseStatus::kRefuted:
+      return "The model at its best pose fits so badly that the object is less probably there than not.";
     default: return fmt::format("hs-pose says: {}.", to_string(pose->status));
   }
 }

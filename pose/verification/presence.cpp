@@ -1,0 +1,35 @@
+#include "pose/verification/presence.hpp"
+
+#include "pipeline/base/log_odds.hpp"
+#include "pipeline/base/logistic_regression.hpp"
+
+namespace houghstream {
+namespace {
+
+using Weights = Eigen::Vector3d;
+
+Weights terms_of(float score, float quality) {
+  return {1.0, log_odds(static_cast<double>(score)), log_odds(static_cast<double>(quality))};
+}
+
+Weights weights_of(const PresenceSettings& settings) {
+  return {settings.bias, settings.of_score, settings.of_quality};
+}
+
+}  // namespace
+
+float presence_probability(float score, float quality, const PresenceSettings& settings) {
+  return static_cast<float>(logistic(weights_of(settings).dot(terms_of(score, quality))));
+}
+
+PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, const PresenceSettings& prior,
+                              double stiffness) {
+  std::vector<LogisticExample<3>> judged;
+  judged.reserve(examples.size());
+  for (const PresenceExample& example : examples)
+    judged.push_back({terms_of(example.score, example.quality), example.is_there});
+  const Weights weights = fit_logistic<3>(judged, {weights_of(prior), stiffness});
+  return {weights[0], weights[1], weights[2]};
+}
+
+}  // namespace houghstream
