@@ -66,9 +66,8 @@ float chroma_conflict(const ColourProducts& products) {
 }
 
 ColourComparison compare(const ColourProducts& products, int count) {
-  constexpr double kNoise = 15.0;           // variance of the three channels on a plain surface in even light
   constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
-  const double seen = kNoise + kLightnessWeight * seen_variance(products, kSeenLightness) +
+  const double seen = kPlainColourVariance + kLightnessWeight * seen_variance(products, kSeenLightness) +
                       seen_variance(products, kSeenA) + seen_variance(products, kSeenB);
   const double left = kLightnessWeight * lightness_left_over(products) + chroma_left_over(products, kA, kSeenA) +
                       chroma_left_over(products, kB, kSeenB);

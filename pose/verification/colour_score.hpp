@@ -10,6 +10,9 @@
 
 namespace houghstream {
 
+/// Variance of the seen 8-bit CIE L*a*b* colours, all channels, on a plain surface in even light: it tells of no print.
+constexpr double kPlainColourVariance = 15.0;
+
 /// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
 /// and the camera was not at its limit.
 struct ColourComparison {

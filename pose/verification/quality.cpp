@@ -20,7 +20,6 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   constexpr double kFraction = 0.05;
   constexpr double kCount = 3.0;
   constexpr double kLeastAgreement = -0.5;
-  constexpr double kColourNoise = 15.0;   // variance that says nothing
   constexpr double kUnknownColour = 0.8;  // of the usual agreement: no colours are no proof
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
@@ -33,7 +32,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
     terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
     terms.agreement = std::max(kLeastAgreement, static_cast<double>(evidence.colour->agreement));
     const auto left_over = static_cast<double>(evidence.colour->left_over);
-    terms.left_over = -std::log(left_over * left_over + kColourNoise);
+    terms.left_over = -std::log(left_over * left_over + kPlainColourVariance);
   } else {
     terms.agreement *= kUnknownColour;
   }
