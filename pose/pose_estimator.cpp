@@ -23,7 +23,7 @@ struct Estimation {
   std::vector<RotationCandidate> rotations;
   std::vector<PoseCandidate> candidates;
   std::vector<RegistrationResult> registered;  ///< the candidates
-  RegistrationResult chosen;
+  std::vector<RegistrationResult> chosen;      ///< the best first
 };
 
 ObjectPoses undecided_poses(const Detections& detections) {
@@ -82,16 +82,28 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 }
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
-  it.chosen = choose_pose(*it.seen, it.registered, it.rotations, settings);
-  tell_registration(it.chosen, it.pose);
-  if (it.chosen.inliers == 0) it.pose.status = PoseStatus::kNotConverged;
+  it.chosen = choose_poses(*it.seen, it.registered, it.rotations, settings);
+  tell_registration(it.chosen.front(), it.pose);
+  if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
 
-/// Publishes the pose or says why not.
+/// Publishes the pose for which the evidence speaks most, or says why not.
 void verify_one(const PoseSettings& settings, Estimation& it) {
-  const Eigen::Isometry3d& T_camera_object = it.chosen.T_camera_object;
-  const PoseEvidence evidence = gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification);
-  judge(evidence, T_camera_object, it.detection.reported, settings, it.pose);
+  const QualitySettings& quality = quality_settings(it.pose.class_name, settings);
+  PoseEvidence evidence;
+  const RegistrationResult* best = nullptr;
+  float best_quality = -1.0F;
+  for (const RegistrationResult& result : it.chosen) {
+    const PoseEvidence own =
+        gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification);
+    const float own_quality = pose_quality(quality_terms(own, quality), quality);
+    if (!(own_quality > best_quality)) continue;
+    evidence = own;
+    best = &result;
+    best_quality = own_quality;
+  }
+  tell_registration(*best, it.pose);
+  judge(evidence, best->T_camera_object, it.detection.reported, settings, it.pose);
 }
 
 }  // namespace

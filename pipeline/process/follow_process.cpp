@@ -57,6 +57,8 @@ class FollowProcess {
     }
     status_.count_skipped(static_cast<std::int64_t>(frames_.waiting()));
     warn(models_.at_end());
+    if (looks_ > 0)
+      log_info("looks: {} came, {} answered, {} passed over for newer ones", looks_.load(), answered_, overtaken_);
     end_process(bus_, status_);
   }
 
@@ -117,6 +119,7 @@ class FollowProcess {
       if (channels_.matches(frame.channel)) {
         if (options_.keep_frames) bus_.publish(arrival.channel, arrival.bytes, arrival.event_us);
         detections_.put_detections(frame, {arrival.bytes.data, arrival.bytes.data + arrival.bytes.size});
+        ++looks_;
       } else {
         transforms_.note_other_camera(frame.channel);
       }
@@ -146,12 +149,15 @@ class FollowProcess {
 
   bool answer_next(milliseconds timeout) {
     const std::optional<PairedMessages> pair = detections_.take(timeout);
-    for (const FrameId& frame : detections_.take_dropped().without_frame) {
+    const PairInbox::Dropped dropped = detections_.take_dropped();
+    overtaken_ += dropped.skipped;
+    for (const FrameId& frame : dropped.without_frame) {
       status_.note_bad_message(fmt::format("detections of frame {}: the frame itself has not come", to_string(frame)));
     }
     if (!pair) return false;
     try {
       bus_.publish(channel::kPoses, to_message(answer(*pair)));
+      ++answered_;
     } catch (const std::exception& error) {
       status_.note_bad_message(error.what());
     }
@@ -195,6 +201,9 @@ class FollowProcess {
   ModelCheck models_;  // of who answers
   TransformOutput transforms_;
   RepeatedMessages repeats_;
+  std::atomic<std::int64_t> looks_{0};  // results of the detector that came
+  std::int64_t answered_ = 0;           // with poses, of who answers
+  std::int64_t overtaken_ = 0;          // passed over for newer ones, before they were answered
 };
 
 }  // namespace

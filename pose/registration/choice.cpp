@@ -1,5 +1,6 @@
 #include "pose/registration/choice.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "pose/model/angles.hpp"
@@ -8,6 +9,11 @@
 
 namespace houghstream {
 namespace {
+
+struct Scored {
+  RegistrationResult result;
+  float score = 0.0F;
+};
 
 /// The steps of the choice for one object, with what they share.
 class Choice {
@@ -41,11 +47,10 @@ class Choice {
     return best;
   }
 
-  /// The best of `result` and of it turned by half a turn about each principal axis, registered again: a box looks the
-  /// same to depth then, and only its print tells.
-  RegistrationResult best_flip(const RegistrationResult& result) const {
-    RegistrationResult best = result;
-    float best_score = score_of(result);
+  /// `result`, and it turned by half a turn about each principal axis, registered again: a box looks the same to depth
+  /// then, and only its print tells. The best first, and none that ends elsewhere.
+  std::vector<Scored> flips_of(const RegistrationResult& result) const {
+    std::vector<Scored> flips = {{result, score_of(result)}};
     const Eigen::Vector3d middle = seen_.model.middle.cast<double>();
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::AngleAxisd half_turn(M_PI, seen_.model.axes.col(axis).cast<double>());
@@ -54,9 +59,10 @@ class Choice {
       RegistrationResult again =
           uphill(register_coarsely(seen_, flipped, 0.5 * (distances_.start + distances_.end), settings_.registration));
       again.iterations += result.iterations;
-      take_better(again, best, best_score);
+      if (ends_near(seen_, again, settings_.registration)) flips.push_back({again, score_of(again)});
     }
-    return best;
+    std::stable_sort(flips.begin(), flips.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    return flips;
   }
 
  private:
@@ -91,18 +97,25 @@ class Choice {
 
 }  // namespace
 
-RegistrationResult choose_pose(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
-                               const std::vector<RotationCandidate>& votes, const PoseSettings& settings) {
+std::vector<RegistrationResult> choose_poses(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
+                                             const std::vector<RotationCandidate>& votes,
+                                             const PoseSettings& settings) {
   const Choice choice(seen, votes, settings);
   const TurnSettings& turn = settings.turn;
   const RegistrationSettings& registration = settings.registration;
   RegistrationResult best = choice.best_of(registered);
-  if (best.inliers == 0) return best;
+  if (best.inliers == 0) return {best};
   const RegistrationResult settled = register_finely(seen, best, registration);
-  const RegistrationResult flipped = choice.best_flip(settled);
-  const RegistrationResult turned = choice.best_turn(flipped, turn.step_deg, 180.0, turn.registered);
-  const RegistrationResult fine = register_finely(seen, turned, registration);
-  return register_finely(seen, choice.best_turn(fine, turn.fine_step_deg, turn.step_deg, 1), registration);
+  const std::vector<Scored> flips = choice.flips_of(settled);
+  const RegistrationResult turned = choice.best_turn(flips.front().result, turn.step_deg, 180.0, turn.registered);
+  std::vector<RegistrationResult> fine = {register_finely(seen, turned, registration)};
+  for (std::size_t i = 1; i < flips.size() && fine.size() <= turn.rivals; ++i) {
+    if (flips[i].score < turn.rival_share * flips.front().score) break;
+    fine.push_back(register_finely(seen, flips[i].result, registration));
+  }
+  for (RegistrationResult& result : fine)
+    result = register_finely(seen, choice.best_turn(result, turn.fine_step_deg, turn.step_deg, 1), registration);
+  return fine;
 }
 
 }  // namespace houghstream

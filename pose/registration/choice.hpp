@@ -17,14 +17,17 @@ struct TurnSettings {
   int climb_rounds = 4;         ///< of those, to each side
   int points = 250;             ///< of a view
   std::size_t registered = 3;   ///< the best turns all round are registered again
+  std::size_t rivals = 1;       ///< flips beside the best one that are chosen too,
+  float rival_share = 0.8F;     ///< where they score at least so much of it
 };
 
 /// Of the registered candidates the one for which depth, colour and votes speak most is registered finely and turned
 /// about its principal axes by half a turn each, and about its z axis, where votes err most; of the turns, each
 /// registered again and moved a little uphill, the one for which they speak most goes on; then its print may turn it a
-/// little, and registration has the last word. No inliers where no candidate ended near the detected centre. `votes`
-/// are the modes of the detection's rotations.
-RegistrationResult choose_pose(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
-                               const std::vector<RotationCandidate>& votes, const PoseSettings& settings);
+/// little, and registration has the last word. Behind it come half turns that score nearly as well, registered finely:
+/// points of a view part them badly, verification better. A single one without inliers where no candidate ended near
+/// the detected centre. `votes` are the modes of the detection's rotations.
+std::vector<RegistrationResult> choose_poses(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
+                                             const std::vector<RotationCandidate>& votes, const PoseSettings& settings);
 
 }  // namespace houghstream

@@ -115,8 +115,12 @@ std::optional<ColourComparison> compare_print(const SeenObject& seen, const View
   const double averaged_px = std::min(kDetails * detail_m / seen.frame.camera.metres_per_px(look.depth), kMost);
   const int side = 2 * static_cast<int>(0.5 * averaged_px) + 1;
   const int reach = side > kAlready ? 2 : 1;
-  LabRegion moved = colours;
-  if (side > kAlready) cv::blur(colours.lab, moved.lab, cv::Size(side, side));
+  LabRegion moved{{}, {}, colours.clipped};  // a copy of the picture would be the picture, and change with it
+  if (side > kAlready) {
+    cv::blur(colours.lab, moved.lab, cv::Size(side, side));
+  } else {
+    moved.lab = colours.lab;
+  }
   std::optional<ColourComparison> best;
   for (const int dy : {0, -reach, reach}) {
     for (const int dx : {0, -reach, reach}) {

@@ -6,13 +6,13 @@
 namespace houghstream {
 namespace {
 
-using Weights = Eigen::Vector3d;
+using PresenceWeights = Eigen::Vector3d;
 
-Weights terms_of(float score, float quality) {
+PresenceWeights terms_of(float score, float quality) {
   return {1.0, log_odds(static_cast<double>(score)), log_odds(static_cast<double>(quality))};
 }
 
-Weights weights_of(const PresenceSettings& settings) {
+PresenceWeights weights_of(const PresenceSettings& settings) {
   return {settings.bias, settings.of_score, settings.of_quality};
 }
 
@@ -28,7 +28,7 @@ PresenceSettings fit_presence(const std::vector<PresenceExample>& examples, cons
   judged.reserve(examples.size());
   for (const PresenceExample& example : examples)
     judged.push_back({terms_of(example.score, example.quality), example.is_there});
-  const Weights weights = fit_logistic<3>(judged, {weights_of(prior), stiffness});
+  const PresenceWeights weights = fit_logistic<3>(judged, {weights_of(prior), stiffness});
   return {weights[0], weights[1], weights[2]};
 }
 

@@ -70,7 +70,7 @@ TEST(FollowProcess, EachFrameHasItsPosesWithoutDetectionsAndDetectionsTheirAnswe
   EXPECT_EQ(status.frames_processed, 3);
 }
 
-TEST(FollowProcess, FramesDoNotWaitForAnAnswer) {
+TEST(FollowProcess, FramesDoNotWaitForAnAnswerAndAnOvertakenLookIsCounted) {
   ProcessOnMemq test({channel::kPoses, "BOWL_TO_CAMERA"});
   std::atomic<bool> may_answer{false};
   FollowPoses slow = fake();
@@ -86,10 +86,19 @@ TEST(FollowProcess, FramesDoNotWaitForAnAnswer) {
   test.bus.publish(channel::kFrame, frame_message(2));
   ASSERT_TRUE(test.wait_for(channel::kPoses, 2));
   EXPECT_EQ(test.at<object_poses_t>(channel::kPoses, 1).utime, 2);
-  may_answer = true;
+  test.bus.publish(channel::kDetections, to_message(one_bowl(2)));
+  test.bus.publish(channel::kFrame, frame_message(3));
   ASSERT_TRUE(test.wait_for(channel::kPoses, 3));
-  EXPECT_EQ(test.at<object_poses_t>(channel::kPoses, 2).utime, 1);
+  test.bus.publish(channel::kDetections, to_message(one_bowl(3)));
+  std::this_thread::sleep_for(milliseconds(50));
+  may_answer = true;
+  ASSERT_TRUE(test.wait_for(channel::kPoses, 5));
+  EXPECT_EQ(test.at<object_poses_t>(channel::kPoses, 3).utime, 1);
+  EXPECT_EQ(test.at<object_poses_t>(channel::kPoses, 4).utime, 3);
+  testing::internal::CaptureStderr();
   test.stop();
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("looks: 3 came, 2 answered, 1 passed over for newer ones"), std::string::npos) << log;
 }
 
 TEST(FollowProcess, OlderFramesAreSkippedAndBadMessagesCounted) {

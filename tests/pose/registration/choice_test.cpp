@@ -11,15 +11,22 @@ namespace {
 using namespace test_scene;
 
 struct Boxed {
-  Mesh mesh = printed_box();
+  explicit Boxed(const Mesh& box = printed_box()) : mesh(box) {}
+
+  Mesh mesh;
   ObjectModel model = make_object_model("box", mesh, {});
   Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
   RgbdFrame frame = coloured_frame(mesh, truth, 5);
   DepthRegion region{cv::Rect(0, 0, 640, 480), 0.5F, 1.2F, 10000};
 
-  RegistrationResult choose(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {
+  std::vector<RegistrationResult> choose_all(const std::vector<PoseCandidate>& candidates,
+                                             const Eigen::Vector3f& centre) const {
     const SeenObject seen{frame, model, centre, {}, region, lab_region(frame, region.box_px, {})};
-    return choose_pose(seen, register_candidates(seen, candidates, {}), {}, {});
+    return choose_poses(seen, register_candidates(seen, candidates, {}), {}, {});
+  }
+
+  RegistrationResult choose(const std::vector<PoseCandidate>& candidates, const Eigen::Vector3f& centre) const {
+    return choose_all(candidates, centre).front();
   }
 };
 
@@ -31,6 +38,15 @@ TEST(Choice, ABoxThatWasTakenForItsBackIsTurnedRound) {
   const double angle = Eigen::AngleAxisd(found.T_camera_object.linear().transpose() * boxed.truth.linear()).angle();
   EXPECT_LT(angle, 0.02);
   EXPECT_LT((found.T_camera_object.translation() - boxed.truth.translation()).norm(), 0.003);
+}
+
+TEST(Choice, AHalfTurnThatPointsCannotTellApartIsChosenToo) {
+  const Boxed plain(cereal_box());
+  const std::vector<RegistrationResult> chosen =
+      plain.choose_all({{plain.truth, 1.0F}}, plain.truth.translation().cast<float>());
+  ASSERT_EQ(chosen.size(), 2U);
+  const Eigen::Matrix3d between = chosen[0].T_camera_object.linear().transpose() * chosen[1].T_camera_object.linear();
+  EXPECT_GT(Eigen::AngleAxisd(between).angle(), 3.0);
 }
 
 TEST(Choice, WhatEndsFarFromTheDetectionIsNoResult) {

@@ -102,6 +102,16 @@ TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {
   EXPECT_LT(judged(turned(kPose, 180.0), 0.0), judged(kPose, 0.0) - 0.4F);
 }
 
+TEST(ColourScore, JudgingAPrintLeavesThePictureAsItIs) {
+  const Mesh box = printed_box();
+  const ObjectModel model = make_object_model("box", box, {});
+  const RgbdFrame frame = coloured_frame(box, kPose, 1);
+  const SeenObject seen{frame, model, {}, {}, {}, lab_region(frame, cv::Rect(0, 0, 640, 480), {})};
+  const ViewLook look = look_at_view(frame, model, kPose, 400);
+  const float first = compare_print(seen, look, kTolerance)->agreement;
+  EXPECT_EQ(compare_print(seen, look, kTolerance)->agreement, first);
+}
+
 TEST(ColourScore, WithoutColoursOrMeasuredDepthThereIsNoAnswer) {
   const Mesh box = printed_box();
   RgbdFrame frame = coloured_frame(box, kPose, 1);

@@ -120,9 +120,12 @@ class LongAccount(unittest.TestCase):
         told = long_account.accounts(100, counts)
         self.assertEqual([one["missing"] for one in told.values()], [1, 0, 1])
         self.assertEqual(told["detect"]["passed_over"], 0.0202)
-        twice = counts["track"] | {"received": 96 + 97, "skipped": 97}  # a look at a frame gives a second result of it
-        followed = long_account.accounts(100, counts | {"pose": counts["pose"] | {"received": 100}, "track": twice}, follows=True)
-        self.assertEqual([one["missing"] for one in followed.values()], [1, 0, 1])
+        self.assertIsNone(long_account.looks_of("hs-pose: ends: 97 received"))
+        looks = long_account.looks_of("hs-pose: looks: 95 came, 91 answered, 4 passed over for newer ones\n")
+        self.assertEqual(looks, {"came": 95, "answered": 91, "passed_over": 4})
+        twice = counts["track"] | {"received": 96 + 91, "skipped": 91}  # an answer is a second result of its frame
+        followed = long_account.accounts(100, counts | {"pose": counts["pose"] | {"received": 100}, "track": twice}, looks)
+        self.assertEqual([one["missing"] for one in followed.values()], [1, 2, 1], "two looks did not come to hs-pose")
         self.assertEqual(followed["track"]["passed_over"], 0.0)
         self.assertNotIn("passed_over", followed["detect"], "hs-detect looks at some frames only")
         calm = {"growth_most": 0.0, "growing": []}

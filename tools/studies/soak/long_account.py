@@ -12,6 +12,7 @@ MOST_PASSED_OVER = 0.01  # of the frames of each process
 LEAST_RATE = 0.98  # of the rate that was asked for
 CHAIN = ("capture", "detect", "pose", "track")  # each works on what the one before it sends
 ARRIVALS = {"poses": "t_poses", "objects": "t_objects"}  # columns of hs-observe's CSV
+LOOKS = re.compile(r"looks: (\d+) came, (\d+) answered, (\d+) passed over")
 CAPTURED = re.compile(r"(\d+) frames of .*, ([\d.]+) Hz$", re.MULTILINE)
 
 
@@ -56,20 +57,28 @@ def captured(words):
     return (int(found.group(1)), float(found.group(2))) if found else None
 
 
-def accounts(sent, counts, follows=False):
+def looks_of(words):
+    """What hs-pose --follow says in the end of the detector's results, or None."""
+    found = LOOKS.search(words)
+    return dict(zip(("came", "answered", "passed_over"), map(int, found.groups()))) if found else None
+
+
+def accounts(sent, counts, looks=None):
     """What each process says of its frames, which share it passed over, and how many of the results of the one before it
-    never came to it: what is lost behind the last that comes its own count cannot know. Of hs-pose --follow, which takes
-    each frame itself, hs-detect looks at some only, as it is told to; what comes of such a look is a second result of its
-    frame, which hs-track passes over when it has the first."""
+    never came to it: what is lost behind the last that comes its own count cannot know. hs-pose --follow takes each frame
+    itself, hs-detect looks at some only, as it is told to; the answer to such a look (`looks`: see looks_of) is a second
+    result of its frame, which hs-track passes over when it has the first."""
     found, before = {}, sent
     for name in CHAIN[1:]:
         one = counts[name]
-        looks = follows and name == "detect"
-        second = counts["detect"]["processed"] if follows and name == "track" else 0
+        second = looks["answered"] if looks and name == "track" else 0
         found[name] = {**one, "missing": before + second - one["received"]}
-        if not looks:
-            found[name]["passed_over"] = round(max(one["skipped"] - second, 0) / max(one["received"] - second, 1), 5)
-        before = sent if looks else one["processed"]
+        if looks and name == "detect":
+            continue
+        if looks and name == "pose":
+            found[name]["missing"] += counts["detect"]["processed"] - looks["came"]
+        found[name]["passed_over"] = round(max(one["skipped"] - second, 0) / max(one["received"] - second, 1), 5)
+        before = one["processed"]
     return found
 
 

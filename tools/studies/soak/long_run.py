@@ -13,7 +13,7 @@ import time
 from studies.command import step
 from studies.measured import write_atomically
 from studies.soak.faults import account, said
-from studies.soak.long_account import CHAIN, accounts, captured, cost, latencies, wrong
+from studies.soak.long_account import CHAIN, accounts, captured, cost, latencies, looks_of, wrong
 from studies.soak.wire import bus
 from studies.stream import Processes, ProcessFailed, cpu_seconds, resident_mb
 
@@ -155,9 +155,12 @@ class LongRun:
             processes["capture"].fail("has not said what it sent")
         seen["sent"], seen["sent_hz"] = told
         told_by = {name: account(processes[name]) for name in CHAIN[1:]}
-        for name, counts in accounts(told[0], told_by, self.options.follow).items():
+        looks = looks_of(processes["pose"].log.read_text(errors="replace"))
+        if self.options.follow and looks is None:
+            processes["pose"].fail("has not said what it answered")
+        for name, counts in accounts(told[0], told_by, looks).items():
             seen["processes"][name].update(counts)
-        seen["reported"] = [line for name in CHAIN[1:] for line in said(processes[name], "ends:")]
+        seen["reported"] = [line for name in CHAIN[1:] for line in said(processes[name], "ends:|looks:")]
 
     def write(self, samples, latency):
         """The samples and the latency of each minute, and both drawn."""
