@@ -96,7 +96,8 @@ TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
     Detections both = only(wrong);
     both.detections.push_back(empty);
     for (const ObjectPose& pose : estimator.estimate(scene.frame, both).poses) {
-      const bool has_reason = pose.status == PoseStatus::kRejectedByDepth || pose.status == PoseStatus::kNotConverged;
+      const bool has_reason = pose.status == PoseStatus::kRejectedByDepth || pose.status == PoseStatus::kRefuted ||
+                              pose.status == PoseStatus::kNotConverged;
       EXPECT_TRUE(has_reason) << seed << " " << pose.detection_index << " " << to_string(pose.status);
       EXPECT_FALSE(pose.T_camera_object.has_value());
       EXPECT_EQ(std::isnan(pose.residual), pose.inliers == 0);

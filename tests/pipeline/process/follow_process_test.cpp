@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <houghstream/status_t.hpp>
 
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/process/pair_inbox.hpp"
 #include "tests/pipeline/process_test.hpp"
@@ -96,6 +97,7 @@ TEST(FollowProcess, FramesDoNotWaitForAnAnswerAndAnOvertakenLookIsCounted) {
   EXPECT_EQ(test.at<object_poses_t>(channel::kPoses, 3).utime, 1);
   EXPECT_EQ(test.at<object_poses_t>(channel::kPoses, 4).utime, 3);
   testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
   test.stop();
   const std::string log = testing::internal::GetCapturedStderr();
   EXPECT_NE(log.find("looks: 3 came, 2 answered, 1 passed over for newer ones"), std::string::npos) << log;

@@ -16,7 +16,7 @@ struct Boxed {
   Mesh mesh;
   ObjectModel model = make_object_model("box", mesh, {});
   Eigen::Isometry3d truth = standing(25.0, 30.0, 0.8);
-  RgbdFrame frame = coloured_frame(mesh, truth, 5);
+  RgbdFrame frame = coloured_frame(printed_box(), truth, 5);
   DepthRegion region{cv::Rect(0, 0, 640, 480), 0.5F, 1.2F, 10000};
 
   std::vector<RegistrationResult> choose_all(const std::vector<PoseCandidate>& candidates,
