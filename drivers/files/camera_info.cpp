@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <initializer_list>
-#include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
@@ -13,49 +13,36 @@
 namespace houghstream {
 namespace {
 
-cv::FileStorage parse_calibration(const std::filesystem::path& file) {
-  const std::string text = yaml_for_opencv(read_file(file, "a camera calibration file"), file.string());
-  cv::FileStorage yaml;
-  try {
-    yaml.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
-  } catch (const cv::Exception&) {
-    fail("{}: no YAML, expected a camera calibration file", file.string());
-  }
-  require(yaml.isOpened() && yaml.root().isMap(), "{}: no YAML of names and values, expected a camera calibration file",
-          file.string());
-  return yaml;
-}
-
-std::vector<double> numbers_of(const cv::FileNode& list) {
+std::vector<double> numbers_of(const YAML::Node& list) {
   std::vector<double> numbers;
-  for (const cv::FileNode& number : list) {
-    if (number.isReal() || number.isInt()) numbers.push_back(number.real());
+  if (!list.IsDefined() || !list.IsSequence()) return numbers;
+  for (const auto& entry : list) {
+    if (const std::optional<double> number = yaml_number(entry)) numbers.push_back(*number);
   }
   return numbers;
 }
 
 /// Those of a calibration's matrix, else of the message's list.
-std::vector<double> numbers_of_either(const cv::FileStorage& yaml, const char* matrix,
+std::vector<double> numbers_of_either(const YAML::Node& yaml, const char* matrix,
                                       std::initializer_list<const char*> lists) {
-  // Nothing where it is no map; OpenCV itself throws.
-  if (yaml[matrix].isMap()) return numbers_of(yaml[matrix]["data"]);
+  if (const YAML::Node data = yaml_member(yaml_member(yaml, matrix), "data"); data.IsDefined()) return numbers_of(data);
   for (const char* list : lists) {
-    if (yaml[list].isSeq()) return numbers_of(yaml[list]);
+    if (const YAML::Node node = yaml_member(yaml, list); node.IsDefined()) return numbers_of(node);
   }
   return {};
 }
 
-int size_of(const cv::FileStorage& yaml, const char* calibration, const char* message,
-            const std::filesystem::path& file) {
-  const char* key = yaml[calibration].isInt() ? calibration : message;
-  require(yaml[key].isInt(), "{}: neither {} nor {}, expected pixels", file.string(), calibration, message);
-  require(yaml[key].real() >= 1.0 && yaml[key].real() <= 1e5, "{}: {} of {}, expected pixels", file.string(), key,
-          yaml[key].real());
-  return static_cast<int>(yaml[key].real());
+int size_of(const YAML::Node& yaml, const char* calibration, const char* message, const std::filesystem::path& file) {
+  const char* key = yaml_member(yaml, calibration).IsDefined() ? calibration : message;
+  const std::optional<double> pixels = yaml_number(yaml_member(yaml, key));
+  require(pixels.has_value(), "{}: neither {} nor {}, expected pixels", file.string(), calibration, message);
+  require(*pixels >= 1.0 && *pixels <= 1e5 && *pixels == std::floor(*pixels), "{}: {} of {}, expected pixels",
+          file.string(), key, *pixels);
+  return static_cast<int>(*pixels);
 }
 
 Camera camera_of_yaml(const std::filesystem::path& file) {
-  const cv::FileStorage yaml = parse_calibration(file);
+  const YAML::Node yaml = parse_yaml(read_file(file, "a camera calibration file"), file.string());
   const std::vector<double> K = numbers_of_either(yaml, "camera_matrix", {"k", "K"});
   require(K.size() == 9, "{}: {} numbers in camera_matrix: data, or k, expected 9", file.string(), K.size());
   const Camera camera{size_of(yaml, "image_width", "width", file),
@@ -77,13 +64,7 @@ Camera camera_of_yaml(const std::filesystem::path& file) {
 }  // namespace
 
 Camera read_camera_info(const std::filesystem::path& file) {
-  try {
-    return camera_of_yaml(file);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception&) {  // OpenCV's own, and those of strings that it makes too long
-    fail("{}: no YAML, expected a camera calibration file", file.string());
-  }
+  return camera_of_yaml(file);
 }
 
 Camera camera_of_option(const std::string& text) {

@@ -1,44 +1,63 @@
 #include "pipeline/text/yaml_text.hpp"
 
-#include <algorithm>
-#include <cstddef>
+#include <set>
 #include <sstream>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {
 
-void check_nesting(const std::string& text, const std::string& source) {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
-  constexpr std::size_t kLongestLine = 512;
-  constexpr std::ptrdiff_t kMostBrackets = 600;
-  // At a byte 0 within a list OpenCV's reader goes round for ever.
-  require(text.find('\0') == std::string::npos, "{}: holds a byte 0, expected text", source);
-  require(text.size() <= kMostBytes, "{}: {} bytes of YAML, expected at most {}", source, text.size(), kMostBytes);
-  const std::ptrdiff_t brackets = std::count_if(text.begin(), text.end(), [](char c) { return c == '[' || c == '{'; });
-  require(brackets <= kMostBrackets, "{}: {} brackets, expected at most {}", source, brackets, kMostBrackets);
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
-    require(end - begin <= kLongestLine, "{}: a line of {} bytes, expected at most {}", source, end - begin,
-            kLongestLine);
-    begin = end + 1;
+/// Without the lines that would be other documents, or a directive that nobody knows.
+std::string one_document(const std::string& text) {
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("---", 0) == 0 || line.rfind("%YAML", 0) == 0) continue;
+    out += line + "\n";
+  }
+  return out;
+}
+
+/// yaml-cpp keeps both, and gives the first.
+void require_names_once(const YAML::Node& map, const std::string& source) {
+  std::set<std::string> names;
+  for (const auto& entry : map) {
+    require(entry.first.IsScalar(), "{}: a name that is no text, expected names and values", source);
+    require(names.insert(entry.first.Scalar()).second, "{}: '{}' stands twice", source,
+            printable(entry.first.Scalar()));
   }
 }
 
 }  // namespace
 
-std::string yaml_for_opencv(const std::string& text, const std::string& source) {
-  check_nesting(text, source);
-  std::string out = "%YAML:1.0\n---\n";
-  bool in_list = false;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty() || line.rfind("---", 0) == 0 || line.rfind("%YAML", 0) == 0) continue;
-    if (line[0] != ' ') in_list = line[0] == '-';
-    out += (in_list ? "  " : "") + line + "\n";
+YAML::Node parse_yaml(const std::string& text, const std::string& source) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+  require(text.size() <= kMostBytes, "{}: {} bytes of YAML, expected at most {}", source, text.size(), kMostBytes);
+  YAML::Node map;
+  try {
+    map = YAML::Load(one_document(text));
+  } catch (const YAML::Exception& error) {
+    fail("{}: no YAML: {}", source, printable(error.what()));
   }
-  return out;
+  require(map.IsMap(), "{}: no YAML of names and values", source);
+  require_names_once(map, source);
+  return map;
+}
+
+YAML::Node yaml_member(const YAML::Node& map, const std::string& name) {
+  if (!map.IsDefined() || !map.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
+  for (const auto& entry : map) {
+    if (entry.first.IsScalar() && entry.first.Scalar() == name) return entry.second;
+  }
+  return YAML::Node(YAML::NodeType::Undefined);
+}
+
+std::optional<double> yaml_number(const YAML::Node& node) {
+  double number = 0.0;
+  if (!node.IsDefined() || !node.IsScalar() || !YAML::convert<double>::decode(node, number)) return std::nullopt;
+  return number;
 }
 
 }  // namespace houghstream

@@ -1,14 +1,21 @@
 #pragma once
 
+#include <yaml-cpp/yaml.h>
+
+#include <optional>
 #include <string>
 
 namespace houghstream {
 
-/// YAML as OpenCV reads it, which wants its own header, one document, and the entries of a list indented. People write
-/// no header, and ROS' tools end a message with a line of --- and do not indent. Throws InputError, which names
-/// `source`, for text that OpenCV's reader would go down into too deep: it takes 5 kB of the stack for each level. A
-/// level takes a bracket, or begins further to the right than the one above it, so that brackets and the length of
-/// lines are what is limited, and the length of all.
-std::string yaml_for_opencv(const std::string& text, const std::string& source);
+/// The map of names and values that a YAML file holds, as people, OpenCV and ROS write it: without a header or with
+/// OpenCV's (%YAML:1.0), and with lines of ---, by which ROS' tools end a message. Throws InputError, which names
+/// `source`, for what is no YAML, no such map or larger than a MiB, and for a name that stands twice in it.
+YAML::Node parse_yaml(const std::string& text, const std::string& source);
+
+/// What stands in `map` under the name; a node that is not defined where there is nothing, or `map` is no map.
+YAML::Node yaml_member(const YAML::Node& map, const std::string& name);
+
+/// Nothing where the node is no number.
+std::optional<double> yaml_number(const YAML::Node& node);
 
 }  // namespace houghstream

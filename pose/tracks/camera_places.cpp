@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -43,59 +43,75 @@ struct Link {
 using Links = std::map<std::string, Link>;
 
 template <int Count>
-Eigen::Matrix<double, Count, 1> numbers_of(const cv::FileNode& node, const std::string& of) {
+Eigen::Matrix<double, Count, 1> numbers_of(const YAML::Node& node, const std::string& of) {
   Eigen::Matrix<double, Count, 1> out;
-  require(node.isSeq() && node.size() == Count, "{}: expected {} numbers", of, Count);
+  require(node.IsDefined() && node.IsSequence() && node.size() == Count, "{}: expected {} numbers", of, Count);
   for (int i = 0; i < Count; ++i) {
-    require(node[i].isReal() || node[i].isInt(), "{}: expected {} numbers", of, Count);
-    out[i] = node[i].real();
+    const std::optional<double> number = yaml_number(node[i]);
+    require(number.has_value(), "{}: expected {} numbers", of, Count);
+    out[i] = *number;
   }
   return out;
 }
 
-double number_of(const cv::FileNode& node, const char* key, const std::string& of) {
-  require(node[key].isReal() || node[key].isInt(), "{}: no number {}", of, key);
-  return node[key].real();
+double number_of(const YAML::Node& node, const char* key, const std::string& of) {
+  const std::optional<double> number = yaml_number(yaml_member(node, key));
+  require(number.has_value(), "{}: no number {}", of, key);
+  return *number;
 }
 
 /// What has a damaged name, or one that another has too, would be left out without a word.
-void require_names(const cv::FileNode& map, const std::set<std::string>& known, const std::string& of) {
+void require_names(const YAML::Node& map, const std::set<std::string>& known, const std::string& of) {
   std::set<std::string> names;
-  for (const cv::FileNode& node : map) {
-    const std::string name = node.name();
+  for (const auto& entry : map) {
+    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
     require(known.count(name) > 0, "{}: '{}', expected one of {}", of, printable(name), fmt::join(known, ", "));
     require(names.insert(name).second, "{}: '{}' stands twice", of, name);
   }
 }
 
-Links links_of(const cv::FileStorage& yaml, const std::string& file) {
-  Links links;
-  const cv::FileNode cameras = yaml["cameras"];
-  const cv::FileNode transforms = yaml["transforms"];
-  // What is in a list has no name that could be asked for.
-  require((cameras.isNone() || cameras.isMap()) && (transforms.isNone() || transforms.isSeq()),
-          "{}: expected 'cameras:' with names, or a list of 'transforms:'", file);
-  for (const cv::FileNode& node : cameras) {
-    const std::string of = fmt::format("{}: camera {}", file, node.name());
-    require(links.count(node.name()) == 0, "{} stands twice", of);
-    const std::string parent = node["parent"].isString() ? std::string(node["parent"]) : "world";
-    links[node.name()] = {parent, rigid(numbers_of<3>(node["translation"], of + ": translation"),
-                                        numbers_of<4>(node["rotation"], of + ": rotation"), of)};
+void add_cameras(const YAML::Node& cameras, const std::string& file, Links& links) {
+  for (const auto& entry : cameras) {
+    require(entry.first.IsScalar(), "{}: a camera whose name is no text", file);
+    const std::string& name = entry.first.Scalar();
+    const YAML::Node& node = entry.second;
+    const std::string of = fmt::format("{}: camera {}", file, printable(name));
+    require(links.count(name) == 0, "{} stands twice", of);
+    require(node.IsMap(), "{}: expected translation and rotation", of);
+    const YAML::Node parent = yaml_member(node, "parent");
+    links[name] = {parent.IsDefined() && parent.IsScalar() ? parent.Scalar() : "world",
+                   rigid(numbers_of<3>(yaml_member(node, "translation"), of + ": translation"),
+                         numbers_of<4>(yaml_member(node, "rotation"), of + ": rotation"), of)};
     require_names(node, {"parent", "translation", "rotation"}, of);
   }
-  for (const cv::FileNode& node : transforms) {
-    require(node["child_frame_id"].isString() && node["header"]["frame_id"].isString(),
+}
+
+void add_transforms(const YAML::Node& transforms, const std::string& file, Links& links) {
+  for (const auto& node : transforms) {
+    const YAML::Node child = yaml_member(node, "child_frame_id");
+    const YAML::Node parent = yaml_member(yaml_member(node, "header"), "frame_id");
+    require(child.IsDefined() && child.IsScalar() && parent.IsDefined() && parent.IsScalar(),
             "{}: a transform without header.frame_id and child_frame_id", file);
-    const std::string child = node["child_frame_id"];
-    const std::string of = fmt::format("{}: frame {}", file, child);
-    const cv::FileNode t = node["transform"]["translation"];
-    const cv::FileNode q = node["transform"]["rotation"];
-    links[child] = {
-        std::string(node["header"]["frame_id"]),
+    const std::string of = fmt::format("{}: frame {}", file, printable(child.Scalar()));
+    const YAML::Node t = yaml_member(yaml_member(node, "transform"), "translation");
+    const YAML::Node q = yaml_member(yaml_member(node, "transform"), "rotation");
+    links[child.Scalar()] = {
+        parent.Scalar(),
         rigid({number_of(t, "x", of), number_of(t, "y", of), number_of(t, "z", of)},
               {number_of(q, "w", of), number_of(q, "x", of), number_of(q, "y", of), number_of(q, "z", of)}, of)};
   }
-  if (!links.empty()) require_names(yaml.root(), {"cameras", "transforms"}, file);
+}
+
+Links links_of(const YAML::Node& yaml, const std::string& file) {
+  Links links;
+  const YAML::Node cameras = yaml_member(yaml, "cameras");
+  const YAML::Node transforms = yaml_member(yaml, "transforms");
+  // What is in a list has no name that could be asked for.
+  require((!cameras.IsDefined() || cameras.IsMap()) && (!transforms.IsDefined() || transforms.IsSequence()),
+          "{}: expected 'cameras:' with names, or a list of 'transforms:'", file);
+  if (cameras.IsDefined()) add_cameras(cameras, file, links);
+  if (transforms.IsDefined()) add_transforms(transforms, file, links);
+  if (!links.empty()) require_names(yaml, {"cameras", "transforms"}, file);
   return links;
 }
 
@@ -108,21 +124,6 @@ Eigen::Isometry3d chained(const Links& links, const std::string& camera, const s
     T = link->second.T_parent_child * T;
   }
   return T;
-}
-
-cv::FileStorage parse_yaml(const std::filesystem::path& file) {
-  const std::string text = yaml_for_opencv(read_file(file, "a YAML file of camera poses"), file.string());
-  return {text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML};
-}
-
-Links read_links(const std::filesystem::path& file) {
-  try {
-    return links_of(parse_yaml(file), file.string());
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception&) {  // OpenCV's own, where a name stands for something else than expected too
-    fail("{}: no YAML, expected 'cameras:' or 'transforms:'", file.string());
-  }
 }
 
 }  // namespace
@@ -177,7 +178,8 @@ CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) cons
 
 std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file) {
   constexpr std::size_t kMostFrames = 1024;  // each may hang on all others
-  const Links links = read_links(file);
+  const Links links =
+      links_of(parse_yaml(read_file(file, "a YAML file of camera poses"), file.string()), file.string());
   require(!links.empty(), "{}: neither 'cameras:' nor 'transforms:', expected poses of cameras", file.string());
   require(links.size() <= kMostFrames, "{}: poses of {} frames, expected at most {}", file.string(), links.size(),
           kMostFrames);

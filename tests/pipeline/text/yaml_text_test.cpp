@@ -2,36 +2,46 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/base/checks.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream {
 namespace {
 
-const std::string kHeader = "%YAML:1.0\n---\n";
-
-TEST(YamlText, HasOneHeaderWhetherItHadOneOrNot) {
-  EXPECT_EQ(yaml_for_opencv("a: 1\n", "a.yaml"), kHeader + "a: 1\n");
-  EXPECT_EQ(yaml_for_opencv("%YAML:1.0\n---\na: 1", "a.yaml"), kHeader + "a: 1\n");
-  EXPECT_EQ(yaml_for_opencv("", "a.yaml"), kHeader);
+TEST(YamlText, IsReadWithAHeaderOrWithoutAndWithWhatEndsAMessage) {
+  for (const char* text : {"a: 1\n", "%YAML:1.0\n---\na: 1", "%YAML 1.2\n---\na: 1\n---\n"})
+    EXPECT_EQ(yaml_number(yaml_member(parse_yaml(text, "a.yaml"), "a")), 1.0) << text;
 }
 
-TEST(YamlText, ListsAreIndentedAndWhatEndsAMessageGoes) {
-  EXPECT_EQ(yaml_for_opencv("k:\n- 1\n- x: 2\n  y: 3\nb: 4\n---\n", "a.yaml"),
-            kHeader + "k:\n  - 1\n  - x: 2\n    y: 3\nb: 4\n");
+TEST(YamlText, ListsNeedNoIndent) {
+  const YAML::Node map = parse_yaml("k:\n- 1\n- x: 2\n  y: [3, .5]\nb: !!opencv-matrix\n  rows: 3\n", "a.yaml");
+  const YAML::Node list = yaml_member(map, "k");
+  ASSERT_TRUE(list.IsSequence());
+  EXPECT_EQ(yaml_number(list[0]), 1.0);
+  EXPECT_EQ(yaml_number(yaml_member(list[1], "x")), 2.0);
+  EXPECT_EQ(yaml_number(yaml_member(list[1], "y")[1]), 0.5);
+  EXPECT_EQ(yaml_number(yaml_member(yaml_member(map, "b"), "rows")), 3.0);
 }
 
-TEST(YamlText, AByteZeroIsRefused) {
-  EXPECT_THROW(yaml_for_opencv(std::string("a: [0,\0\0\n", 10), "a.yaml"), InputError);
+TEST(YamlText, WhatIsNotThereIsNoNumber) {
+  const YAML::Node map = parse_yaml("a: text\nb: [1]\nc:\n", "a.yaml");
+  for (const char* name : {"a", "b", "c", "d"}) EXPECT_FALSE(yaml_number(yaml_member(map, name)).has_value()) << name;
+  EXPECT_FALSE(yaml_member(yaml_member(map, "a"), "deeper").IsDefined());
+  EXPECT_FALSE(yaml_member(yaml_member(map, "d"), "deeper").IsDefined());
 }
 
-// OpenCV's reader would need 25 MB of the stack.
-TEST(YamlText, ListsWithinListsWithoutEndAreRefused) {
+TEST(YamlText, WhatIsNoMapOfNamesIsRefusedNamingTheFile) {
   std::string brackets;
-  for (int i = 0; i < 5000; ++i) brackets += "[\n";
+  for (int i = 0; i < 5000; ++i) brackets += "[\n ";
   std::string dashes;
   for (int i = 0; i < 5000; ++i) dashes += "- ";
-  for (const std::string& deep : {brackets, dashes})
-    EXPECT_THROW(yaml_for_opencv("a: 1\nmore:\n  " + deep + "1\n", "a.yaml"), InputError);
+  for (const std::string& text :
+       {std::string(), std::string("640"), std::string("- 1\n- 2\n"), std::string("a: [1, 2"),
+        std::string("a: 1\na: 2\n"), std::string("[a]: 1\n"), std::string("a: [0,\0\0\n", 10), "a:\n  " + brackets,
+        "a:\n  " + dashes, std::string("-t\n0}\n--)\n"), std::string(1100000, '#')}) {
+    const std::string error = error_of([&] { parse_yaml(text, "a.yaml"); });
+    EXPECT_EQ(error.rfind("a.yaml: ", 0), 0U) << text.substr(0, 40) << ": " << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
 }
 
 }  // namespace
