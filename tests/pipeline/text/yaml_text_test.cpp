@@ -36,7 +36,7 @@ TEST(YamlText, WhatIsNoMapOfNamesIsRefusedNamingTheFile) {
   for (int i = 0; i < 5000; ++i) dashes += "- ";
   for (const std::string& text :
        {std::string(), std::string("640"), std::string("- 1\n- 2\n"), std::string("a: [1, 2"),
-        std::string("a: 1\na: 2\n"), std::string("[a]: 1\n"), std::string("a: [0,\0\0\n", 10), "a:\n  " + brackets,
+        std::string("a: 1\na: 2\n"), std::string("[a]: 1\n"), std::string("a: [0,\0\0\n", 9), "a:\n  " + brackets,
         "a:\n  " + dashes, std::string("-t\n0}\n--)\n"), std::string(1100000, '#')}) {
     const std::string error = error_of([&] { parse_yaml(text, "a.yaml"); });
     EXPECT_EQ(error.rfind("a.yaml: ", 0), 0U) << text.substr(0, 40) << ": " << error;
