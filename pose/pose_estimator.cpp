@@ -89,21 +89,16 @@ void choose_one(const PoseSettings& settings, Estimation& it) {
 
 /// Publishes the pose for which the evidence speaks most, or says why not.
 void verify_one(const PoseSettings& settings, Estimation& it) {
-  const QualitySettings& quality = quality_settings(it.pose.class_name, settings);
-  PoseEvidence evidence;
-  const RegistrationResult* best = nullptr;
-  float best_quality = -1.0F;
+  std::optional<ObjectPose> best;
   for (const RegistrationResult& result : it.chosen) {
-    const PoseEvidence own =
-        gather_evidence(*it.seen, result.T_camera_object, it.detection.score, settings.verification);
-    const float own_quality = pose_quality(quality_terms(own, quality), quality);
-    if (!(own_quality > best_quality)) continue;
-    evidence = own;
-    best = &result;
-    best_quality = own_quality;
+    const Eigen::Isometry3d& T_camera_object = result.T_camera_object;
+    ObjectPose judged = it.pose;
+    tell_registration(result, judged);
+    judge(gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification), T_camera_object,
+          it.detection.reported, settings, judged);
+    if (!best || judged.quality > best->quality) best = std::move(judged);
   }
-  tell_registration(*best, it.pose);
-  judge(evidence, best->T_camera_object, it.detection.reported, settings, it.pose);
+  it.pose = *std::move(best);
 }
 
 }  // namespace

@@ -41,7 +41,9 @@ int size_of(const YAML::Node& yaml, const char* calibration, const char* message
   return static_cast<int>(*pixels);
 }
 
-Camera camera_of_yaml(const std::filesystem::path& file) {
+}  // namespace
+
+Camera read_camera_info(const std::filesystem::path& file) {
   const YAML::Node yaml = parse_yaml(read_file(file, "a camera calibration file"), file.string());
   const std::vector<double> K = numbers_of_either(yaml, "camera_matrix", {"k", "K"});
   require(K.size() == 9, "{}: {} numbers in camera_matrix: data, or k, expected 9", file.string(), K.size());
@@ -59,12 +61,6 @@ Camera camera_of_yaml(const std::filesystem::path& file) {
     break;
   }
   return camera;
-}
-
-}  // namespace
-
-Camera read_camera_info(const std::filesystem::path& file) {
-  return camera_of_yaml(file);
 }
 
 Camera camera_of_option(const std::string& text) {

@@ -20,16 +20,6 @@ std::string one_document(const std::string& text) {
   return out;
 }
 
-/// yaml-cpp keeps both, and gives the first.
-void require_names_once(const YAML::Node& map, const std::string& source) {
-  std::set<std::string> names;
-  for (const auto& entry : map) {
-    require(entry.first.IsScalar(), "{}: a name that is no text, expected names and values", source);
-    require(names.insert(entry.first.Scalar()).second, "{}: '{}' stands twice", source,
-            printable(entry.first.Scalar()));
-  }
-}
-
 }  // namespace
 
 YAML::Node parse_yaml(const std::string& text, const std::string& source) {
@@ -42,16 +32,24 @@ YAML::Node parse_yaml(const std::string& text, const std::string& source) {
     fail("{}: no YAML: {}", source, printable(error.what()));
   }
   require(map.IsMap(), "{}: no YAML of names and values", source);
-  require_names_once(map, source);
+  yaml_names(map, source);
   return map;
+}
+
+std::vector<std::string> yaml_names(const YAML::Node& map, const std::string& of) {
+  std::vector<std::string> names;
+  for (const auto& entry : map) {
+    require(entry.first.IsScalar(), "{}: a name that is no text, expected names and values", of);
+    names.push_back(entry.first.Scalar());
+  }
+  std::set<std::string> seen;
+  for (const std::string& name : names) require(seen.insert(name).second, "{}: '{}' stands twice", of, printable(name));
+  return names;
 }
 
 YAML::Node yaml_member(const YAML::Node& map, const std::string& name) {
   if (!map.IsDefined() || !map.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
-  for (const auto& entry : map) {
-    if (entry.first.IsScalar() && entry.first.Scalar() == name) return entry.second;
-  }
-  return YAML::Node(YAML::NodeType::Undefined);
+  return map[name];
 }
 
 std::optional<double> yaml_number(const YAML::Node& node) {

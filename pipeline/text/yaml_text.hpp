@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace houghstream {
 
@@ -11,6 +12,10 @@ namespace houghstream {
 /// OpenCV's (%YAML:1.0), and with lines of ---, by which ROS' tools end a message. Throws InputError, which names
 /// `source`, for what is no YAML, no such map or larger than a MiB, and for a name that stands twice in it.
 YAML::Node parse_yaml(const std::string& text, const std::string& source);
+
+/// The names of the map, in their order. Throws InputError, which names `of`, where one is no text or stands twice:
+/// yaml-cpp keeps both, and gives the first.
+std::vector<std::string> yaml_names(const YAML::Node& map, const std::string& of);
 
 /// What stands in `map` under the name; a node that is not defined where there is nothing, or `map` is no map.
 YAML::Node yaml_member(const YAML::Node& map, const std::string& name);

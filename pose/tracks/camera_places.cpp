@@ -62,12 +62,8 @@ double number_of(const YAML::Node& node, const char* key, const std::string& of)
 
 /// What has a damaged name, or one that another has too, would be left out without a word.
 void require_names(const YAML::Node& map, const std::set<std::string>& known, const std::string& of) {
-  std::set<std::string> names;
-  for (const auto& entry : map) {
-    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+  for (const std::string& name : yaml_names(map, of))
     require(known.count(name) > 0, "{}: '{}', expected one of {}", of, printable(name), fmt::join(known, ", "));
-    require(names.insert(name).second, "{}: '{}' stands twice", of, name);
-  }
 }
 
 void add_cameras(const YAML::Node& cameras, const std::string& file, Links& links) {

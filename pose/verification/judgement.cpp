@@ -7,14 +7,10 @@ constexpr float kRefutedBelow = 0.5F;  // less probably there than not
 
 }  // namespace
 
-const QualitySettings& quality_settings(const std::string& class_name, const PoseSettings& settings) {
-  const auto learnt = settings.class_quality.find(class_name);
-  return learnt != settings.class_quality.end() ? learnt->second : settings.quality;
-}
-
 void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
            const PoseSettings& settings, ObjectPose& pose) {
-  const QualitySettings& quality = quality_settings(pose.class_name, settings);
+  const auto learnt = settings.class_quality.find(pose.class_name);
+  const QualitySettings& quality = learnt != settings.class_quality.end() ? learnt->second : settings.quality;
   const QualityTerms terms = quality_terms(evidence, quality);
   pose.visible_fraction = evidence.depth.visible_fraction();
   pose.free_space_violation = evidence.depth.free_space_violation();

@@ -5,9 +5,6 @@
 
 namespace houghstream {
 
-/// What poses of a class are judged by.
-const QualitySettings& quality_settings(const std::string& class_name, const PoseSettings& settings);
-
 /// Fills in what the evidence for `T_camera_object` says of `pose`: its quality, and the pose itself or the reason why
 /// it is withheld: of what is `reported` (see Detection) that the object is refuted, where it is. The class is read
 /// from `pose`.

@@ -21,8 +21,8 @@ constexpr float kStoreCandidateQuality = 0.75F;
 nlohmann::json quality_to_json(const QualitySettings& settings);
 
 /// What the store has learnt of its objects' qualities, by name; the limits of each are those of `others`. Throws
-/// InputError naming the store for a missing or unknown number. A store that was
-/// taught before presence was learnt has that of `others`.
+/// InputError naming the store for a missing or unknown number. A store that
+/// was taught before presence was learnt has that of `others`.
 std::map<std::string, QualitySettings> stored_quality(const store::ObjectStore& objects, const QualitySettings& others);
 
 /// What hs-pose needs to know of a store beside its meshes: qualities, and where detections' centres are. Poses are

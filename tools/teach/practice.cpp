@@ -143,8 +143,8 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
   for (const auto& [name, model] : models) {
     std::vector<QualityExample>& own = by_name[name];
     for (const quality::Example& example : quality::judge_examples(found, {{name, model}})) {
-      own.push_back({example.terms, example.is_right, example.of_other_print, example.score, example.is_there,
-                     half_of(example.frame)});
+      own.push_back(example);
+      own.back().half = half_of(example.frame);
     }
   }
   return by_name;

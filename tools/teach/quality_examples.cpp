@@ -27,7 +27,10 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
     for (const JudgedDetection& judged : judge_detections(found.frames, name, DetectionRules{})) {
       const std::optional<FoundTerms>& terms = found.terms[judged.frame][judged.index];
       if (!terms || judged.verdict == Verdict::kIgnored) continue;
-      Example example{found.scene, judged.frame, terms->own};
+      Example example;
+      example.scene = found.scene;
+      example.frame = judged.frame;
+      example.terms = terms->own;
       example.score = judged.score;
       if (judged.verdict == Verdict::kTrue) {
         const EvaluatedFrame& frame = found.frames[judged.frame];

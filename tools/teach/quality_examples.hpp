@@ -8,19 +8,15 @@
 #include "detector/detector.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pose/pose_estimator.hpp"
+#include "pose/verification/quality_training.hpp"
 #include "tools/evaluate/metrics/pose_metrics.hpp"
 
 namespace houghstream::quality {
 
 /// A pose that was found in a scene, judged by the truth.
-struct Example {
+struct Example : QualityExample {
   std::string scene;
   std::size_t frame = 0;  ///< of the scene
-  QualityTerms terms;
-  bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
-  bool is_there = false;  ///< the object that was detected, whether the pose is right or not
-  float score = 0.0F;     ///< of the detection
-  std::optional<QualityTerms> of_other_print = std::nullopt;  ///< of a right pose, see evidence_of_other_print()
 };
 
 /// What a pose that was found is judged by.

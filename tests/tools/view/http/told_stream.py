@@ -71,7 +71,7 @@ def poses_message(utime, channel, objects):
         pose.class_id, pose.class_name, pose.detection_score, pose.detection_index = index + 1, name, score, index
         valid = status == object_pose_t.VALID
         pose.status, pose.trans, pose.quat = status, [0.1, 0.0, 0.9] if valid else [NAN] * 3, [1.0, 0.0, 0.0, 0.0] if valid else [NAN] * 4
-        pose.converged, pose.quality, pose.visible_fraction, pose.residual_m = 1, 0.9 if valid else 0.49, 0.75, 0.002
+        pose.converged, pose.quality, pose.visible_fraction, pose.residual_m = 1, 0.9 if valid else 0.1, 0.75, 0.002
         message.poses.append(pose)
     message.n_poses = len(message.poses)
     message.stages = stages(("detect.leaves", 12.5), ("pose.registration", 7.5))
