@@ -45,7 +45,7 @@ PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<Placed
 /// stands is left there: most maxima are of that kind, and aligning takes longer than all else about them.
 void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, std::vector<PlacedView>& compared,
                   Evidence& evidence) {
-  constexpr float kHopeless = 0.05F;  // score
+  constexpr float kHopeless = 0.02F;  // score: votes bring hidden objects views that hardly fit
   if (compared.empty()) return;
   evidence.fit = best_unaligned(compared).fit;
   if (score(input.forest.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;

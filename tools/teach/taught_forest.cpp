@@ -22,9 +22,13 @@ Forest train_taught(const std::vector<TrainingView>& views, const std::optional<
                     const TeachOptions& options, const std::function<void(const std::string&)>& report) {
   constexpr double kToneShare = 0.7;  // see TrainingSettings
   constexpr int kPatches = 26000;     // of an object: what trees are grown of, and how long that takes
-  constexpr int kFewestPatches = 40;
+  constexpr int kFewestPatches = 100;
   constexpr int kMostPatches = 250;
   constexpr int kViewsPerPicture = 2;  // a remembered view costs a tenth of one that trees learn from
+  // Many attitudes want many patches and small leaves; that fewer of them choose a test pays for it.
+  constexpr int kNodeSamples = 700;
+  constexpr int kTestsPerNode = 1000;
+  constexpr int kFewestOfLeaf = 10;
   Profile profile = options.profile;
   if (old) {
     profile = training::profile_of(*old);
@@ -41,6 +45,9 @@ Forest train_taught(const std::vector<TrainingView>& views, const std::optional<
   profile.training.views_per_picture = kViewsPerPicture;
   const int pictures = std::max(most_views(views) / kViewsPerPicture, 1);
   profile.training.patches_per_view = std::clamp(kPatches / pictures, kFewestPatches, kMostPatches);
+  profile.training.node_samples = kNodeSamples;
+  profile.training.tests_per_node = kTestsPerNode;
+  profile.training.min_samples = kFewestOfLeaf;
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
   return old ? training::add_objects(*old, views, profile, report) : training::train_forest(views, profile, report);
