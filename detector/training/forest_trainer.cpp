@@ -134,6 +134,18 @@ void learn_scores(const Rooms& rooms, const Profile& profile, const Progress& pr
   train_score_model(frames, class_ids, first_view, profile, forest);
 }
 
+/// The set of what trees learn from. Views that the score will not ask for are let go as soon as they are in it.
+TrainingSet make_set(const Rooms& rooms, const Profile& profile, std::vector<TrainingView>& views) {
+  const bool keep = learns_scores(profile.training);
+  return make_training_set(rooms.for_trees, profile, [&](const TrainingView* done) {
+    if (keep) return;
+    TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
+    view.frame.colour.release();
+    view.frame.depth.release();
+    view.mask.release();
+  });
+}
+
 /// Gives the views class numbers that the forest has not used yet. Throws InputError for a name that it knows.
 void number_after(const Forest& old, std::vector<TrainingView>& views) {
   int largest = 0;
@@ -150,11 +162,11 @@ void number_after(const Forest& old, std::vector<TrainingView>& views) {
 
 }  // namespace
 
-Forest train_forest(const std::vector<TrainingView>& views, const Profile& profile, const Progress& progress) {
+Forest train_forest(std::vector<TrainingView> views, const Profile& profile, const Progress& progress) {
   require_extensions(profile.features, fmt::format("profile '{}'", profile.name));
   const TrainingSettings& settings = profile.training;
   const Rooms rooms = share_rooms(views, settings);
-  TrainingSet set = make_training_set(rooms.for_trees, profile);
+  TrainingSet set = make_set(rooms, profile, views);
   progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.pictures.size(),
                        set.classes.size(), set.layout.planes()));
   const std::size_t before = set.samples.size();
@@ -183,7 +195,7 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
           "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
   number_after(old, views);
   const Rooms rooms = share_rooms(views, profile.training);
-  TrainingSet set = make_training_set(rooms.for_trees, profile);
+  TrainingSet set = make_set(rooms, profile, views);
   set.first_class = static_cast<std::uint16_t>(old.classes.size());
   set.first_view = static_cast<std::uint32_t>(old.views.size());
   progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.pictures.size(),

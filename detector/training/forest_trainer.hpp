@@ -14,7 +14,7 @@ namespace houghstream::training {
 /// bit for bit, for any number of threads. `progress` is called with one line per finished step, from any thread
 /// but never from two at once.
 using Progress = std::function<void(const std::string&)>;
-Forest train_forest(const std::vector<TrainingView>& views, const Profile& profile, const Progress& progress);
+Forest train_forest(std::vector<TrainingView> views, const Profile& profile, const Progress& progress);
 
 /// Teaches the objects in `views` to a forest that keeps what it knows: patches of the new objects follow the old trees
 /// and leaves that they reach go on growing; nothing of the old objects' training is needed. `profile` must be that

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "detector/training/forest_trainer.hpp"
 
@@ -18,8 +19,8 @@ int most_views(const std::vector<TrainingView>& views) {
 
 }  // namespace
 
-Forest train_taught(const std::vector<TrainingView>& views, const std::optional<Forest>& old,
-                    const TeachOptions& options, const std::function<void(const std::string&)>& report) {
+Forest train_taught(std::vector<TrainingView> views, const std::optional<Forest>& old, const TeachOptions& options,
+                    const std::function<void(const std::string&)>& report) {
   constexpr double kToneShare = 0.7;  // see TrainingSettings
   constexpr int kPatches = 26000;     // of an object: what trees are grown of, and how long that takes
   constexpr int kFewestPatches = 100;
@@ -50,7 +51,8 @@ Forest train_taught(const std::vector<TrainingView>& views, const std::optional<
   profile.training.min_samples = kFewestOfLeaf;
   profile.training.seed = options.seed;
   profile.training.threads = options.threads;
-  return old ? training::add_objects(*old, views, profile, report) : training::train_forest(views, profile, report);
+  return old ? training::add_objects(*old, std::move(views), profile, report)
+             : training::train_forest(std::move(views), profile, report);
 }
 
 }  // namespace houghstream::teach

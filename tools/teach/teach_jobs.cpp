@@ -219,7 +219,7 @@ void teach_meshes(const TeachOptions& options) {
   progress(fmt::format("{} pictures of rooms read", views.size()));
   std::vector<TrainingView> of_objects = make_views(meshes, options, made, progress);
   std::move(of_objects.begin(), of_objects.end(), std::back_inserter(views));
-  Forest forest = train_taught(views, old.forest, options, progress);
+  Forest forest = train_taught(std::move(views), old.forest, options, progress);
   take_ids(made, forest);
   std::set<int> new_ids;
   for (NamedModel& model : models_of(meshes)) {

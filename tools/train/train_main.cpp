@@ -134,10 +134,10 @@ void train(const TrainingSources& sources, const Profile& profile, const std::op
   const auto progress = [&](const std::string& line) {
     fmt::print(stderr, "{}: {:6.1f} s  {}\n", program, seconds(), line);
   };
-  const std::vector<TrainingView> views = read_training_sources(sources, profile.training.threads);
+  std::vector<TrainingView> views = read_training_sources(sources, profile.training.threads);
   progress(fmt::format("{} views and backgrounds read", views.size()));
-  const Forest forest =
-      old ? training::add_objects(*old, views, profile, progress) : training::train_forest(views, profile, progress);
+  const Forest forest = old ? training::add_objects(*old, std::move(views), profile, progress)
+                            : training::train_forest(std::move(views), profile, progress);
   save_forest(forest, out);
   fmt::print("train_seconds {:.1f}\n", seconds());
 }

@@ -101,7 +101,8 @@ void take_samples(std::vector<TrainingPicture>& pictures, TrainingSet& set) {
 
 }  // namespace
 
-TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile) {
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile,
+                              const std::function<void(const TrainingView*)>& is_done) {
   const TrainingSettings& settings = profile.training;
   TrainingSet set;
   set.layout = FeatureLayout(profile.features);
@@ -120,6 +121,13 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
   }
   const int copies = settings.composites_per_view;
   const std::vector<std::size_t> pictured = views_in_pictures(labels, settings.views_per_picture);
+  for (std::size_t v = 0, next = 0; v < objects.size(); ++v) {
+    if (next < pictured.size() && pictured[next] == v) {
+      ++next;
+    } else {
+      is_done(objects[v]);
+    }
+  }
   const int object_count = static_cast<int>(pictured.size()) * copies;
   const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundPictures;
   std::vector<TrainingPicture> pictures(static_cast<std::size_t>(total));
@@ -133,6 +141,7 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
       const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
       picture = object_picture({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, profile,
                                random, workspaces[worker]);
+      if (copies == 1) is_done(objects[v]);
     } else {
       const int b = i - object_count;
       const RgbdFrame& background = backgrounds[static_cast<std::size_t>(b / kBackgroundPictures)]->frame;

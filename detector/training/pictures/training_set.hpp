@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,10 @@ struct TrainingSet {
 };
 
 /// Puts every view into several backgrounds, computes features and draws patches (paper, Section 4: 250 an image).
-/// Throws InputError when a class or the background is missing or a mask is empty.
-TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile);
+/// Throws InputError when a class or the background is missing or a mask is empty. `is_done` is called, from any
+/// thread, when what an object's view shows is needed no more: it may be let go, as all views together are a third as
+/// large as the set. It is not called for views of several composites.
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile,
+                              const std::function<void(const TrainingView*)>& is_done);
 
 }  // namespace houghstream::training

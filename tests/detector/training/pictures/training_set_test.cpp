@@ -23,6 +23,8 @@ std::vector<TrainingView> flat_tile() {
   return views;
 }
 
+const auto kKeepAll = [](const TrainingView*) {};
+
 TrainingSet teach(const std::vector<TrainingView>& views, float distance, int threads = 2) {
   Profile profile = toy::quick_profile();
   profile.training.min_distance = distance;
@@ -31,7 +33,7 @@ TrainingSet teach(const std::vector<TrainingView>& views, float distance, int th
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  return make_training_set(pointers, profile);
+  return make_training_set(pointers, profile, kKeepAll);
 }
 
 TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
@@ -128,7 +130,7 @@ TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  const TrainingSet set = make_training_set(pointers, profile);
+  const TrainingSet set = make_training_set(pointers, profile, kKeepAll);
   EXPECT_EQ(set.views.size(), teach(views, 0.8F).views.size());
   std::set<std::uint32_t> with_patches;
   for (const TrainingSample& sample : set.samples) {
@@ -138,6 +140,28 @@ TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
   std::set<std::uint32_t> classes;
   for (const std::uint32_t view : with_patches) classes.insert(set.views[view].class_index);
   EXPECT_EQ(classes.size(), 2U);
+}
+
+TEST(TrainingSet, ViewsThatAreDoneMayLetTheirPicturesGo) {
+  std::vector<TrainingView> views = toy::training_views();
+  Profile profile = toy::quick_profile();
+  profile.training.views_per_picture = 2;
+  profile.training.composites_per_view = 1;
+  std::vector<const TrainingView*> pointers;
+  pointers.reserve(views.size());
+  for (const TrainingView& view : views) pointers.push_back(&view);
+  const TrainingSet kept = make_training_set(pointers, profile, kKeepAll);
+  const TrainingSet let_go = make_training_set(pointers, profile, [&](const TrainingView* done) {
+    TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
+    EXPECT_GT(view.class_id, 0) << "a room, which other pictures want too";
+    EXPECT_FALSE(view.mask.empty()) << "done twice";
+    view.frame = {};
+    view.mask.release();
+  });
+  for (const TrainingView& view : views) EXPECT_EQ(view.mask.empty(), true) << view.source;
+  ASSERT_EQ(kept.samples.size(), let_go.samples.size());
+  for (std::size_t i = 0; i < kept.samples.size(); ++i)
+    EXPECT_EQ(kept.samples[i].offset, let_go.samples[i].offset) << "sample " << i;
 }
 
 TEST(TrainingSet, WhatCannotBeTaughtIsRefused) {
