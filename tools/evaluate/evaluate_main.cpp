@@ -93,8 +93,9 @@ std::vector<std::string> listed_classes(const EvaluateOptions& options, const st
   return {listed.names.begin(), listed.names.end()};
 }
 
-void search_in_process(const EvaluateOptions& options, Forest forest, const std::map<std::string, Mesh>& meshes,
-                       std::vector<OpenScene>& scenes) {
+/// Returns from which score on detections are listed.
+float search_in_process(const EvaluateOptions& options, Forest forest, const std::map<std::string, Mesh>& meshes,
+                        std::vector<OpenScene>& scenes) {
   PublishingRules rules;
   rules.score = options.rules.operating_score;
   if (!options.operating_score) rules.candidates_from = kCandidatesFrom;
@@ -102,6 +103,7 @@ void search_in_process(const EvaluateOptions& options, Forest forest, const std:
   const DetectionSettings settings = options.search.settings_for(forest);
   InProcess process(std::move(forest), settings, options.search.engine(), meshes, rules);
   for (OpenScene& it : scenes) process.run(it.scene, it.frames);
+  return process.ranked_from();
 }
 
 void add_log(const EvaluateOptions& options, bool check_names, const NamedSide& truth, OpenScene& it) {
@@ -157,7 +159,7 @@ void run(EvaluateOptions options) {
   choose_frames(options, scenes);
   if (options.log.empty()) {
     options.rules.min_quality = options.pose.quality.least;
-    search_in_process(options, *std::move(forest), meshes, scenes);
+    options.rules.ranked_from = search_in_process(options, *std::move(forest), meshes, scenes);
   }
   const SceneFigures figures =
       measure_scenes(scenes, classes, make_scored_models(options.known.models, meshes, classes), options.rules,

@@ -111,6 +111,10 @@ InProcess::InProcess(Forest forest, const DetectionSettings& settings, const Eng
 
 InProcess::~InProcess() = default;
 
+float InProcess::ranked_from() const {
+  return state_->detector.settings().evidence.threshold;
+}
+
 void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) {
   ProgressLine progress("search", static_cast<double>(frames.size()));
   for (EvaluatedFrame& out : frames) {

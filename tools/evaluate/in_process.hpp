@@ -29,6 +29,9 @@ class InProcess {
             const std::map<std::string, Mesh>& models, const PublishingRules& rules);
   ~InProcess();
 
+  /// The least score of the detections that run() lists.
+  float ranked_from() const;
+
   /// Fills in the results of these frames of the scene: all detections, without their rotations, and whether each would
   /// be reported or be a candidate; the poses that would be published, those of detections that would not be sent being
   /// kLowScore; the poses of all from PoseSettings::min_score on.

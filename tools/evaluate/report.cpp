@@ -27,13 +27,18 @@ OrderedJson to_json(const std::vector<double>& values_ms) {
   return {{"p50", number(p.p50)}, {"p95", number(p.p95)}, {"p99", number(p.p99)}};
 }
 
+OrderedJson number_or_null(const std::optional<float>& value) {
+  return value ? number(static_cast<double>(*value)) : OrderedJson(nullptr);
+}
+
 OrderedJson rules_json(const EvaluationRules& rules) {
   return {{"min_iou", rules.detection.min_iou},
           {"min_visible", rules.detection.min_visible},
           {"max_per_class", rules.detection.max_per_class},
           {"operating_score", number(static_cast<double>(rules.operating_score))},
           {"pose_min_visible", rules.pose_min_visible},
-          {"min_quality", rules.min_quality ? number(static_cast<double>(*rules.min_quality)) : OrderedJson(nullptr)},
+          {"ranked_from", number_or_null(rules.ranked_from)},
+          {"min_quality", number_or_null(rules.min_quality)},
           {"skipped_frames", rules.processed_only ? "left out" : "missed"}};
 }
 
@@ -204,6 +209,9 @@ std::string summary_table(const Evaluation& evaluation, const EvaluationRules& r
   text +=
       fmt::format("{:<28}{:>8.3f}{:>28.3f}\n", "mean", mean_auc(evaluation.classes), mean_of(evaluation.add_s_recall));
   text += fmt::format("{:<28}{:>8.3f}\n", "weighted by objects", weighted_auc(evaluation.classes));
+  if (rules.ranked_from)
+    text += fmt::format("AUC of detections from score {} on, what scores less is missed (--threshold)\n",
+                        *rules.ranked_from);
   if (evaluation.localisation) {
     const AverageRecall& all = evaluation.localisation->all;
     text += fmt::format("{:<28}{:>8.3f} of {} targets (VSD {:.3f}, MSSD {:.3f}, MSPD {:.3f})\n", "AR (BOP 2019)",

@@ -144,10 +144,13 @@ TEST(EvaluationReport, TheRulesAreFollowed) {
   EvaluationRules rules;
   rules.processed_only = true;
   rules.operating_score = 0.5F;
+  rules.ranked_from = 0.25F;
   const Evaluation evaluation = evaluate(two_frames(), {"mug"}, {}, rules);
   EXPECT_EQ(evaluation.classes[0].auc, 1.0);
   EXPECT_EQ(evaluation.false_detections, 0);
   EXPECT_TRUE(evaluation.poses.empty());
+  EXPECT_EQ(summary_json(evaluation, rules, std::nullopt)["rules"]["ranked_from"], 0.25);
+  EXPECT_NE(summary_table(evaluation, rules).find("from score 0.25 on"), std::string::npos);
 }
 
 TEST(EvaluationReport, FilesAreWrittenAsStated) {

@@ -57,6 +57,18 @@ int count_poses(const std::optional<ObjectPoses>& poses) {
                                         [](const ObjectPose& pose) { return pose.T_camera_object.has_value(); }));
 }
 
+TEST(InProcess, SaysFromWhichScoreOnDetectionsAreListed) {
+  PublishingRules rules;
+  rules.score = 0.5F;
+  const auto ranked_from = [&](float threshold) {
+    return InProcess(toy_forest(), settings_from(threshold), fast_engine(), plates(), rules).ranked_from();
+  };
+  EXPECT_EQ(ranked_from(0.75F), 0.5F) << "what would be sent is listed in any case";
+  EXPECT_EQ(ranked_from(0.1F), 0.1F);
+  rules.candidates_from = 0.2F;
+  EXPECT_EQ(ranked_from(0.75F), 0.2F);
+}
+
 TEST(InProcess, PosesOfWeakDetectionsAreKnownButNotPublished) {
   const BopScene scene = two_tiles("in_process_weak");
   PublishingRules rules;
