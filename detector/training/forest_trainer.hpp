@@ -12,7 +12,7 @@ namespace houghstream::training {
 
 /// Teaches the objects in `views` (backgrounds are those of class_id 0). Same views, settings and seed: same forest,
 /// bit for bit, for any number of threads. `progress` is called with one line per finished step, from any thread
-/// but never from two at once.
+/// but never from two at once. The views' pictures are let go as soon as nothing needs them.
 using Progress = std::function<void(const std::string&)>;
 Forest train_forest(std::vector<TrainingView> views, const Profile& profile, const Progress& progress);
 

@@ -18,8 +18,8 @@ struct EvaluationRules {
   float operating_score = 0.0F;
   /// Leave skipped frames out instead of counting their objects, and the poses of what was found there, as missed.
   bool processed_only = false;
-  std::optional<float>
-      ranked_from;  ///< curves and AUC know detections from this score on; nothing where others decided
+  /// Curves and AUC know detections from this score on; nothing where others decided.
+  std::optional<float> ranked_from;
   std::optional<float> min_quality;  ///< poses of lower quality were withheld; nothing where others decided that
 };
 

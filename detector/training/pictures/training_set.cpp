@@ -51,7 +51,7 @@ std::vector<ObjectClass> list_classes(const std::vector<const TrainingView*>& vi
   return classes;
 }
 
-/// One of `every` views of each class, whose labels these are.
+/// One of `every` views of each class, whose labels these are, in ascending order.
 std::vector<std::size_t> views_in_pictures(const std::vector<int>& labels, int every) {
   std::map<int, int> counts;
   std::vector<std::size_t> chosen;
@@ -121,12 +121,8 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
   }
   const int copies = settings.composites_per_view;
   const std::vector<std::size_t> pictured = views_in_pictures(labels, settings.views_per_picture);
-  for (std::size_t v = 0, next = 0; v < objects.size(); ++v) {
-    if (next < pictured.size() && pictured[next] == v) {
-      ++next;
-    } else {
-      is_done(objects[v]);
-    }
+  for (std::size_t v = 0; v < objects.size(); ++v) {
+    if (!std::binary_search(pictured.begin(), pictured.end(), v)) is_done(objects[v]);
   }
   const int object_count = static_cast<int>(pictured.size()) * copies;
   const int total = object_count + static_cast<int>(backgrounds.size()) * kBackgroundPictures;
