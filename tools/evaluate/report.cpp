@@ -27,8 +27,8 @@ OrderedJson to_json(const std::vector<double>& values_ms) {
   return {{"p50", number(p.p50)}, {"p95", number(p.p95)}, {"p99", number(p.p99)}};
 }
 
-OrderedJson number_or_null(const std::optional<double>& value) {
-  return value ? number(*value) : OrderedJson(nullptr);
+OrderedJson number_or_null(const std::optional<float>& value) {
+  return value ? number(static_cast<double>(*value)) : OrderedJson(nullptr);
 }
 
 OrderedJson rules_json(const EvaluationRules& rules) {
@@ -89,7 +89,7 @@ OrderedJson calibration_json(const Calibration& calibration) {
   for (const ProposedThreshold& proposed : calibration.proposed) {
     // In full: a rounded score would leave out the very one that it is, or let in others.
     json["proposed"].push_back({{"precision", proposed.precision},
-                                {"score", number_or_null(proposed.score)},
+                                {"score", proposed.score ? OrderedJson(*proposed.score) : OrderedJson(nullptr)},
                                 {"recall", number(proposed.recall)}});
   }
   return json;

@@ -98,6 +98,15 @@ TEST(EvaluationReport, AverageRecallsStandInTheSummaryWhereTheyWereMeasured) {
   EXPECT_NE(summary_table(evaluation, rules).find("0.400 of 2 targets"), std::string::npos);
 }
 
+TEST(EvaluationReport, ProposedScoresAreNotRounded) {
+  constexpr float kScore = 0.758051F;
+  std::vector<EvaluatedFrame> frames = two_frames();
+  frames[0].detections->detections[0].score = kScore;
+  const OrderedJson json = summary_json(evaluate(frames, {"mug"}, {}, {}), {}, {});
+  EXPECT_EQ(json["detection_calibration"]["proposed"][0]["score"].get<float>(), kScore)
+      << "a rounded one would leave out the very detection that it is of";
+}
+
 TEST(EvaluationReport, PrecisionAndRecallOfAllClassesAreThoseOfTheOperatingScore) {
   EvaluationRules rules;
   rules.operating_score = 0.5F;
