@@ -21,17 +21,16 @@ Eigen::Array4f about_grey(const Lab& lab) {
           1.0F};
 }
 
-double seen_variance(const ColourProducts& products, Eigen::Index seen) {
-  return products(seen, seen) - products(seen, kOne) * products(seen, kOne);
+double variance(const ColourProducts& products, Eigen::Index channel) {
+  return products(channel, channel) - products(channel, kOne) * products(channel, kOne);
 }
 
 /// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
 double chroma_left_over(const ColourProducts& products, Eigen::Index remembered, Eigen::Index seen) {
-  const double mean = products(remembered, kOne);
-  const double variance = products(remembered, remembered) - mean * mean;
-  const double covariance = products(remembered, seen) - mean * products(seen, kOne);
-  const double gain = std::clamp(covariance / std::max(variance, 1e-3), kLeastGain, kMostGain);
-  return std::max(0.0, seen_variance(products, seen) - gain * (2.0 * covariance - gain * variance));
+  const double own = variance(products, remembered);
+  const double covariance = products(remembered, seen) - products(remembered, kOne) * products(seen, kOne);
+  const double gain = std::clamp(covariance / std::max(own, 1e-3), kLeastGain, kMostGain);
+  return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * own));
 }
 
 /// The same for lightness on the remembered one and the surface's normal.
@@ -61,18 +60,55 @@ float chroma_conflict(const ColourProducts& products) {
   const Eigen::Vector2d own(products(kA, kOne), products(kB, kOne));
   const Eigen::Vector2d seen(products(kSeenA, kOne), products(kSeenB, kOne));
   const double strength = std::clamp(own.dot(seen) / std::max(own.squaredNorm(), 1.0), kPalest, kStrongest);
-  const double spread_sq = kPlain + seen_variance(products, kSeenA) + seen_variance(products, kSeenB);
+  const double spread_sq = kPlain + variance(products, kSeenA) + variance(products, kSeenB);
   return static_cast<float>(std::min(kMost, (seen - strength * own).norm() / std::sqrt(spread_sq)));
 }
 
-ColourComparison compare(const ColourProducts& products, int count) {
+/// The compared points, and those where the camera was at its limit.
+struct SummedColours {
+  ColourSums compared;
+  ColourSums clipped;
+};
+
+ColourComparison compare(const SummedColours& sums) {
   constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
-  const double seen = kPlainColourVariance + kLightnessWeight * seen_variance(products, kSeenLightness) +
-                      seen_variance(products, kSeenA) + seen_variance(products, kSeenB);
+  const ColourProducts products = sums.compared.means();
+  const double seen =
+      kLightnessWeight * variance(products, kSeenLightness) + variance(products, kSeenA) + variance(products, kSeenB);
+  const double own =
+      kLightnessWeight * variance(products, kLightness) + variance(products, kA) + variance(products, kB);
   const double left = kLightnessWeight * lightness_left_over(products) + chroma_left_over(products, kA, kSeenA) +
                       chroma_left_over(products, kB, kSeenB);
-  return {count, static_cast<float>(1.0 - left / seen), static_cast<float>(std::sqrt(left)), chroma_conflict(products)};
+  ColourComparison comparison;
+  comparison.points = sums.compared.count();
+  comparison.agreement = static_cast<float>(1.0 - left / (kPlainColourVariance + seen));
+  comparison.left_over = static_cast<float>(std::sqrt(left));
+  ColourSums all = sums.compared;
+  comparison.chroma_conflict = chroma_conflict((all += sums.clipped).means());
+  comparison.clipped = sums.clipped.count();
+  comparison.seen_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
+  comparison.own_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
+  return comparison;
 }
+
+/// Sums points by blocks.
+class BlockwiseSums {
+ public:
+  void add(const ComparedPoint& point) {
+    block_[count_++] = point;
+    if (count_ == block_.size()) flush();
+  }
+  const ColourSums& flush() {
+    sums_.add(block_, count_);
+    count_ = 0;
+    return sums_;
+  }
+
+ private:
+  ColourSums sums_;
+  std::array<ComparedPoint, 64> block_;
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -83,25 +119,22 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   if (seen.view.colours.empty()) return std::nullopt;
   const auto width = static_cast<float>(tolerance.at(seen.depth));
   const cv::Rect part(cv::Point(), colours.lab.size());
-  ColourSums sums;
-  std::array<ComparedPoint, 64> points;
-  std::size_t count = 0;
+  BlockwiseSums compared;
+  BlockwiseSums clipped;
   for (std::size_t i = 0; i < seen.looks.size(); ++i) {
     const Look& look = seen.looks[i];
     const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
     if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
-    if (!colours.clipped.empty() && colours.clipped.at<std::uint8_t>(inside) != 0) continue;
+    const bool at_limit = !colours.clipped.empty() && colours.clipped.at<std::uint8_t>(inside) != 0;
     const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
-    points[count++] = {about_grey(seen.view.colours[i]),
-                       about_grey(colours.lab.at<cv::Vec3b>(inside)),
-                       {normal.x(), normal.y(), normal.z(), 1.0F}};
-    if (count < points.size()) continue;
-    sums.add(points, count);
-    count = 0;
+    (at_limit ? clipped : compared)
+        .add({about_grey(seen.view.colours[i]),
+              about_grey(colours.lab.at<cv::Vec3b>(inside)),
+              {normal.x(), normal.y(), normal.z(), 1.0F}});
   }
-  sums.add(points, count);
-  if (sums.count() < kFewest) return std::nullopt;
-  return compare(sums.means(), sums.count());
+  const SummedColours sums{compared.flush(), clipped.flush()};
+  if (sums.compared.count() < kFewest) return std::nullopt;
+  return compare(sums);
 }
 
 std::optional<ColourComparison> compare_print(const SeenObject& seen, const ViewLook& look,

@@ -14,7 +14,7 @@ namespace houghstream {
 constexpr double kPlainColourVariance = 15.0;
 
 /// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
-/// and the camera was not at its limit.
+/// and, unless said otherwise, the camera was not at its limit.
 struct ColourComparison {
   int points = 0;  ///< compared
   /// 1 less the share of the seen variance that is left over, with each channel's gain (within limits) and offset free,
@@ -23,8 +23,12 @@ struct ColourComparison {
   float agreement = 0.0F;
   float left_over = 0.0F;  ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
   /// How far the mean a* and b* that are seen are from the remembered ones, at any strength (within limits) that haze
-  /// or a camera gives these: over the spread of those seen, at most 4.
+  /// or a camera gives these: over the spread of those seen, at most 4. Where the camera was at its limit too: what is
+  /// left without is edges and shade, of another hue.
   float chroma_conflict = 0.0F;
+  int clipped = 0;             ///< not compared: the camera was at its limit
+  float seen_contrast = 0.0F;  ///< standard deviation of the seen colours, the channels weighted as in `left_over`
+  float own_contrast = 0.0F;   ///< the same of the model's
 };
 
 /// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
@@ -76,6 +80,21 @@ class ColourSums {
   }
 
   int count() const { return count_; }
+
+  ColourSums& operator+=(const ColourSums& other) {
+    own_ += other.own_;
+    seen_ += other.seen_;
+    own_own_ += other.own_own_;
+    own_seen_ += other.own_seen_;
+    seen_seen_ += other.seen_seen_;
+    normal_own_ += other.normal_own_;
+    normal_seen_ += other.normal_seen_;
+    normal_x_ += other.normal_x_;
+    normal_y_ += other.normal_y_;
+    normal_z_ += other.normal_z_;
+    count_ += other.count_;
+    return *this;
+  }
 
   /// Of at least one point. Entries that were not summed are 0.
   ColourProducts means() const {

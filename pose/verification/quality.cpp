@@ -6,6 +6,21 @@
 #include "pipeline/base/log_odds.hpp"
 
 namespace houghstream {
+namespace {
+
+double print_agreement(const ColourComparison& colour) {
+  constexpr double kShading = 250.0;  // variance that highlights, shade and noise make on a plain surface
+  constexpr double kPlain = 0.7;      // agreement of most plain surfaces
+  constexpr double kLeast = -0.5;
+  const auto left_over = static_cast<double>(colour.left_over);
+  const auto seen = static_cast<double>(colour.seen_contrast);
+  const double agreement = 1.0 - left_over * left_over / (kShading + seen * seen);
+  const double compared = static_cast<double>(colour.points) / static_cast<double>(colour.points + colour.clipped);
+  return compared * std::max(kLeast, agreement) + (1.0 - compared) * kPlain;
+}
+
+}  // namespace
+
 PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, float detection_score,
                              const VerificationSettings& settings) {
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
@@ -15,11 +30,11 @@ PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_
 }
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
+  constexpr double kCameraContrastSq = 0.25;  // cameras show about half of a model's contrast
   // Added to shares and counts, so that none weighs too much where there is little of it.
   constexpr double kShare = 0.01;
   constexpr double kFraction = 0.05;
   constexpr double kCount = 3.0;
-  constexpr double kLeastAgreement = -0.5;
   constexpr double kUnknownColour = 0.8;  // of the usual agreement: no colours are no proof
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
@@ -30,11 +45,13 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   terms.outline = std::log((depth.outline_ends + kCount) / (depth.outline_continues + kCount));
   if (evidence.colour) {
     terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
-    terms.agreement = std::max(kLeastAgreement, static_cast<double>(evidence.colour->agreement));
+    terms.print = print_agreement(*evidence.colour);
     const auto left_over = static_cast<double>(evidence.colour->left_over);
     terms.left_over = -std::log(left_over * left_over + kPlainColourVariance);
+    const auto contrast = static_cast<double>(evidence.colour->own_contrast);
+    terms.contrast = -std::log(kCameraContrastSq * contrast * contrast + kPlainColourVariance);
   } else {
-    terms.agreement *= kUnknownColour;
+    terms.print *= kUnknownColour;
   }
   return terms;
 }
@@ -49,7 +66,7 @@ PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& sett
   constexpr std::array<PoseStatus, kQualityTerms.size()> kReasons = {
       PoseStatus::kLowScore,          PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByDepth,
       PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour,
-      PoseStatus::kRejectedByColour};
+      PoseStatus::kRejectedByColour,  PoseStatus::kRejectedByColour};
   const auto against = [&](std::size_t i) {
     const auto term = kQualityTerms[i];
     return settings.weights.*term * (settings.typical.*term - terms.*term);

@@ -29,29 +29,31 @@ struct QualityTerms {
   double visible = 0.0;       ///< log of the visible fraction
   double outline = 0.0;       ///< log of outline ends over outline that goes on
   double chroma_conflict = 0.0;  ///< see ColourComparison (negated)
-  double agreement = 0.0;        ///< see ColourComparison, at least -0.5
-  double left_over = 0.0;        ///< log of the variance of the seen colours that is left over (negated)
+  /// Share of the seen colours' variance that is not left over, of as much as shading alone can make of it and more:
+  /// plain things agree with little. What the camera was at its limit for counts as plain. At least -0.5.
+  double print = 0.0;
+  double left_over = 0.0;  ///< log of the variance of the seen colours that is left over (negated)
+  double contrast = 0.0;   ///< log of the variance of the model's colours there (negated): what there was to agree with
 };
 
 /// The terms in the order in which they are summed, and their names.
-inline constexpr std::array<double QualityTerms::*, 7> kQualityTerms = {
-    &QualityTerms::detection_log_odds, &QualityTerms::seen_through, &QualityTerms::visible,  &QualityTerms::outline,
-    &QualityTerms::chroma_conflict,    &QualityTerms::agreement,    &QualityTerms::left_over};
+inline constexpr std::array<double QualityTerms::*, 8> kQualityTerms = {
+    &QualityTerms::detection_log_odds, &QualityTerms::seen_through, &QualityTerms::visible,   &QualityTerms::outline,
+    &QualityTerms::chroma_conflict,    &QualityTerms::print,        &QualityTerms::left_over, &QualityTerms::contrast};
 inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames = {
-    "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "agreement", "left_over"};
+    "detection_log_odds", "seen_through", "visible", "outline", "chroma_conflict", "print", "left_over", "contrast"};
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
 /// (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least` on in scenes
-/// that the fit has not seen (a quarter in turn). They are of 1370 poses of detections from score 0.1 on in 14 frames
-/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 673 were right. A forest
-/// that was taught after that has 583 right ones of 589 from `least` on, of detections from score 0.2 on. What hs-teach
-/// learns of an object takes their place.
+/// that the fit has not seen (a quarter in turn). They are of 1361 poses of detections from score 0.1 on in 14 frames
+/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 678 were right. In scenes
+/// that the fit has not seen 595 of 612 are right from `least` on. What hs-teach learns of an object takes their place.
 struct QualitySettings {
   double bias = -5.31;
-  QualityTerms weights = {1.05, 0.50, 2.45, 0.77, 2.18, 7.42, 0.0};
+  QualityTerms weights = {1.33, 0.45, 2.08, 0.85, 2.19, 7.55, 0.54, -0.37};
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {2.16, 3.05, -0.17, 1.64, -0.23, 0.77, -4.1};
+  QualityTerms typical = {2.36, 3.06, -0.17, 1.67, -0.23, 0.80, -5.29, -5.29};
   float least = 0.8F;                ///< poses of lower quality are not published...
   float least_of_candidates = 0.8F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
   PresenceSettings presence;         ///< what the quality says of whether the object is there at all

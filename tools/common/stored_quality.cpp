@@ -14,13 +14,16 @@ nlohmann::json to_json(const QualityTerms& terms) {
 QualityTerms terms_from(const nlohmann::json& entry, const std::string& name, const std::string& where) {
   require(entry.contains(name) && entry[name].is_object(), "{}: '{}' of the quality expected, with {} terms", where,
           name, kQualityTerms.size());
-  const bool knows_left_over = entry[name].contains("left_over");  // else it was learnt without, and weighs nothing
-  const std::size_t known = kQualityTerms.size() - (knows_left_over ? 0 : 1);
-  require(entry[name].size() == known, "{}: '{}' of the quality has {} terms, expected {}", where, name,
-          entry[name].size(), known);
   QualityTerms terms;
-  for (std::size_t i = 0; i < known; ++i)
+  for (std::size_t i = 0; i < kQualityTerms.size(); ++i) {
+    require(entry[name].contains(kQualityTermNames[i]),
+            "{}: '{}' of the quality has no '{}': it was learnt from other terms; hs-teach practise learns it anew",
+            where, name, kQualityTermNames[i]);
     terms.*kQualityTerms[i] = json_number(entry[name], kQualityTermNames[i], where);
+  }
+  require(entry[name].size() == kQualityTerms.size(),
+          "{}: '{}' of the quality has {} terms, expected {}; hs-teach practise learns it anew", where, name,
+          entry[name].size(), kQualityTerms.size());
   return terms;
 }
 

@@ -28,7 +28,9 @@ float agreement(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3
 }
 
 ColourComparison agreeing_by(float share) {
-  return {100, share, 10.0F, 0.1F};
+  ColourComparison comparison;
+  comparison.agreement = share;
+  return comparison;
 }
 
 TEST(ColourScore, TheRightSideExplainsWhatIsSeenAndTheOppositeDoesNot) {
@@ -58,6 +60,7 @@ TEST(ColourScore, WhereTheCameraWasAtItsLimitNothingIsCompared) {
   frame.colour.rowRange(200, 250).setTo(cv::Scalar::all(255));  // a highlight across the box
   const ColourComparison after = compare(frame, box, kPose).value();
   EXPECT_LT(after.points, before.points - 50);
+  EXPECT_EQ(after.points + after.clipped, before.points + before.clipped);
   EXPECT_GT(after.agreement, before.agreement - 0.1F);
   frame.colour.setTo(cv::Scalar(60, 120, 255));
   EXPECT_FALSE(compare(frame, box, kPose)) << "one channel is enough";
@@ -85,6 +88,30 @@ TEST(ColourScore, PalerColoursAreNoConflictAndOthersAre) {
   EXPECT_GT(other, 2.0F);
   EXPECT_LE(other, 4.0F);
   EXPECT_GT(compare(with_saturation(frame, 0.0), box, kPose)->chroma_conflict, 1.0F) << "grey is not pale red";
+}
+
+TEST(ColourScore, TheMeanChromaIsOfWhatTheCameraWasAtItsLimitForToo) {
+  Mesh box = printed_box();
+  for (cv::Vec3b& colour : box.colours) colour = cv::Vec3b(40, 200, 220);  // yellow
+  RgbdFrame frame = coloured_frame(box, kPose, 1);
+  frame.colour.rowRange(265, 480).setTo(cv::Scalar(40, 60, 180));  // its lower edge beside something red
+  const float in_full_sight = compare(frame, box, kPose)->chroma_conflict;
+  frame.colour.rowRange(0, 260).setTo(cv::Scalar(60, 220, 255));  // all of the rest at the limit
+  const ColourComparison after = compare(frame, box, kPose).value();
+  EXPECT_GT(after.clipped, after.points);
+  EXPECT_LT(after.chroma_conflict, in_full_sight + 0.3F);
+}
+
+TEST(ColourScore, ContrastsAreOfWhatIsCompared) {
+  const Mesh box = printed_box();
+  RgbdFrame frame = coloured_frame(box, kPose, 1);
+  const ColourComparison printed = compare(frame, box, kPose).value();
+  EXPECT_GT(printed.own_contrast, 20.0F);
+  EXPECT_GT(printed.seen_contrast, printed.left_over);
+  frame.colour.setTo(cv::Scalar(90, 90, 90));
+  const ColourComparison plain = compare(frame, box, kPose).value();
+  EXPECT_LT(plain.seen_contrast, 2.0F);
+  EXPECT_EQ(plain.own_contrast, printed.own_contrast);
 }
 
 TEST(ColourScore, APrintIsJudgedWhereItAgreesBestWithinTwoPixels) {

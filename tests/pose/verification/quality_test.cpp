@@ -14,7 +14,7 @@ PoseEvidence good() {
   evidence.depth.violating = 20;
   evidence.depth.outline_ends = 150;
   evidence.depth.outline_continues = 15;
-  evidence.colour = ColourComparison{400, 0.6F, 14.0F, 0.5F};
+  evidence.colour = ColourComparison{400, 0.6F, 14.0F, 0.5F, 0, 24.0F, 40.0F};
   return evidence;
 }
 
@@ -38,7 +38,7 @@ TEST(PoseQuality, WhatWasSeenThroughSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
   evidence.depth.violating = 900;
   evidence.depth.agreeing = 900;
-  EXPECT_LT(quality(evidence), quality(good()) - 0.1F);
+  EXPECT_LT(quality(evidence), quality(good()) - 0.05F);
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByDepth);
 }
 
@@ -56,11 +56,11 @@ QualityTerms typical() {
 
 TEST(PoseQuality, AnotherPrintSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  evidence.colour->agreement = 0.0F;
+  evidence.colour->left_over = evidence.colour->seen_contrast;
   EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByColour);
   QualityTerms terms = typical();
-  terms.agreement = quality_terms(evidence, {}).agreement;
+  terms.print = quality_terms(evidence, {}).print;
   EXPECT_LT(pose_quality(terms, {}), pose_quality(typical(), {}) - 0.1F);
 }
 
@@ -76,10 +76,31 @@ TEST(PoseQuality, AnotherColourSpeaksAgainstAPose) {
 
 TEST(PoseQuality, ColoursThatContradictCountNoMoreThanAsMuch) {
   PoseEvidence evidence = good();
-  evidence.colour->agreement = -0.5F;
-  const float contradicted = quality(evidence);
-  evidence.colour->agreement = -20.0F;
-  EXPECT_EQ(quality(evidence), contradicted);
+  evidence.colour->left_over = 50.0F;
+  const double contradicted = quality_terms(evidence, {}).print;
+  EXPECT_LT(contradicted, 0.0);
+  evidence.colour->left_over = 500.0F;
+  EXPECT_EQ(quality_terms(evidence, {}).print, contradicted);
+}
+
+TEST(PoseQuality, PlainThingsAgreeWithLittle) {
+  PoseEvidence evidence = good();
+  evidence.colour->seen_contrast = 12.0F;
+  evidence.colour->left_over = 10.0F;  // of shade and highlights, most is
+  evidence.colour->own_contrast = 5.0F;
+  const QualityTerms plain = quality_terms(evidence, {});
+  EXPECT_GT(plain.print, 0.7);
+  EXPECT_GT(plain.contrast, quality_terms(good(), {}).contrast + 1.0) << "there was little to agree with";
+}
+
+TEST(PoseQuality, WhatTheCameraWasAtItsLimitForIsNoProofOfAnotherPrint) {
+  PoseEvidence evidence = good();
+  evidence.colour->left_over = evidence.colour->seen_contrast;
+  const double compared = quality_terms(evidence, {}).print;
+  evidence.colour->clipped = 3 * evidence.colour->points;
+  const double mostly_clipped = quality_terms(evidence, {}).print;
+  EXPECT_GT(mostly_clipped, compared + 0.2);
+  EXPECT_LT(mostly_clipped, 0.7) << "nor of this one";
 }
 
 TEST(PoseQuality, AWeakDetectionSpeaksAgainstAPose) {

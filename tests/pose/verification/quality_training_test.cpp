@@ -58,10 +58,10 @@ TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
   for (QualityExample& example : examples) {
     if (!example.is_right) continue;
     example.of_other_print = example.terms;
-    example.of_other_print->agreement = example.terms.agreement - 0.3;
+    example.of_other_print->print = example.terms.print - 0.3;
   }
   const QualitySettings told_apart = fit_quality_settings(examples, QualitySettings{}, 1.0);
-  EXPECT_GT(told_apart.weights.agreement, alone.weights.agreement + 0.5);
+  EXPECT_GT(told_apart.weights.print, alone.weights.print + 0.5);
   EXPECT_NEAR(told_apart.weights.outline, alone.weights.outline, 0.25);
 }
 

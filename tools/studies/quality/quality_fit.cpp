@@ -14,7 +14,7 @@
 namespace houghstream::quality {
 namespace {
 
-constexpr double kStiffness = 1e-3;  // of the prior: decides nothing but keeps the weights finite
+constexpr double kStiffness = 10.0;  // of the numbers in use, see fit_quality()
 constexpr double kRightShare = 0.98;
 constexpr int kRoundSteps = 20;  // thresholds are multiples of one over this
 
@@ -61,10 +61,7 @@ QualitySettings fit_quality(const std::vector<Example>& examples) {
   std::vector<QualityExample> judged;
   judged.reserve(examples.size());
   for (const Example& example : examples) judged.push_back({example.terms, example.is_right});
-  QualitySettings nothing;
-  nothing.bias = 0.0;
-  nothing.weights = QualityTerms{};
-  return fit_quality_settings(judged, nothing, kStiffness);
+  return fit_quality_settings(judged, QualitySettings{}, kStiffness);
 }
 
 std::vector<CheckedPose> check_by(const QualitySettings& settings, const std::vector<Example>& examples) {

@@ -41,12 +41,12 @@ TEST(QualityFit, TypicalValuesAreTheMeansOfRightPoses) {
   examples[0].terms.outline = 2.0;
   examples[0].is_right = true;
   examples[1].terms.outline = 4.0;
-  examples[1].terms.agreement = -1.0;
+  examples[1].terms.print = -1.0;
   examples[1].is_right = true;
   examples[2].terms.outline = -50.0;
   const QualityTerms typical = fit_quality(examples).typical;
   EXPECT_DOUBLE_EQ(typical.outline, 3.0);
-  EXPECT_DOUBLE_EQ(typical.agreement, -0.5);
+  EXPECT_DOUBLE_EQ(typical.print, -0.5);
   EXPECT_DOUBLE_EQ(typical.visible, 0.0);
 }
 
@@ -108,7 +108,7 @@ TEST(QualityFit, ExamplesAreJudgedByTheSettingsGiven) {
 }
 
 TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
-  EXPECT_THROW(learn_quality(drawn(8000, 4, 0.5)), InputError) << "from no quality are 98 % right";
+  EXPECT_THROW(learn_quality(drawn(8000, 4, 0.0)), InputError) << "from no quality are 98 % right";
   Learnt learnt = learn_quality(drawn(8000, 4, 10.0));
   EXPECT_EQ(std::tuple(learnt.scenes, learnt.examples), std::tuple(4, 8000));
   learnt.settings.weights = kWeights;
@@ -117,8 +117,8 @@ TEST(QualityFit, NumbersAreWrittenAsInitialisersAndJson) {
   learnt.settings.typical = {};
   EXPECT_EQ(to_initialisers(learnt.settings),
             "double bias = -3.71;\n"
-            "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00, 0.00};\n"
-            "QualityTerms typical = {0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 0.00};\n"
+            "QualityTerms weights = {1.50, 0.50, 1.00, -0.50, 2.00, 1.00, 0.00, 0.00};\n"
+            "QualityTerms typical = {0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 0.00, 0.00};\n"
             "float least = 0.60F;\n");
   const OrderedJson json = to_json(learnt);
   EXPECT_EQ(json["weights"]["chroma_conflict"], 2.0);
