@@ -68,6 +68,13 @@ float chroma_conflict(const ColourProducts& products) {
 struct SummedColours {
   ColourSums compared;
   ColourSums clipped;
+
+  /// Of both. `compared_means` is that of the former, and mostly all there is.
+  ColourProducts all_means(const ColourProducts& compared_means) const {
+    if (clipped.count() == 0) return compared_means;
+    ColourSums all = compared;
+    return (all += clipped).means();
+  }
 };
 
 ColourComparison compare(const SummedColours& sums) {
@@ -83,32 +90,12 @@ ColourComparison compare(const SummedColours& sums) {
   comparison.points = sums.compared.count();
   comparison.agreement = static_cast<float>(1.0 - left / (kPlainColourVariance + seen));
   comparison.left_over = static_cast<float>(std::sqrt(left));
-  ColourSums all = sums.compared;
-  comparison.chroma_conflict = chroma_conflict((all += sums.clipped).means());
+  comparison.chroma_conflict = chroma_conflict(sums.all_means(products));
   comparison.clipped = sums.clipped.count();
   comparison.seen_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
   comparison.own_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
   return comparison;
 }
-
-/// Sums points by blocks.
-class BlockwiseSums {
- public:
-  void add(const ComparedPoint& point) {
-    block_[count_++] = point;
-    if (count_ == block_.size()) flush();
-  }
-  const ColourSums& flush() {
-    sums_.add(block_, count_);
-    count_ = 0;
-    return sums_;
-  }
-
- private:
-  ColourSums sums_;
-  std::array<ComparedPoint, 64> block_;
-  std::size_t count_ = 0;
-};
 
 }  // namespace
 
@@ -119,20 +106,26 @@ std::optional<ColourComparison> compare_colours(const LabRegion& colours, const 
   if (seen.view.colours.empty()) return std::nullopt;
   const auto width = static_cast<float>(tolerance.at(seen.depth));
   const cv::Rect part(cv::Point(), colours.lab.size());
-  BlockwiseSums compared;
-  BlockwiseSums clipped;
+  SummedColours sums;
+  std::array<ComparedPoint, 64> points;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < seen.looks.size(); ++i) {
     const Look& look = seen.looks[i];
     const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
     if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
-    const bool at_limit = !colours.clipped.empty() && colours.clipped.at<std::uint8_t>(inside) != 0;
     const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
-    (at_limit ? clipped : compared)
-        .add({about_grey(seen.view.colours[i]),
-              about_grey(colours.lab.at<cv::Vec3b>(inside)),
-              {normal.x(), normal.y(), normal.z(), 1.0F}});
+    points[count] = {about_grey(seen.view.colours[i]),
+                     about_grey(colours.lab.at<cv::Vec3b>(inside)),
+                     {normal.x(), normal.y(), normal.z(), 1.0F}};
+    if (!colours.clipped.empty() && colours.clipped.at<std::uint8_t>(inside) != 0) {
+      sums.clipped.add(&points[count], 1);
+      continue;
+    }
+    if (++count < points.size()) continue;
+    sums.compared.add(points, count);
+    count = 0;
   }
-  const SummedColours sums{compared.flush(), clipped.flush()};
+  sums.compared.add(points, count);
   if (sums.compared.count() < kFewest) return std::nullopt;
   return compare(sums);
 }
