@@ -78,14 +78,16 @@ struct SummedColours {
 };
 
 ColourComparison compare(const SummedColours& sums) {
-  constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
+  const auto weighted = [](double lightness, double a, double b) {
+    constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
+    return kLightnessWeight * lightness + a + b;
+  };
   const ColourProducts products = sums.compared.means();
   const double seen =
-      kLightnessWeight * variance(products, kSeenLightness) + variance(products, kSeenA) + variance(products, kSeenB);
-  const double own =
-      kLightnessWeight * variance(products, kLightness) + variance(products, kA) + variance(products, kB);
-  const double left = kLightnessWeight * lightness_left_over(products) + chroma_left_over(products, kA, kSeenA) +
-                      chroma_left_over(products, kB, kSeenB);
+      weighted(variance(products, kSeenLightness), variance(products, kSeenA), variance(products, kSeenB));
+  const double own = weighted(variance(products, kLightness), variance(products, kA), variance(products, kB));
+  const double left = weighted(lightness_left_over(products), chroma_left_over(products, kA, kSeenA),
+                               chroma_left_over(products, kB, kSeenB));
   ColourComparison comparison;
   comparison.points = sums.compared.count();
   comparison.agreement = static_cast<float>(1.0 - left / (kPlainColourVariance + seen));
