@@ -220,6 +220,7 @@ std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int thre
     *places[index] = load_mesh(file);
     const auto stated = models.bounds.find(id);
     if (stated != models.bounds.end()) check_bounds(*places[index], stated->second, file.string());
+    if (!store.objects[index].coloured) remove_colour(*places[index]);
   });
   return meshes;
 }

@@ -113,6 +113,12 @@ double mesh_diameter(const Mesh& mesh) {
   return best;
 }
 
+void remove_colour(Mesh& mesh) {
+  mesh.texture.release();
+  mesh.uvs.clear();
+  mesh.colours.clear();
+}
+
 SurfacePoints sample_surface(const Mesh& mesh, int count, std::uint64_t seed) {
   require(count >= 1, "{} surface points asked for, expected at least 1", count);
   // Farthest-point choice (Eldar et al. 1997) among five times as many random points spreads them evenly.

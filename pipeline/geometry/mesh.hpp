@@ -28,6 +28,9 @@ double mesh_diameter(const Mesh& mesh);
 /// Area-weighted vertex normals from the triangles.
 void compute_normals(Mesh& mesh);
 
+/// Takes texture and colours from it.
+void remove_colour(Mesh& mesh);
+
 /// Evenly spread points on the surface with normals, deterministic for a seed.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> points;   ///< object frame, metres

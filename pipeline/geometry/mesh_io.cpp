@@ -157,10 +157,12 @@ MeshPart describe_part(const aiScene& scene, const aiMesh& part, std::size_t fir
     out.texture = file.parent_path() / texture;
   }
   aiColor3D c;
-  // Where the file names no material, the library makes up a grey one of this name, or for glTF one without a name.
+  // Where the file names no material, the library makes up a grey one of this name, of a PLY one without a name, and
+  // of glTF one that has no colour either.
   const std::string name = material.GetName().C_Str();
   const bool is_linear = is_gltf(file);
-  out.has_colour = name != AI_DEFAULT_MATERIAL_NAME && material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == aiReturn_SUCCESS;
+  const bool is_made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.empty() && !is_linear);
+  out.has_colour = !is_made_up && material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == aiReturn_SUCCESS;
   if (out.has_colour) out.colour = cv::Vec3b(to_byte(c.b, is_linear), to_byte(c.g, is_linear), to_byte(c.r, is_linear));
   return out;
 }

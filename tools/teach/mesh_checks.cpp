@@ -192,10 +192,4 @@ bool has_colour(const Mesh& mesh) {
   return brightest - darkest > kGrey + 2 * kSame;
 }
 
-void remove_colour(Mesh& mesh) {
-  mesh.texture.release();
-  mesh.uvs.clear();
-  mesh.colours.clear();
-}
-
 }  // namespace houghstream::teach

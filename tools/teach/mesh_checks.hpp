@@ -21,7 +21,4 @@ void check_symmetries(const std::string& where, const Mesh& mesh, const Symmetri
 /// False where a mesh has no colours, or one grey only, which is what programs write that know none.
 bool has_colour(const Mesh& mesh);
 
-/// Takes texture and colours from it.
-void remove_colour(Mesh& mesh);
-
 }  // namespace houghstream::teach

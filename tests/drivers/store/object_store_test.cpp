@@ -36,6 +36,8 @@ TEST(ObjectStore, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(store.symmetries.at(2).discrete.size(), 1U);
   const std::map<std::string, Mesh> meshes = load_store_meshes(store);
   EXPECT_NEAR(mesh_bounds(meshes.at("brick")).sizes().x(), 0.2F, 1e-6F);
+  EXPECT_FALSE(meshes.at("mug").colours.empty());
+  EXPECT_TRUE(meshes.at("brick").colours.empty()) << "that its file has some does not make them known";
 }
 
 TEST(ObjectStore, AnObjectThatIsNotThereIsNamedBesideThoseThatAre) {

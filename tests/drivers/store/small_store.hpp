@@ -20,8 +20,10 @@ inline void fill_store(const std::filesystem::path& folder, const std::string& s
   store.settings = {{"seed", 1}};
   Symmetries half_turn;
   half_turn.discrete.emplace_back(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
-  write_bop_models({{2, "mug", tetrahedron(0.1F), half_turn}, {5, second_name, tetrahedron(0.2F), {}}},
-                   store.models_folder());
+  Mesh mug = tetrahedron(0.1F);
+  Mesh second = tetrahedron(0.2F);
+  for (Mesh* mesh : {&mug, &second}) mesh->colours.assign(mesh->vertices.size(), {128, 128, 128});
+  write_bop_models({{2, "mug", mug, half_turn}, {5, second_name, second, {}}}, store.models_folder());
   write_text(store.forest_file(), "a forest");
   write_store_json(store);
 }

@@ -87,6 +87,16 @@ TEST(MeshFile, PlyKeepsGeometryNormalsAndColours) {
   }
 }
 
+TEST(MeshFile, PlyWithoutColoursGetsNone) {
+  const fs::path file = fresh_folder("plain") / "box.ply";
+  Mesh mesh = box_mesh();
+  mesh.colours.clear();
+  save_ply(mesh, file);
+  const Mesh back = load_mesh(file);
+  EXPECT_TRUE(back.colours.empty()) << "a grey that the file does not know";
+  EXPECT_TRUE(back.texture.empty());
+}
+
 TEST(MeshFile, PlyKeepsItsTexture) {
   const fs::path file = fresh_folder("texture") / "box.ply";
   Mesh mesh = box_mesh();
