@@ -32,10 +32,10 @@ std::vector<std::string> split(const std::string& list) {
 void add_practice_options(CommandLine& command, TeachOptions& options) {
   command
       .add_option("--practice-rooms", options.practice.rooms,
-                  "rendered rooms in which scores and qualities are learnt, three pictures of each; 6.5 MB of memory "
-                  "a room")
-      .range(3, PracticeSettings::kMostRooms)
-      .capture_default_str();
+                  fmt::format("rendered rooms in which scores and qualities are learnt, two pictures of each; 4.3 MB "
+                              "of memory a room; default {}, with each further new object more, {} of seven",
+                              rooms_for(1), rooms_for(7)))
+      .range(3, PracticeSettings::kMostRooms);
   command.add_option("--seed", options.seed, "same seed, same meshes: same store").capture_default_str();
   command.add_option("--threads", options.threads, "any number gives the same store")
       .range(1, 256)

@@ -1,5 +1,6 @@
 #include "tools/teach/practice.hpp"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "detector/detector.hpp"
@@ -23,15 +24,15 @@ constexpr double kScoreStiffness = 5.0;  // a hundred examples of an object do n
 
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
 std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>& objects,
-                                             const PracticeSettings& settings) {
+                                             const PracticeSettings& settings, int rooms) {
   std::vector<world::PracticeObject> in_room;
   in_room.reserve(objects.size());
   for (const PractisedObject& object : objects) in_room.push_back(object.in_room);
   const world::PracticeScenes scenes(std::move(in_room), settings.seed);
   constexpr int kEach = world::PracticeScenes::kFramesPerRoom;
-  std::vector<world::SceneFrame> frames(static_cast<std::size_t>(settings.rooms * kEach));
-  ProgressLine progress("practice rooms", settings.rooms);
-  parallel_for(settings.threads, settings.rooms, [&](int room) {
+  std::vector<world::SceneFrame> frames(static_cast<std::size_t>(rooms * kEach));
+  ProgressLine progress("practice rooms", rooms);
+  parallel_for(settings.threads, rooms, [&](int room) {
     int index = room * kEach;
     for (world::SceneFrame& frame : scenes.render(room)) {
       Random random = Random::for_item(settings.seed ^ kCameras, static_cast<std::uint64_t>(index));
@@ -59,8 +60,7 @@ void warn_of(const std::vector<std::string>& names, int rooms) {
 }
 
 training::ValidationSource validation_source(const std::vector<world::SceneFrame>& frames) {
-  return {static_cast<int>(frames.size()),
-          [&frames](int index) {
+  return {static_cast<int>(frames.size()), [&frames](int index) {
             const world::SceneFrame& from = frames[static_cast<std::size_t>(index)];
             training::ValidationFrame frame;
             frame.frame = from.frame;
@@ -152,6 +152,13 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
 
 }  // namespace
 
+int rooms_for(std::size_t new_objects) {
+  constexpr int kOfOne = 80;
+  constexpr int kOfEachMore = 25;
+  constexpr int kMost = 240;
+  return std::min(kOfOne + kOfEachMore * (static_cast<int>(std::min<std::size_t>(new_objects, kMost)) - 1), kMost);
+}
+
 std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,
                                     const std::vector<PractisedObject>& objects, const std::set<int>& new_ids) {
   std::set<int> seen;
@@ -169,10 +176,11 @@ std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames
 std::map<std::string, QualitySettings> practise(const std::vector<PractisedObject>& objects,
                                                 const std::set<int>& new_ids, const PracticeSettings& settings,
                                                 Forest& forest) {
-  require(settings.rooms <= PracticeSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory",
-          settings.rooms, PracticeSettings::kMostRooms);
-  const std::vector<world::SceneFrame> frames = render_frames(objects, settings);
-  warn_of(never_seen(frames, objects, new_ids), settings.rooms);
+  const int rooms = settings.rooms.value_or(rooms_for(new_ids.size()));
+  require(rooms <= PracticeSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
+          PracticeSettings::kMostRooms);
+  const std::vector<world::SceneFrame> frames = render_frames(objects, settings, rooms);
+  warn_of(never_seen(frames, objects, new_ids), rooms);
   Profile profile = training::profile_of(forest);
   profile.training.threads = settings.threads;
   const std::vector<training::ScoreExamples> examples =

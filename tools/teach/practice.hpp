@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,15 +23,19 @@ struct PractisedObject {
 };
 
 struct PracticeSettings {
-  static constexpr int kMostRooms = 500;  ///< whose pictures, 6.5 MB a room, are all in memory at once: 3 GB
+  static constexpr int kMostRooms = 500;  ///< whose pictures, 4.3 MB a room, are all in memory at once: 2 GB
 
-  int rooms = 60;                  ///< each is looked at world::PracticeScenes::kFramesPerRoom times
+  std::optional<int> rooms;  ///< each is looked at world::PracticeScenes::kFramesPerRoom times; default: rooms_for()
   double surface_variation = 0.6;  ///< strength of the changes of objects' colours, see training::resurface
   double camera_share = 0.8;       ///< of the frames, that another camera sees than the one that taught
   double camera_variation = 0.8;   ///< see detector/training/pictures/camera_variation.hpp
   std::uint64_t seed = 1;
   int threads = 2;
 };
+
+/// In how many rooms `new_objects` are practised where nobody says: as many as one more object in 60 s, and seven in
+/// five minutes, leave time for.
+int rooms_for(std::size_t new_objects);
 
 /// Names of the new objects that none of the frames shows: of such nothing can be learnt.
 std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,

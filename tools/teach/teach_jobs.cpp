@@ -95,13 +95,19 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
     object.mesh = model.mesh;
     object.vote_centre = stored.vote_centre;
     object.in_room = {model.object_id, world::make_taught_thing(model.mesh, stored.coloured),
-                      world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured};
+                      world::up_directions(model.mesh, world::parse_mesh_attitudes(stored.attitudes)), stored.coloured,
+                      new_ids.count(model.object_id) > 0};
   });
   const std::map<std::string, QualitySettings> learnt = practise(objects, new_ids, settings, forest);
   for (StoredObject& object : made.objects) {
     if (const auto found = learnt.find(object.name); found != learnt.end())
       object.quality = quality_to_json(found->second);
   }
+}
+
+std::string practice_step(const PracticeSettings& settings, std::size_t new_objects) {
+  return fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt",
+                     settings.rooms.value_or(rooms_for(new_objects)));
 }
 
 /// The forest's classes get the ids of the store.
@@ -229,7 +235,7 @@ void teach_meshes(const TeachOptions& options) {
   PracticeSettings practice = options.practice;
   practice.seed = options.seed;
   practice.threads = options.threads;
-  progress(fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt", practice.rooms));
+  progress(practice_step(practice, new_ids.size()));
   practise_all(models, new_ids, practice, forest, made);
   progress("scores and qualities learnt");
   made.settings = {{"attitudes", options.attitudes}, {"seed", options.seed}, {"profile", forest.profile}};
@@ -269,7 +275,7 @@ void practise_store(const fs::path& folder, const PracticeSettings& settings, co
   std::vector<NamedModel> models;
   keep(old, "", made, models);
   Forest forest = *old.forest;
-  progress(fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt", settings.rooms));
+  progress(practice_step(settings, ids.size()));
   practise_all(models, ids, settings, forest, made);
   write_store(made, models, forest);
   build.publish();

@@ -74,6 +74,14 @@ Eigen::Isometry3d draw_viewpoint(const World& world, Random& random) {
   return Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()) * look_at(eye, target);
 }
 
+int draw_practised(const std::vector<PracticeObject>& objects, Random& random) {
+  std::vector<int> practised;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].is_practised) practised.push_back(static_cast<int>(i));
+  }
+  return pick(random, practised);
+}
+
 }  // namespace
 
 World PracticeScenes::furnished(int room) const {
@@ -90,7 +98,7 @@ World PracticeScenes::furnished(int room) const {
   const double reach = random.uniform(0.35, 0.8);  // near together they hide one another
   const Eigen::AlignedBox2d middle = setter.region(-reach, reach, -reach, 0.8 * reach);
   const Eigen::AlignedBox2d all = setter.region(-0.95, 0.95, -0.95, 0.95);
-  const int first = random.below(static_cast<int>(objects_.size()));
+  const int first = draw_practised(objects_, random);
   const int count = std::min(static_cast<int>(objects_.size()), random.between(3, kMostObjects));
   for (int i = 0; i < count; ++i) {
     const PracticeObject& object = objects_[static_cast<std::size_t>(first + i) % objects_.size()];

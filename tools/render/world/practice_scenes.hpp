@@ -14,6 +14,7 @@ struct PracticeObject {
   ThingPtr thing;
   std::vector<Eigen::Vector3d> ups;  ///< object frame, see up_directions(); empty = any attitude
   bool has_colour = true;            ///< false: another plain colour in every room
+  bool is_practised = true;          ///< one of these stands in each room; others are company
 };
 
 /// Pictures in which taught objects are looked for before they count as taught: furnished rooms with the objects, all
@@ -22,9 +23,9 @@ struct PracticeObject {
 /// from views never are. Rooms of training seeds that neither views nor backgrounds use.
 class PracticeScenes {
  public:
-  static constexpr int kFramesPerRoom = 3;
+  static constexpr int kFramesPerRoom = 2;
 
-  /// `objects` is not empty.
+  /// One of the `objects` at least is practised.
   PracticeScenes(std::vector<PracticeObject> objects, std::uint64_t seed) : objects_(std::move(objects)), seed_(seed) {}
 
   /// Looks at room `room`, from 0, from different sides and distances. The truth names objects by PracticeObject::id.

@@ -166,7 +166,7 @@ Shown show_takes(const ShowOptions& options, const ShownFrames& frames, const Sh
 /// Into the store twice: with scores and qualities of a little practice, so that a stream that runs finds the object
 /// soon, and again when they were learnt as thoroughly as those of any other.
 void teach_shown(const ShowOptions& options, const Shown& shown, Telling& telling) {
-  constexpr int kFirstRooms = 12;
+  constexpr int kFirstRooms = 18;
   TeachOptions teach = options_to_teach(options, shown);
   PracticeSettings thorough = teach.practice;
   thorough.seed = options.seed;

@@ -125,6 +125,25 @@ TEST(PracticeScenes, LookAlikesAreNotNamedInTheTruth) {
   EXPECT_GE(named, kFrames / 2);
 }
 
+TEST(PracticeScenes, WhatIsPractisedStandsInEachRoomAmongManyOthers) {
+  constexpr int kRooms = 8;
+  std::vector<PracticeObject> objects;
+  for (int id = 1; id <= 12; ++id) {
+    objects.push_back(brick(id, {0.08, 0.08, 0.08}, {30, 30, 200}));
+    objects.back().is_practised = id == 5;
+  }
+  const PracticeScenes scenes(objects, 4);
+  int rooms = 0;
+  for (int room = 0; room < kRooms; ++room) {
+    const auto frames = scenes.render(room);
+    rooms += std::any_of(frames.begin(), frames.end(), [](const SceneFrame& frame) {
+      return std::any_of(frame.objects.begin(), frame.objects.end(),
+                         [](const TrueObject& object) { return object.object_id == 5; });
+    });
+  }
+  EXPECT_GE(rooms, kRooms - 1) << "of which a frame may look past it";
+}
+
 TEST(PracticeScenes, FramesOfOneRoomShowItFromOtherSides) {
   const PracticeScenes scenes = two_bricks(1);
   auto frames = scenes.render(0);
