@@ -61,11 +61,12 @@ float score(const ScoreModel& model, const Evidence& evidence) {
   return static_cast<float>(logistic(to_vector(model.weights).dot(to_vector(score_terms(evidence)))));
 }
 
-ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior, double stiffness) {
+ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {
   std::vector<LogisticExample<kScoreTerms>> judged;
   judged.reserve(examples.size());
   for (const ScoreExample& example : examples) judged.push_back({to_vector(example.terms), example.is_object});
-  const Vector weights = fit_logistic<kScoreTerms>(judged, {to_vector(prior.weights), stiffness});
+  constexpr double kStiffness = 1.0;
+  const Vector weights = fit_logistic<kScoreTerms>(judged, {to_vector(prior.weights), kStiffness});
   ScoreModel model;
   for (std::size_t i = 0; i < kScoreTerms; ++i) {
     model.weights.*kScoreTermList[i] = static_cast<float>(weights(static_cast<Eigen::Index>(i)));

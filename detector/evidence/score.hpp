@@ -33,8 +33,8 @@ struct ScoreExample {
   bool is_object = false;
 };
 
-/// The weights that explain the examples best (maximum a posteriori, a Gaussian of variance 1 / stiffness about each
-/// weight of `prior`): few examples move them little from there.
-ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior, double stiffness = 1.0);
+/// The weights that explain the examples best (maximum a posteriori, a Gaussian of variance 1 about each weight of
+/// `prior`): few examples move them little from there.
+ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior);
 
 }  // namespace houghstream

@@ -1,5 +1,7 @@
 #include "detector/training/score_training.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +10,7 @@
 #include "detector/stages.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 #include "detector/training/pictures/validation_frames.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::training {
@@ -57,6 +60,13 @@ ValidationFrame compose(const std::vector<const TrainingView*>& objects, const R
   return composed;
 }
 
+std::string described(const ScoreTerms& weights) {
+  std::string text;
+  for (std::size_t i = 0; i < kScoreTerms; ++i)
+    text += fmt::format(" {} {:.2f}", kScoreTermNames[i], weights.*kScoreTermList[i]);
+  return text;
+}
+
 /// What the forest offers in a frame, by the stages of Detector::detect up to the evidence.
 std::vector<Candidate> search_frame(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   if (search.forest.features.handling == ScaleHandling::kScaleSpace) {
@@ -103,8 +113,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
   return by_frame;
 }
 
-void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, double stiffness,
-                Forest& forest) {
+void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {
   ScoreExamples by_class;
   std::vector<ScoreExample> all;
   for (const ScoreExamples& part : by_frame) {
@@ -115,15 +124,16 @@ void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>&
     }
   }
   const ScoreModel common = fit_score_model(all, ScoreModel{});
+  log_debug("scores of all objects together, {} examples:{}", all.size(), described(common.weights));
   for (ObjectClass& object : forest.classes) {
     if (class_ids.count(object.class_id) == 0) continue;  // an older object, judged before
-    object.score_model = fit_score_model(by_class[object.class_id], common, stiffness);
+    object.score_model = fit_score_model(by_class[object.class_id], common);
   }
 }
 
 void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
                        const Profile& profile, Forest& forest) {
-  fit_scores(find_score_examples(source, first_view, profile, forest), class_ids, source.stiffness, forest);
+  fit_scores(find_score_examples(source, first_view, profile, forest), class_ids, forest);
 }
 
 }  // namespace houghstream::training

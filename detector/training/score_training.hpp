@@ -18,7 +18,6 @@ namespace houghstream::training {
 struct ValidationSource {
   int count = 0;
   std::function<ValidationFrame(int index)> frame;
-  double stiffness = 1.0;  ///< of an object's weights about those of all objects together, see fit_score_model
 };
 
 /// Rooms into which views are put that trees have not seen there, see TrainingSettings::validation_frames. The views
@@ -35,9 +34,8 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
                                                const Profile& profile, const Forest& forest);
 
 /// Learns the weights of the score (evidence/score_model.hpp) of each class in `class_ids`, beginning from those of all
-/// of them together. `stiffness`: see ValidationSource.
-void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, double stiffness,
-                Forest& forest);
+/// of them together.
+void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest);
 
 /// Both.
 void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,

@@ -37,11 +37,12 @@ QualityTerms mean_of_right(const std::vector<QualityExample>& examples, const Qu
 using ExamplesByName = std::map<std::string, std::vector<QualityExample>>;
 
 constexpr double kStiffness = 10.0;  // of what objects have in common: few poses of one object do not tell its weights
+constexpr double kCommonStiffness = 5.0;  // of the numbers in use: nor do those of the few objects of a store
 
 std::map<std::string, QualitySettings> fit_each(const ExamplesByName& examples) {
   std::vector<QualityExample> all;
   for (const auto& [name, own] : examples) all.insert(all.end(), own.begin(), own.end());
-  const QualitySettings common = fit_quality_settings(all, QualitySettings{}, 1.0);
+  const QualitySettings common = fit_quality_settings(all, QualitySettings{}, kCommonStiffness);
   std::map<std::string, QualitySettings> fitted;
   for (const auto& [name, own] : examples) fitted[name] = fit_quality_settings(own, common, kStiffness);
   return fitted;

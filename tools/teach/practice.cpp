@@ -20,7 +20,6 @@ namespace houghstream::teach {
 namespace {
 
 constexpr std::uint64_t kCameras = 0x63616D657261ULL;
-constexpr double kScoreStiffness = 5.0;  // a hundred examples of an object do not tell its weights
 
 /// Rendered once, looked at twice. The objects are not quite those that were taught: light, wear and printer differ.
 std::vector<world::SceneFrame> render_frames(const std::vector<PractisedObject>& objects,
@@ -67,8 +66,7 @@ training::ValidationSource validation_source(const std::vector<world::SceneFrame
             for (const TrueObject& object : from.objects)
               frame.objects.push_back({object.object_id, {}, object.box_visible_px, object.visible_fraction});
             return frame;
-          },
-          kScoreStiffness};
+          }};
 }
 
 /// A half of the rooms: those of even, or of odd numbers.
@@ -99,7 +97,7 @@ void fit_scores_without(int half, const Practised& practised, Forest& forest) {
   for (std::size_t f = 0; f < practised.examples.size(); ++f) {
     if (half_of(f) != half) others.push_back(practised.examples[f]);
   }
-  training::fit_scores(others, practised.new_ids, kScoreStiffness, forest);
+  training::fit_scores(others, practised.new_ids, forest);
 }
 
 /// Each half of the rooms is searched with scores that were fitted without it: what a score is worth to a pose is
@@ -195,7 +193,7 @@ std::map<std::string, QualitySettings> practise(const std::vector<PractisedObjec
     judged_by[object.name] = make_pose_model(object.mesh, false);
   }
   const quality::FoundPoses found = find_poses({frames, examples, new_ids, settings.threads}, models, forest);
-  training::fit_scores(examples, new_ids, kScoreStiffness, forest);
+  training::fit_scores(examples, new_ids, forest);
   std::map<std::string, QualitySettings> all = learn_qualities(quality_examples(found, judged_by));
   std::map<std::string, QualitySettings> learnt;
   for (const PractisedObject& object : objects) {

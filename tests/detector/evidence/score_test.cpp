@@ -16,8 +16,22 @@ Evidence with_mass(float share) {
   return evidence;
 }
 
+/// Other terms weigh nothing.
+ScoreModel of_few_terms() {
+  ScoreModel model;
+  model.weights = {};
+  model.weights.constant = 3.6F;
+  model.weights.mass = 3.0F;
+  model.weights.shown = -1.0F;
+  model.weights.seen_through = -4.0F;
+  model.weights.continued = -2.0F;
+  model.weights.likeness = 2.0F;
+  model.weights.hue_conflict = -1.0F;
+  return model;
+}
+
 TEST(Score, IsAProbabilityThatGrowsWithTheMass) {
-  const ScoreModel model;
+  const ScoreModel model = of_few_terms();
   float last = 0.0F;
   for (const float share : {0.0F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F, 3.0F}) {
     const float p = score(model, with_mass(share));
@@ -38,7 +52,7 @@ TEST(ScoreTerms, EachOneIsListedOnce) {
 }
 
 TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {
-  const ScoreModel model;
+  const ScoreModel model = of_few_terms();
   Evidence evidence = with_mass(0.5F);
   const float clean = score(model, evidence);
   evidence.fit.seen_through = 0.4F;
@@ -52,24 +66,24 @@ TEST(Score, WhatIsSeenThroughOrGoesOnSpeaksAgainstIt) {
 }
 
 TEST(Score, MassAndLikenessWeighOtherwiseWhereDepthIsUnknown) {
-  ScoreModel model;
+  ScoreModel model = of_few_terms();
   model.weights.unknown_mass = -1.0F;
   model.weights.unknown_likeness = 2.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.fit.likeness = 0.7F;
   const float known = score(model, evidence);
-  EXPECT_EQ(known, score(ScoreModel{}, evidence));
+  EXPECT_EQ(known, score(of_few_terms(), evidence));
   evidence.fit.unknown = 0.8F;  // of which the model without these terms makes nothing
   EXPECT_GT(score(model, evidence), known);
-  EXPECT_EQ(score(ScoreModel{}, evidence), known);
+  EXPECT_EQ(score(of_few_terms(), evidence), known);
 }
 
 TEST(Score, MissingDepthIsAnotherThingFarAway) {
-  ScoreModel model;
+  ScoreModel model = of_few_terms();
   model.weights.unknown_distance = -2.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.distance = 2.0F;
-  EXPECT_EQ(score(model, evidence), score(ScoreModel{}, evidence)) << "where depth is known, distance is nothing";
+  EXPECT_EQ(score(model, evidence), score(of_few_terms(), evidence)) << "where depth is known, distance is nothing";
   evidence.fit.unknown = 0.8F;
   const float far = score(model, evidence);
   evidence.distance = 0.4F;
@@ -79,27 +93,27 @@ TEST(Score, MissingDepthIsAnotherThingFarAway) {
 }
 
 TEST(Score, LikenessInOtherHuesWeighsOtherwise) {
-  ScoreModel model;
+  ScoreModel model = of_few_terms();
   model.weights.likeness_hue_conflict = -3.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.fit.likeness = 0.7F;
-  EXPECT_EQ(score(model, evidence), score(ScoreModel{}, evidence));
+  EXPECT_EQ(score(model, evidence), score(of_few_terms(), evidence));
   evidence.fit.hue_conflict = 0.5F;
-  EXPECT_LT(score(model, evidence), score(ScoreModel{}, evidence));
+  EXPECT_LT(score(model, evidence), score(of_few_terms(), evidence));
 }
 
 TEST(Score, WhatAgreesBetterInAnotherSizeIsAnotherThing) {
-  ScoreModel model;
+  ScoreModel model = of_few_terms();
   model.weights.other_size = -3.0F;
   Evidence evidence = with_mass(0.3F);
   const float usual = score(model, evidence);
   evidence.other_size = 0.2F;
   EXPECT_LT(score(model, evidence), usual);
-  EXPECT_EQ(score(ScoreModel{}, evidence), score(ScoreModel{}, with_mass(0.3F)));
+  EXPECT_EQ(score(of_few_terms(), evidence), score(of_few_terms(), with_mass(0.3F)));
 }
 
 TEST(Score, ManyUncertainPatchesAreLessThanFewCertainOnes) {
-  ScoreModel model;
+  ScoreModel model = of_few_terms();
   model.weights.certainty = 1.5F;
   Evidence evidence = with_mass(0.3F);
   evidence.certainty = 2.0F;
@@ -113,13 +127,13 @@ TEST(Score, ManyUncertainPatchesAreLessThanFewCertainOnes) {
 TEST(Score, WhatIsMuchHiddenOrAgreesMuchBetterInAnotherSizeWeighsMoreThanItsShare) {
   const auto change = [](float ScoreTerms::*term,
                          const auto& set) {  // of the score's log-odds per unit of the term's weight
-    ScoreModel model;
+    ScoreModel model = of_few_terms();
     model.weights.*term = 1.0F;
     Evidence evidence = with_mass(0.3F);
     evidence.other_size = 0.0F;
     set(evidence);
     const auto odds = [&](const ScoreModel& m) { return std::log(score(m, evidence) / (1.0F - score(m, evidence))); };
-    return odds(model) - odds(ScoreModel{});
+    return odds(model) - odds(of_few_terms());
   };
   EXPECT_NEAR(change(&ScoreTerms::shown_sq, [](Evidence& e) { e.fit.hidden = 0.52F; }), std::log(2.0F) * std::log(2.0F),
               1e-3F);
@@ -128,18 +142,18 @@ TEST(Score, WhatIsMuchHiddenOrAgreesMuchBetterInAnotherSizeWeighsMoreThanItsShar
 }
 
 TEST(Score, WhatIsSeenThroughWeighsByTheCertaintyAndHuesByTheForeignColour) {
-  ScoreModel model;
+  ScoreModel model = of_few_terms();
   model.weights.seen_through_certainty = 1.0F;
   model.weights.hue_conflict_foreign_colour = -1.0F;
   Evidence evidence = with_mass(0.3F);
   evidence.certainty = 2.0F;
   evidence.fit.hue_conflict = 0.5F;
-  EXPECT_EQ(score(model, evidence), score(ScoreModel{}, evidence)) << "nothing is seen through, no colour is foreign";
+  EXPECT_EQ(score(model, evidence), score(of_few_terms(), evidence)) << "nothing is seen through, no colour is foreign";
   evidence.fit.seen_through = 0.3F;
-  EXPECT_GT(score(model, evidence), score(ScoreModel{}, evidence));
+  EXPECT_GT(score(model, evidence), score(of_few_terms(), evidence));
   evidence.fit.seen_through = 0.0F;
   evidence.fit.foreign_colour = 0.8F;
-  EXPECT_LT(score(model, evidence), score(ScoreModel{}, evidence));
+  EXPECT_LT(score(model, evidence), score(of_few_terms(), evidence));
 }
 
 /// Examples whose truth is drawn from a model.
@@ -153,6 +167,7 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
     evidence.fit.unknown = static_cast<float>(random.uniform(0.0, 0.5));
     evidence.fit.continued = static_cast<float>(random.uniform(0.0, 1.0));
     evidence.fit.likeness = static_cast<float>(random.uniform(-0.2, 1.0));
+    evidence.fit.hue_conflict = static_cast<float>(random.uniform(0.0, 1.0));
     evidence.fit.foreign_colour = static_cast<float>(random.uniform(0.0, 2.0));
     evidence.other_size = static_cast<float>(random.uniform(-1.0, 0.3));
     evidence.certainty = static_cast<float>(std::exp(random.uniform(-1.0, 1.0)));
@@ -164,7 +179,7 @@ std::vector<ScoreExample> drawn_from(const ScoreModel& truth, int count) {
 TEST(Score, TheModelThatMadeTheExamplesComesBack) {
   ScoreModel truth;
   truth.weights = {2.0F, 2.5F, -2.0F, -3.0F, 0.5F, -1.5F, 3.0F, -1.2F};
-  const ScoreModel fitted = fit_score_model(drawn_from(truth, 40000), ScoreModel{});
+  const ScoreModel fitted = fit_score_model(drawn_from(truth, 40000), {ScoreTerms{}});
   for (std::size_t i = 0; i < kScoreTerms; ++i)
     EXPECT_NEAR(listed(fitted.weights)[i], listed(truth.weights)[i], 0.35F) << i;
 }

@@ -16,35 +16,6 @@
 namespace houghstream::terms {
 namespace {
 
-/// As ScoreTerms names them, in the order of kScoreTermList.
-constexpr std::array<const char*, kScoreTerms> kNames = {"constant",
-                                                         "mass",
-                                                         "shown",
-                                                         "seen_through",
-                                                         "unknown",
-                                                         "continued",
-                                                         "likeness",
-                                                         "hue_conflict",
-                                                         "foreign_colour",
-                                                         "unevenness",
-                                                         "unknown_mass",
-                                                         "unknown_likeness",
-                                                         "unknown_distance",
-                                                         "likeness_hue_conflict",
-                                                         "other_size",
-                                                         "certainty",
-                                                         "shown_sq",
-                                                         "other_size_sq",
-                                                         "seen_through_certainty",
-                                                         "hue_conflict_foreign_colour",
-                                                         "unevenness_sq",
-                                                         "extent",
-                                                         "contrast",
-                                                         "extent_likeness",
-                                                         "contrast_likeness",
-                                                         "paleness"};
-static_assert(kNames.back() != nullptr, "a term has no name");
-
 Sample sample_of(const Candidate& candidate, const ScoreModel& model) {
   Sample sample{candidate.detection.class_name, candidate.detection.score, score_terms(candidate.evidence), {}};
   for (const auto term : kScoreTermList) sample.contributions.*term = sample.terms.*term * model.weights.*term;
@@ -176,8 +147,8 @@ std::vector<TermFigures> term_figures(const std::vector<Sample>& samples) {
     const std::vector<double> terms = values_of(samples, [&](const Sample& sample) { return sample.terms.*term; });
     const std::vector<double> contributions =
         values_of(samples, [&](const Sample& sample) { return sample.contributions.*term; });
-    all.push_back(
-        {kNames[i], percentile(terms, 50), mean_of(terms), mean_of(contributions), percentile(contributions, 50)});
+    all.push_back({kScoreTermNames[i], percentile(terms, 50), mean_of(terms), mean_of(contributions),
+                   percentile(contributions, 50)});
   }
   return all;
 }
@@ -188,7 +159,7 @@ std::vector<TermShift> shifts_between(const std::vector<Sample>& first, const st
   const std::vector<TermFigures> there = term_figures(first);
   const std::vector<TermFigures> here = term_figures(other);
   for (std::size_t i = 1; i < kScoreTerms; ++i)
-    shifts.push_back({kNames[i], here[i].contribution - there[i].contribution});
+    shifts.push_back({kScoreTermNames[i], here[i].contribution - there[i].contribution});
   std::stable_sort(shifts.begin(), shifts.end(),
                    [](const TermShift& a, const TermShift& b) { return a.shift < b.shift; });
   return shifts;
@@ -202,7 +173,7 @@ std::string table(const std::vector<Group>& groups, const StudyRules& rules) {
     columns.push_back(term_figures(group.false_ones));
   }
   for (std::size_t i = 0; i < kScoreTerms; ++i) {
-    text += fmt::format("{:<28}", kNames[i]);
+    text += fmt::format("{:<28}", kScoreTermNames[i]);
     for (const std::vector<TermFigures>& column : columns)
       text += cell(column[i].median, 7) + cell(column[i].contribution, 7);
     text += "\n";
