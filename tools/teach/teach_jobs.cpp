@@ -208,7 +208,10 @@ void teach_meshes(const TeachOptions& options) {
   store::StoreBuild build(options.out);  // before the store is read: nobody else changes it from here on
   if (!options.add && !options.replace) require_no_store(options.out);
   Contents old;
-  if (options.add) old = read_contents(options.out);
+  if (options.add) {
+    old = read_contents(options.out);
+    stored_quality(old.list, QualitySettings{});  // of other terms: refused before anything is taught, not by hs-pose
+  }
   std::vector<TaughtMesh> meshes = options.shown;
   if (meshes.empty() || !options.meshes.sources.empty()) {
     std::vector<TaughtMesh> read = read_meshes(options.meshes);

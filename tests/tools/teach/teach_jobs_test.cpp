@@ -9,6 +9,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tests/drivers/store/small_store.hpp"
+#include "tests/expect_says.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/teach/shapes.hpp"
 #include "tools/common/stored_quality.hpp"
@@ -94,6 +95,21 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "bracket"); }), "");
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "grey"); }), "") << "the only one";
   EXPECT_EQ(store::read_store(options.out).objects.size(), 1U) << "a refusal loses nothing";
+}
+
+TEST(TeachJobs, NothingJoinsAStoreWhoseQualitiesAreOfOtherTerms) {
+  const fs::path folder = folder_of_meshes("teach_other_terms");
+  teach_meshes(quick_options(folder, "bracket.ply"));
+  TeachOptions more = quick_options(folder, "grey.ply");
+  more.add = true;
+  std::string list = read_text(more.out / "store.json");
+  const std::string term = "\"print\"";
+  for (std::size_t at = list.find(term); at != std::string::npos; at = list.find(term))
+    list.replace(at, term.size(), "\"ink\"");
+  write_text(more.out / "store.json", list);
+  const std::map<std::string, std::string> before = store::files_of(more.out);
+  expect_says(error_of([&] { teach_meshes(more); }), {"has no 'print'", "hs-teach practise"});
+  EXPECT_TRUE(store::files_of(more.out) == before);
 }
 
 /// Names in all places where they stand.
