@@ -57,9 +57,8 @@ ObjectStore read_store(const std::filesystem::path& folder);
 /// The object of this name. Throws InputError that lists the store's where there is none.
 const StoredObject& object_called(const ObjectStore& store, const std::string& name);
 
-/// Meshes by name, metres, read on `threads` threads; without their colours where the store says that
-/// these are unknown. Throws InputError where one cannot be read or has another size
-/// than models_info.json says.
+/// Meshes by name, metres, read on `threads` threads; without their colours where the store says that these are
+/// unknown. Throws InputError where one cannot be read or has another size than models_info.json says.
 std::map<std::string, Mesh> load_store_meshes(const ObjectStore& store, int threads = 1);
 
 /// Throws InputError naming the mesh's file where it has other bounds than its models_info.json states, metres, by more

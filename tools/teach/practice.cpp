@@ -150,11 +150,11 @@ std::map<std::string, std::vector<QualityExample>> quality_examples(const qualit
 
 }  // namespace
 
-int rooms_for(std::size_t new_objects) {
+int rooms_for(std::size_t new_objects, const PracticeSettings& settings) {
   constexpr int kOfOne = 80;
   constexpr int kOfEachMore = 25;
   constexpr int kMost = 240;
-  return std::min(kOfOne + kOfEachMore * (static_cast<int>(std::min<std::size_t>(new_objects, kMost)) - 1), kMost);
+  return settings.rooms.value_or(std::min(kOfOne + kOfEachMore * (static_cast<int>(new_objects) - 1), kMost));
 }
 
 std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,
@@ -174,7 +174,7 @@ std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames
 std::map<std::string, QualitySettings> practise(const std::vector<PractisedObject>& objects,
                                                 const std::set<int>& new_ids, const PracticeSettings& settings,
                                                 Forest& forest) {
-  const int rooms = settings.rooms.value_or(rooms_for(new_ids.size()));
+  const int rooms = rooms_for(new_ids.size(), settings);
   require(rooms <= PracticeSettings::kMostRooms, "{} practice rooms, expected at most {}: all are in memory", rooms,
           PracticeSettings::kMostRooms);
   const std::vector<world::SceneFrame> frames = render_frames(objects, settings, rooms);

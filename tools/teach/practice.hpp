@@ -33,9 +33,9 @@ struct PracticeSettings {
   int threads = 2;
 };
 
-/// In how many rooms `new_objects` are practised where nobody says: as many as one more object in 60 s, and seven in
-/// five minutes, leave time for.
-int rooms_for(std::size_t new_objects);
+/// In how many rooms so many new objects are practised. Where the settings do not say: as many as one more object in
+/// 60 s, and seven in five minutes, leave time for.
+int rooms_for(std::size_t new_objects, const PracticeSettings& settings = {});
 
 /// Names of the new objects that none of the frames shows: of such nothing can be learnt.
 std::vector<std::string> never_seen(const std::vector<world::SceneFrame>& frames,

@@ -107,7 +107,7 @@ void practise_all(const std::vector<NamedModel>& models, const std::set<int>& ne
 
 std::string practice_step(const PracticeSettings& settings, std::size_t new_objects) {
   return fmt::format("looked for in {} rendered rooms, of which scores and qualities are learnt",
-                     settings.rooms.value_or(rooms_for(new_objects)));
+                     rooms_for(new_objects, settings));
 }
 
 /// The forest's classes get the ids of the store.
