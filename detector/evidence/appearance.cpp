@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
 
 #include "detector/evidence/relief_tilt.hpp"
 
@@ -34,6 +36,56 @@ void mark_rim(Appearance& appearance) {
   }
 }
 
+/// A row or a column of cells.
+struct Line {
+  bool is_row = true;
+  int number = 0;
+
+  AcrossOutline::Cell cell(int i) const {
+    const auto along = static_cast<std::uint8_t>(i);
+    const auto own = static_cast<std::uint8_t>(number);
+    return is_row ? AcrossOutline::Cell{own, along} : AcrossOutline::Cell{along, own};
+  }
+  /// As Appearance::mm; beside the object where there is no such cell.
+  std::int16_t mm(const Appearance& appearance, int i) const {
+    if (i < 0 || i >= kSide) return Appearance::kBeside;
+    return appearance.mm[static_cast<std::size_t>(is_row ? number * kSide + i : i * kSide + number)];
+  }
+};
+
+/// Across the outline at `edge`, the object's outermost cell of the line, outwards in steps of `out`, 1 or -1. Nothing
+/// where the object is too narrow there.
+std::optional<AcrossOutline> across(const Appearance& appearance, const Line& line, int edge, int out) {
+  constexpr int kInwards = 2;  // cells to the one that tells how the surface slopes
+  const int inside = edge - out;
+  const std::int16_t here = line.mm(appearance, inside);
+  if (here == Appearance::kBeside) return std::nullopt;
+  AcrossOutline pair{line.cell(inside), line.cell(inside + AcrossOutline::kApart * out), Appearance::kNoDepth};
+  const std::int16_t before = line.mm(appearance, inside - kInwards * out);
+  if (here <= Appearance::kNoDepth || before <= Appearance::kNoDepth) return pair;
+  const double gained = static_cast<double>(here - before) * AcrossOutline::kApart / kInwards;
+  if (std::abs(gained) < 30000.0) pair.gained_mm = static_cast<std::int16_t>(std::lround(gained));
+  return pair;
+}
+
+void mark_outline(Appearance& appearance) {
+  std::size_t count = 0;
+  const auto mark_ends = [&](const Line& line) {
+    int first = 0;
+    int last = kSide - 1;
+    while (first < kSide && line.mm(appearance, first) == Appearance::kBeside) ++first;
+    while (last >= 0 && line.mm(appearance, last) == Appearance::kBeside) --last;
+    if (first > last) return;
+    for (const auto& [edge, out] : {std::pair(first, -1), std::pair(last, 1)}) {
+      if (const auto pair = across(appearance, line, edge, out)) appearance.outline[count++] = *pair;
+    }
+  };
+  for (int i = Appearance::kRim; i < Appearance::kRim + Appearance::kBoxSide; ++i) {
+    mark_ends({true, i});
+    mark_ends({false, i});
+  }
+}
+
 }  // namespace
 
 Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const cv::Rect& box_px,
@@ -61,6 +113,7 @@ Appearance remember_appearance(const RgbdFrame& view, const cv::Mat& mask, const
     }
   }
   mark_rim(appearance);
+  mark_outline(appearance);
   return appearance;
 }
 

@@ -8,6 +8,20 @@
 
 namespace houghstream {
 
+/// Two cells of one row or one column, across a view's outline.
+struct AcrossOutline {
+  struct Cell {
+    std::uint8_t row = 0;
+    std::uint8_t column = 0;
+  };
+  static constexpr int kApart = 3;  ///< cells
+  Cell inside;                      ///< the object's, one cell in from its outline
+  Cell beyond;                      ///< two cells out
+  /// What depth gains from one to the other where the object's surface goes on straight, millimetres, relative as
+  /// Appearance::mm; Appearance::kNoDepth where it is not known.
+  std::int16_t gained_mm = 0;
+};
+
 /// What a training view shows, over its box and a rim around it: depth relative to the object's centre, and colour.
 struct Appearance {
   static constexpr int kBoxSide = 20;  ///< cells per side of the box
@@ -19,6 +33,9 @@ struct Appearance {
   Cells mm{};      ///< row by row; as it lies across the ray to the centre, see ReliefTilt
   Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
   std::array<std::array<std::uint8_t, 3>, kSide * kSide> lab{};  ///< colour, 8-bit CIE L*a*b*; of the object only
+  /// At both ends of each row and column. Where those are fewer, one from row 0 ends them: the rim never shows the
+  /// object.
+  std::array<AcrossOutline, 4 * kBoxSide> outline{};
 };
 
 /// What is to be remembered of a view: `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_camera`

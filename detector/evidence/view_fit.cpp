@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "detector/evidence/likeness.hpp"
+#include "detector/evidence/outline_fit.hpp"
 #include "detector/evidence/relief_tilt.hpp"
 #include "pipeline/base/no_value.hpp"
 
@@ -27,11 +29,14 @@ struct Comparison {
   std::array<float, kSide * kSide> excess;  // at these, metres; NaN where depth is not measured or not remembered
   std::size_t beside_cells = 0;
   std::array<float, kSide * kSide> excess_beside;  // the first beside_cells: beside the outline
-  float left = 0.0F;                               // of the first cell, frame pixels
+  std::array<float, kSide * kSide> depth;  // over the centre's, metres; NaN: not measured; infinite: not in the frame
+  float left = 0.0F;                       // of the first cell, frame pixels
   float top = 0.0F;
   float cell_width = 0.0F;
   float cell_height = 0.0F;
   cv::Point2f centre_px;  // of the view, as cell_centre()
+  float metres_per_px = 0.0F;
+  float metres_per_mm = 0.0F;  // of the view
 
   /// Frame pixels from the left upper edge of the first pixel.
   cv::Point2f cell_centre(std::size_t row, std::size_t column) const {
@@ -56,10 +61,13 @@ void place(const TrainedView& view, const Eigen::Vector3f& centre, const Camera&
 Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const RgbdFrame& frame, float size) {
   Comparison out;
   place(view, centre, frame.camera, size, out);
-  const float metres = 0.001F * size;  // per millimetre of the view
+  out.metres_per_mm = 0.001F * size;
+  out.metres_per_px = static_cast<float>(frame.camera.metres_per_px(centre.z()));
+  const float metres_per_mm = out.metres_per_mm;
+  const float metres_per_px = out.metres_per_px;
   const ReliefTilt tilt = relief_tilt(centre);
-  const auto metres_per_px = static_cast<float>(frame.camera.metres_per_px(centre.z()));
   const cv::Point2f centre_px = out.centre_px;
+  out.depth.fill(std::numeric_limits<float>::infinity());
   std::array<int, kSide> column_px{};
   std::array<float, kSide> expected{};  // depth that the relief is counted from, in a row
   std::array<float, kSide> gained{};
@@ -80,14 +88,16 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
       if (x < 0 || x >= frame.depth.cols) continue;
       const std::size_t cell = row * kSide + column;
       const float beyond_centre = depth[x] - expected[column];
+      out.depth[cell] = beyond_centre;
       const std::int16_t remembered = view.appearance.mm[cell];
       const std::int16_t neighbour = view.appearance.beside[cell];
       out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),
                                      static_cast<std::uint8_t>(column)};
-      out.excess[out.object_cells] = remembered > Appearance::kNoDepth ? beyond_centre - metres * remembered : kNoValue;
+      out.excess[out.object_cells] =
+          remembered > Appearance::kNoDepth ? beyond_centre - metres_per_mm * remembered : kNoValue;
       out.object_cells += remembered != Appearance::kBeside ? 1 : 0;
       out.excess_beside[out.beside_cells] =
-          neighbour > Appearance::kNoDepth ? beyond_centre - metres * neighbour : kNoValue;
+          neighbour > Appearance::kNoDepth ? beyond_centre - metres_per_mm * neighbour : kNoValue;
       out.beside_cells += neighbour != Appearance::kBeside ? 1 : 0;
     }
   }
@@ -209,25 +219,75 @@ std::size_t level_of(float cell_width, const LabLevels& levels) {
   return std::min(static_cast<std::size_t>(level), levels.size() - 1);
 }
 
-/// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
-Likeness compare_colours(const Comparison& comparison, const Tally& tally, const Appearance& appearance,
-                         const LabFrame& frame) {
-  std::array<int, kSide> x_px{};
-  std::array<int, kSide> y_px{};
-  const std::size_t level = level_of(0.5F * (comparison.cell_width + comparison.cell_height) * frame.scale, frame.lab);
-  const cv::Mat& lab = frame.lab[level];
-  const float scale = frame.scale / static_cast<float>(1U << level);
-  for (std::size_t i = 0; i < kSide; ++i) {
-    const cv::Point2f px = comparison.cell_centre(i, i);
-    x_px[i] = std::min(static_cast<int>(px.x * scale), lab.cols - 1);
-    y_px[i] = std::min(static_cast<int>(px.y * scale), lab.rows - 1);
+/// The frame's colours at a relief's cells.
+class CellColours {
+ public:
+  CellColours(const Comparison& comparison, const LabFrame& frame) {
+    const float cell_size = 0.5F * (comparison.cell_width + comparison.cell_height);
+    const std::size_t level = level_of(cell_size * frame.scale, frame.lab);
+    const float scale = frame.scale / static_cast<float>(1U << level);
+    lab_ = &frame.lab[level];
+    for (std::size_t i = 0; i < kSide; ++i) {
+      const cv::Point2f px = comparison.cell_centre(i, i);
+      x_px_[i] = std::clamp(static_cast<int>(px.x * scale), 0, lab_->cols - 1);
+      y_px_[i] = std::clamp(static_cast<int>(px.y * scale), 0, lab_->rows - 1);
+    }
   }
+
+  const cv::Vec3b& at(std::size_t row, std::size_t column) const {
+    return lab_->ptr<cv::Vec3b>(y_px_[row])[x_px_[column]];
+  }
+
+ private:
+  const cv::Mat* lab_ = nullptr;
+  std::array<int, kSide> x_px_{};
+  std::array<int, kSide> y_px_{};
+};
+
+/// Of the cells that are visible or unknown: where depth is missing, colours are all there is to see.
+Likeness compare_colours(const Tally& tally, const Appearance& appearance, const CellColours& colours) {
   Likeness likeness;
   for (std::size_t i = 0; i < tally.shown; ++i) {
     const Cell cell = tally.shown_cells[i];
-    likeness.add(appearance.lab[cell.index], lab.ptr<cv::Vec3b>(y_px[cell.row])[x_px[cell.column]]);
+    likeness.add(appearance.lab[cell.index], colours.at(cell.row, cell.column));
   }
   return likeness;
+}
+
+/// Squared, lightness at half its weight: shading changes it along a surface.
+float colour_distance_sq(const cv::Vec3b& a, const cv::Vec3b& b) {
+  const auto difference = [&](int channel) { return static_cast<float>(a[channel]) - static_cast<float>(b[channel]); };
+  return 0.25F * difference(0) * difference(0) + difference(1) * difference(1) + difference(2) * difference(2);
+}
+
+/// What lies in front of the object, within its outline or beyond, is left out. Without branches, as compare().
+OutlineFit compare_outline(const Appearance& appearance, const Comparison& comparison, float shift, float tolerance,
+                           const CellColours& colours) {
+  constexpr float kSteepest = 2.5F;  // what a table gains towards the camera, over the distance across the ray
+  OutlineLooks looks;
+  const float apart_x = AcrossOutline::kApart * comparison.metres_per_px * comparison.cell_width;
+  const float apart_y = AcrossOutline::kApart * comparison.metres_per_px * comparison.cell_height;
+  for (const AcrossOutline& across : appearance.outline) {
+    const AcrossOutline::Cell in = across.inside;
+    const AcrossOutline::Cell out = across.beyond;
+    if (in.row == 0) break;
+    const std::size_t cell = in.row * kSide + in.column;
+    const float inside = comparison.depth[cell];
+    const float beyond = comparison.depth[out.row * kSide + out.column];
+    const float gained = beyond - inside;
+    const float apart = in.row == out.row ? apart_x : apart_y;
+    const float nearer = comparison.metres_per_mm * appearance.mm[cell] + shift - inside;
+    const int hidden = (appearance.mm[cell] > Appearance::kNoDepth ? 1 : 0) & (nearer > tolerance ? 1 : 0);
+    const int behind_another = gained < -kSteepest * apart - 2.0F * tolerance ? 1 : 0;
+    looks.apart[looks.count] = apart;
+    looks.gained[looks.count] = gained;
+    looks.expected[looks.count] =
+        across.gained_mm > Appearance::kNoDepth ? comparison.metres_per_mm * across.gained_mm : kNoValue;
+    looks.colour_sq[looks.count] = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
+    const int beside_frame = (std::isinf(inside) ? 1 : 0) | (std::isinf(beyond) ? 1 : 0);
+    looks.count += (beside_frame | hidden | behind_another) == 0 ? 1 : 0;
+  }
+  return fit_outline(looks, tolerance);
 }
 
 }  // namespace
@@ -238,7 +298,8 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   const float z = centre_camera.z();
   const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
   const Tally tally = tally_cells(comparison, shift, tolerance);
-  const Likeness likeness = compare_colours(comparison, tally, view.appearance, frame);
+  const CellColours colours(comparison, frame);
+  const Likeness likeness = compare_colours(tally, view.appearance, colours);
   ViewFit fit;
   fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
   fit.visible = tally.share(tally.visible);
@@ -246,6 +307,7 @@ ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, 
   fit.seen_through = tally.share(tally.seen_through);
   fit.unknown = tally.share(tally.unknown);
   fit.continued = continued_share(comparison, shift, tolerance);
+  fit.outline = compare_outline(view.appearance, comparison, shift, tolerance, colours);
   fit.likeness = likeness.correlation();
   fit.foreign_colour = likeness.foreign_colour();
   fit.hue_conflict = likeness.hue_conflict();

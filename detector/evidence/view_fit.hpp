@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "detector/evidence/outline_fit.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/types/frame.hpp"
@@ -29,7 +30,8 @@ struct ViewFit {
   float hue_conflict = 0.0F;    ///< see Likeness
   float paleness = 0.0F;        ///< see Likeness
   float contrast = 0.0F;        ///< see Likeness
-  cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is
+  OutlineFit outline;
+  cv::Rect2f visible_box_px;  ///< of what is visible or unknown, frame pixels; empty where nothing is
 };
 
 /// The view's relief compared with the frame, pixel by pixel of the relief, after moving it along the ray by at most

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <limits>
 
 namespace houghstream {
@@ -46,6 +47,55 @@ TEST(Appearance, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
   EXPECT_EQ(seen.beside[cell(kSide - 1, 6)], 10);
   EXPECT_EQ(seen.beside[cell(kRim, kRim)], Appearance::kBeside);  // on the object
   EXPECT_EQ(seen.beside[cell(6, kSide - 1)], Appearance::kBeside);
+}
+
+/// Both ends of each of the square's 20 rows and columns.
+TEST(Appearance, TheOutlineIsCrossedAtBothEndsOfEachLine) {
+  const Appearance seen = square();
+  EXPECT_EQ(seen.outline.size(), 80U);
+  for (const AcrossOutline& across : seen.outline) {
+    const auto on = [&](const AcrossOutline::Cell& at) {
+      return seen.mm[cell(at.column, at.row)] != Appearance::kBeside;
+    };
+    EXPECT_TRUE(on(across.inside));
+    EXPECT_FALSE(on(across.beyond));
+    const int apart =
+        std::abs(across.inside.row - across.beyond.row) + std::abs(across.inside.column - across.beyond.column);
+    EXPECT_EQ(apart, AcrossOutline::kApart);
+    EXPECT_TRUE(across.gained_mm == 0 || across.gained_mm == Appearance::kNoDepth);
+  }
+}
+
+/// A strip, one cell wide, is all outline.
+TEST(Appearance, WhatIsTooNarrowHasFewerCrossings) {
+  RgbdFrame view;
+  view.camera = kCamera;
+  view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
+  view.depth = cv::Mat(80, 80, CV_32FC1, cv::Scalar(1.0));
+  cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
+  mask(cv::Rect(38, 20, 2, 40)).setTo(255);
+  const cv::Rect box(20, 20, 40, 40);
+  const Appearance seen = remember_appearance(view, mask, box, {0.0F, 0.0F, 1.0F});
+  EXPECT_NE(seen.outline[0].inside.row, 0);
+  EXPECT_NE(seen.outline[1].inside.row, 0);
+  EXPECT_EQ(seen.outline[2].inside.row, 0) << "the strip's two ends only";
+}
+
+/// A plane that gains 5 mm a pixel to the right: 10 mm a cell.
+TEST(Appearance, TheOutlineKnowsWhatASlopeGains) {
+  RgbdFrame view;
+  view.camera = kCamera;
+  view.colour = cv::Mat(80, 80, CV_8UC3, cv::Scalar(200, 200, 200));
+  view.depth = cv::Mat(80, 80, CV_32FC1);
+  for (int x = 0; x < 80; ++x) view.depth.col(x).setTo(1.0 + 0.005 * (x - 40));
+  cv::Mat mask = cv::Mat::zeros(80, 80, CV_8UC1);
+  const cv::Rect box(20, 20, 40, 40);
+  mask(box).setTo(255);
+  const Appearance seen = remember_appearance(view, mask, box, {0.0F, 0.0F, 1.0F});
+  for (const AcrossOutline& across : seen.outline) {
+    const int right = across.beyond.column - across.inside.column;
+    EXPECT_NEAR(across.gained_mm, 10 * right, 1);
+  }
 }
 
 TEST(Appearance, OffTheAxisReliefIsAsItLiesAcrossTheRay) {

@@ -119,6 +119,58 @@ TEST(ViewFit, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
   EXPECT_EQ(beside(-0.06F), 0.0F) << "what is behind";
 }
 
+/// What lies around the tile, `behind` metres behind its edges and painted in `colour`.
+OutlineFit outline_fit(double behind, const cv::Scalar& colour) {
+  RgbdFrame frame = tile_frame();
+  cv::Mat outside;
+  cv::bitwise_not(toy::training_views().front().mask, outside);
+  frame.depth.setTo(kDistance + behind, outside);
+  frame.colour.setTo(colour, outside);
+  return fit(frame).outline;
+}
+
+TEST(ViewFit, AnObjectEndsAtItsOutlineWhereDepthOrColourDoes) {
+  const OutlineFit alone = outline_fit(0.3, {0, 200, 0});
+  EXPECT_LT(alone.surface_goes_on, 0.05F);
+  EXPECT_LT(alone.colour_goes_on, 0.05F);
+  EXPECT_LT(alone.goes_on, 0.05F);
+  const OutlineFit lying_on_another = outline_fit(0.0, {0, 200, 0});
+  EXPECT_GT(lying_on_another.surface_goes_on, 0.3F);
+  EXPECT_LT(lying_on_another.colour_goes_on, 0.05F);
+  EXPECT_LT(lying_on_another.goes_on, 0.05F);
+}
+
+/// The remembered view is a window of a plain wall.
+TEST(ViewFit, APartOfALargerThingDoesNotEndAtTheOutline) {
+  RgbdFrame wall = tile_frame();
+  wall.depth.setTo(kDistance);
+  wall.colour.setTo(cv::Scalar(90, 120, 150));
+  const cv::Mat mask = toy::training_views().front().mask;
+  TrainedView window = toy::remembered_view();
+  window.appearance = remember_appearance(wall, mask, cv::boundingRect(mask), kCentre);
+  const auto outline = [&] { return fit_view(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F)).outline; };
+  EXPECT_GT(outline().surface_goes_on, 0.9F);
+  EXPECT_GT(outline().colour_goes_on, 0.9F);
+  EXPECT_GT(outline().goes_on, 0.9F);
+  cv::Mat outside;
+  cv::bitwise_not(mask, outside);
+  wall.depth.setTo(kDistance + 0.3, outside);
+  EXPECT_LT(outline().surface_goes_on, 0.1F);
+  EXPECT_LT(outline().colour_goes_on, 0.1F) << "another thing of its colour, behind it";
+}
+
+TEST(ViewFit, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
+  RgbdFrame frame = tile_frame();
+  const OutlineFit whole = fit(frame).outline;
+  const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
+  frame.depth(left).setTo(0.5F);
+  frame.colour(left).setTo(cv::Scalar(0, 255, 0));
+  EXPECT_NEAR(fit(frame).outline.goes_on, whole.goes_on, 0.1F);
+  frame.depth.setTo(0.5F);
+  EXPECT_EQ(fit(frame).outline.goes_on, 0.0F);
+  EXPECT_EQ(fit(frame).outline.colour_goes_on, 0.0F);
+}
+
 TEST(ViewFit, AViewMayBeTakenForOneOfALargerObject) {
   const RgbdFrame frame = tile_frame();
   const LabFrame lab = toy::lab_frame(frame, frame.colour, 1.0F);
@@ -188,6 +240,7 @@ TEST(ViewFit, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
 TEST(ViewFit, OutsideTheFrameNothingIsCompared) {
   const ViewFit result = fit(tile_frame(), {2.0F, 0.0F, kDistance});
   EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.unknown, 0.0F);
+  EXPECT_EQ(result.outline.surface_goes_on + result.outline.colour_goes_on, 0.0F);
   EXPECT_TRUE(result.visible_box_px.empty());
 }
 

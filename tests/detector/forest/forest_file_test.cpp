@@ -105,6 +105,14 @@ TEST_F(ForestFile, AnIndexThatPointsNowhereIsRefused) {
   EXPECT_THROW(load_forest(file), InputError);
 }
 
+TEST_F(ForestFile, AnOutlineBesideItsViewIsRefused) {
+  Forest bad = forest;
+  ASSERT_FALSE(bad.views.empty());
+  bad.views.back().appearance.outline[7].beyond.column = Appearance::kSide;
+  save_forest(bad, file);
+  EXPECT_THROW(load_forest(file), InputError);
+}
+
 TEST_F(ForestFile, ALeafThatKnowsAClassTwiceIsRefused) {
   Forest bad = forest;
   bad.leaf_classes.insert(bad.leaf_classes.begin(), bad.leaf_classes[0]);
