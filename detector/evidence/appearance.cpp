@@ -41,10 +41,10 @@ struct Line {
   bool is_row = true;
   int number = 0;
 
-  AcrossOutline::Cell cell(int i) const {
+  OutlineCells::Cell cell(int i) const {
     const auto along = static_cast<std::uint8_t>(i);
     const auto own = static_cast<std::uint8_t>(number);
-    return is_row ? AcrossOutline::Cell{own, along} : AcrossOutline::Cell{along, own};
+    return is_row ? OutlineCells::Cell{own, along} : OutlineCells::Cell{along, own};
   }
   /// As Appearance::mm; beside the object where there is no such cell.
   std::int16_t mm(const Appearance& appearance, int i) const {
@@ -55,15 +55,15 @@ struct Line {
 
 /// Across the outline at `edge`, the object's outermost cell of the line, outwards in steps of `out`, 1 or -1. Nothing
 /// where the object is too narrow there.
-std::optional<AcrossOutline> across(const Appearance& appearance, const Line& line, int edge, int out) {
+std::optional<OutlineCells> across(const Appearance& appearance, const Line& line, int edge, int out) {
   constexpr int kInwards = 2;  // cells to the one that tells how the surface slopes
   const int inside = edge - out;
   const std::int16_t here = line.mm(appearance, inside);
   if (here == Appearance::kBeside) return std::nullopt;
-  AcrossOutline pair{line.cell(inside), line.cell(inside + AcrossOutline::kApart * out), Appearance::kNoDepth};
+  OutlineCells pair{line.cell(inside), line.cell(inside + OutlineCells::kApart * out), Appearance::kNoDepth};
   const std::int16_t before = line.mm(appearance, inside - kInwards * out);
   if (here <= Appearance::kNoDepth || before <= Appearance::kNoDepth) return pair;
-  const double gained = static_cast<double>(here - before) * AcrossOutline::kApart / kInwards;
+  const double gained = static_cast<double>(here - before) * OutlineCells::kApart / kInwards;
   if (std::abs(gained) < 30000.0) pair.gained_mm = static_cast<std::int16_t>(std::lround(gained));
   return pair;
 }

@@ -2,21 +2,16 @@
 
 #include <array>
 #include <cstddef>
-#include <tuple>
 
 #include "detector/evidence/appearance.hpp"
+#include "pipeline/geometry/across_outline.hpp"
 
 namespace houghstream {
 
-/// What is seen across an outline, from within the object to beyond it: the first `count` of each.
+/// What is seen across an outline: the first `count`.
 struct OutlineLooks {
-  using Numbers = std::array<float, std::tuple_size_v<decltype(Appearance::outline)>>;
   std::size_t count = 0;
-  Numbers apart;   ///< metres from one to the other, across the ray
-  Numbers gained;  ///< depth, metres; NaN where it is not measured
-  /// Gained if the object's surface goes on straight, metres; NaN where that is not known.
-  Numbers expected;
-  Numbers colour_sq;  ///< squared distance of the colours, 8-bit L*a*b*, lightness at half its weight
+  std::array<AcrossOutline, Appearance::kMostCrossings> seen;
 };
 
 /// Whether what a hypothesis takes for the object ends where the object's outline is: shares of the outline, 0 to 1; 0

@@ -254,38 +254,30 @@ Likeness compare_colours(const Tally& tally, const Appearance& appearance, const
   return likeness;
 }
 
-/// Squared, lightness at half its weight: shading changes it along a surface.
-float colour_distance_sq(const cv::Vec3b& a, const cv::Vec3b& b) {
-  const auto difference = [&](int channel) { return static_cast<float>(a[channel]) - static_cast<float>(b[channel]); };
-  return 0.25F * difference(0) * difference(0) + difference(1) * difference(1) + difference(2) * difference(2);
-}
-
 /// What lies in front of the object, within its outline or beyond, is left out. Without branches, as compare().
 OutlineFit compare_outline(const Appearance& appearance, const Comparison& comparison, float shift, float tolerance,
                            const CellColours& colours) {
-  constexpr float kSteepest = 2.5F;  // what a table gains towards the camera, over the distance across the ray
   OutlineLooks looks;
-  const float apart_x = AcrossOutline::kApart * comparison.metres_per_px * comparison.cell_width;
-  const float apart_y = AcrossOutline::kApart * comparison.metres_per_px * comparison.cell_height;
-  for (const AcrossOutline& across : appearance.outline) {
-    const AcrossOutline::Cell in = across.inside;
-    const AcrossOutline::Cell out = across.beyond;
+  const float apart_x = OutlineCells::kApart * comparison.metres_per_px * comparison.cell_width;
+  const float apart_y = OutlineCells::kApart * comparison.metres_per_px * comparison.cell_height;
+  for (const OutlineCells& cells : appearance.outline) {
+    const OutlineCells::Cell in = cells.inside;
+    const OutlineCells::Cell out = cells.beyond;
     if (in.row == 0) break;
     const std::size_t cell = in.row * kSide + in.column;
+    const std::int16_t mm = appearance.mm[cell];
     const float inside = comparison.depth[cell];
     const float beyond = comparison.depth[out.row * kSide + out.column];
-    const float gained = beyond - inside;
-    const float apart = in.row == out.row ? apart_x : apart_y;
-    const float nearer = comparison.metres_per_mm * appearance.mm[cell] + shift - inside;
-    const int hidden = (appearance.mm[cell] > Appearance::kNoDepth ? 1 : 0) & (nearer > tolerance ? 1 : 0);
-    const int behind_another = gained < -kSteepest * apart - 2.0F * tolerance ? 1 : 0;
-    looks.apart[looks.count] = apart;
-    looks.gained[looks.count] = gained;
-    looks.expected[looks.count] =
-        across.gained_mm > Appearance::kNoDepth ? comparison.metres_per_mm * across.gained_mm : kNoValue;
-    looks.colour_sq[looks.count] = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
+    AcrossOutline& seen = looks.seen[looks.count];
+    seen.apart = in.row == out.row ? apart_x : apart_y;
+    seen.gained = beyond - inside;
+    seen.expected = cells.gained_mm > Appearance::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
+    seen.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
+    const bool nearer = comparison.metres_per_mm * mm + shift - inside > tolerance;
+    const int hidden = (mm > Appearance::kNoDepth ? 1 : 0) & (nearer ? 1 : 0);
+    const int another = comes_forward(seen, tolerance) ? 1 : 0;
     const int beside_frame = (std::isinf(inside) ? 1 : 0) | (std::isinf(beyond) ? 1 : 0);
-    looks.count += (beside_frame | hidden | behind_another) == 0 ? 1 : 0;
+    looks.count += (beside_frame | hidden | another) == 0 ? 1 : 0;
   }
   return fit_outline(looks, tolerance);
 }

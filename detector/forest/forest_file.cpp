@@ -149,7 +149,7 @@ void check_numbers(const Forest& forest, const std::string& source) {
     require(has_box && std::abs(view.R_ray_object.norm() - 1.0F) < 0.01F && view.class_index < forest.classes.size(),
             "{}: a view of class {} with a rotation of length {}, expected one of {} and 1", source, view.class_index,
             view.R_ray_object.norm(), forest.classes.size());
-    for (const AcrossOutline& across : view.appearance.outline) {
+    for (const OutlineCells& across : view.appearance.outline) {
       const int last = std::max({across.inside.row, across.inside.column, across.beyond.row, across.beyond.column});
       require(last < Appearance::kSide, "{}: a view's outline at cell {}, expected less than {}", source, last,
               Appearance::kSide);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace houghstream {
@@ -14,11 +15,12 @@ struct LogisticExample {
 };
 
 /// What the weights of a logistic regression are pulled to, and how strongly: `stiffness` is the inverse variance of a
-/// weight about the prior's, as strong as so many examples.
+/// weight about the prior's, as strong as so many examples; a weight that is `held` stays the prior's.
 template <int N>
 struct LogisticPrior {
   Eigen::Matrix<double, N, 1> weights = Eigen::Matrix<double, N, 1>::Zero();
   double stiffness = 1.0;
+  std::optional<int> held = std::nullopt;
 };
 
 inline double logistic(double x) {
@@ -54,6 +56,12 @@ Eigen::Matrix<double, N, 1> fit_logistic(const std::vector<LogisticExample<N>>& 
       const double p = logistic(weights.dot(example.terms));
       gradient += ((example.is_true ? 1.0 : 0.0) - p) * example.terms;
       curvature += p * (1.0 - p) * example.terms * example.terms.transpose();
+    }
+    if (prior.held) {
+      gradient[*prior.held] = 0.0;
+      curvature.row(*prior.held).setZero();
+      curvature.col(*prior.held).setZero();
+      curvature(*prior.held, *prior.held) = 1.0;
     }
     Vector change = curvature.ldlt().solve(gradient);
     // Far from the minimum a whole step may lead away from it.

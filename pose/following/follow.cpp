@@ -70,13 +70,13 @@ void judge_followed(const SeenObject& seen, const ExpectedObject& expected, cons
   PoseEvidence evidence{expected.score, {}, compare_print(seen, look, tolerance)};
   if (expected.verified) {
     evidence.depth = verify_look(look, tolerance);
-    evidence.depth.outline_ends = expected.verified->outline_ends;
-    evidence.depth.outline_continues = expected.verified->outline_continues;
+    evidence.depth.outline = expected.verified->outline;
+    evidence.depth.outline_goes_on = expected.verified->outline_goes_on;
     followed.verified = expected.verified;
     judge(evidence, T, true, settings, followed.pose);
     if (followed.pose.status == PoseStatus::kValid) return;
   }
-  evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance);
+  evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance, &seen.colours);
   followed.verified = evidence.depth;
   judge(evidence, T, true, settings, followed.pose);
 }

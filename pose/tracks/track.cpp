@@ -116,7 +116,7 @@ Look look_at(const RgbdFrame& frame, const TrackModel& model, const Eigen::Isome
   if (seen.rendered < kLeastPx || judged < kMeasured * seen.rendered) return {};
   Look look;
   look.seen_through = static_cast<double>(seen.violating) / std::max(1, seen.agreeing + seen.violating);
-  look.goes_on = seen.outline_continues > seen.outline_ends;
+  look.goes_on = seen.outline_goes_on > 0.5F * static_cast<float>(seen.outline);
   look.state = TrackState::kUnrecognised;
   if (look.seen_through > kThrough) look.state = TrackState::kGone;
   if (seen.occluded > kHidden * judged) look.state = TrackState::kHidden;

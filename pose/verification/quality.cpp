@@ -25,16 +25,16 @@ PoseEvidence gather_evidence(const SeenObject& seen, const Eigen::Isometry3d& T_
                              const VerificationSettings& settings) {
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
   const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
-  return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance),
+  return {detection_score, verify_pose(seen.frame, seen.model.mesh, T_camera_object, tolerance, &seen.colours),
           compare_print(seen, look, tolerance)};
 }
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings) {
   constexpr double kCameraContrastSq = 0.25;  // cameras show about half of a model's contrast
-  // Added to shares and counts, so that none weighs too much where there is little of it.
+  // Added to shares, so that none weighs too much where there is little of it.
   constexpr double kShare = 0.01;
   constexpr double kFraction = 0.05;
-  constexpr double kCount = 3.0;
+  constexpr double kEven = 0.5;           // an outline that is not seen speaks neither for a pose nor against it
   constexpr double kUnknownColour = 0.8;  // of the usual agreement: no colours are no proof
   const Verification& depth = evidence.depth;
   const double judged = std::max(1, depth.agreeing + depth.violating);
@@ -42,7 +42,8 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
   terms.detection_log_odds = log_odds(static_cast<double>(evidence.detection_score));
   terms.seen_through = -std::log(depth.violating / judged + kShare);
   terms.visible = std::log(static_cast<double>(depth.visible_fraction()) + kFraction);
-  terms.outline = std::log((depth.outline_ends + kCount) / (depth.outline_continues + kCount));
+  const double goes_on = depth.outline > 0 ? static_cast<double>(depth.outline_goes_on) / depth.outline : kEven;
+  terms.outline = std::log((1.0 - goes_on + kFraction) / (goes_on + kFraction));
   if (evidence.colour) {
     terms.chroma_conflict = -static_cast<double>(evidence.colour->chroma_conflict);
     terms.print = print_agreement(*evidence.colour);

@@ -27,7 +27,7 @@ struct QualityTerms {
   double detection_log_odds = 0.0;  ///< log odds of the detection's score
   double seen_through = 0.0;  ///< log of the share that was seen through, of what agrees or was seen through (negated)
   double visible = 0.0;       ///< log of the visible fraction
-  double outline = 0.0;       ///< log of outline ends over outline that goes on
+  double outline = 0.0;       ///< log of how much of the outline ends what is seen over how much does not
   double chroma_conflict = 0.0;  ///< see ColourComparison (negated)
   /// Share of the seen colours' variance that is not left over, of as much as shading alone can make of it and more:
   /// plain things agree with little. What the camera was at its limit for counts as plain. At least -0.5.
@@ -45,15 +45,16 @@ inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
 /// (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least` on in scenes
-/// that the fit has not seen (a quarter in turn). They are of 1361 poses of detections from score 0.1 on in 14 frames
-/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 678 were right. In scenes
-/// that the fit has not seen 595 of 612 are right from `least` on. What hs-teach learns of an object takes their place.
+/// that the fit has not seen (a quarter in turn). They are of 1620 poses of detections from score 0.1 on in 14 frames
+/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 680 were right. In scenes
+/// that the fit has not seen 622 of 633 are right from `least` on. That of `seen_through` is older: it is not
+/// learnt. What hs-teach learns of an object takes their place.
 struct QualitySettings {
-  double bias = -5.31;
-  QualityTerms weights = {1.33, 0.45, 2.08, 0.85, 2.19, 7.55, 0.54, -0.37};
+  double bias = -5.49;
+  QualityTerms weights = {1.32, 0.45, 1.59, 2.22, 2.52, 7.34, 1.16, -0.12};
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {2.36, 3.06, -0.17, 1.67, -0.23, 0.80, -5.29, -5.29};
+  QualityTerms typical = {2.82, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.28};
   float least = 0.8F;                ///< poses of lower quality are not published...
   float least_of_candidates = 0.8F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
   PresenceSettings presence;         ///< what the quality says of whether the object is there at all

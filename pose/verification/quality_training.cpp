@@ -83,7 +83,11 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
     if (example.of_other_print)
       judged.push_back({to_vector(1.0, example.terms) - to_vector(1.0, *example.of_other_print), true});
   }
-  const Weights weights = fit_logistic<kWeights>(judged, {to_vector(prior.bias, prior.weights), stiffness});
+  // In scenes where nothing is taken away hardly a pose that was found is seen through: what they say of it is chance.
+  constexpr int kSeenThrough = 2;
+  static_assert(kQualityTerms[kSeenThrough - 1] == &QualityTerms::seen_through);
+  const LogisticPrior<kWeights> pull{to_vector(prior.bias, prior.weights), stiffness, kSeenThrough};
+  const Weights weights = fit_logistic<kWeights>(judged, pull);
   QualitySettings settings = prior;
   settings.bias = weights[0];
   for (std::size_t i = 0; i < kQualityTerms.size(); ++i)

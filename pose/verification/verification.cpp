@@ -2,35 +2,83 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "pipeline/base/no_value.hpp"
+#include "pipeline/geometry/across_outline.hpp"
 #include "pipeline/geometry/renderer.hpp"
 
 namespace houghstream {
 namespace {
 
-/// Looks `reach_px` outside the outline, to the left and right of each row's and above and below each column's.
-void compare_outline(const RgbdFrame& frame, const cv::Mat& rendered, const cv::Rect& region,
-                     const DepthTolerance& tolerance, Verification& result) {
-  constexpr double kReach = 0.008;  // metres outside
-  const auto is_model = [&](int x, int y) {
-    return x >= 0 && y >= 0 && x < rendered.cols && y < rendered.rows && !std::isnan(rendered.at<float>(y, x));
-  };
+/// What is looked at across the outline of a rendered model.
+struct OutlineView {
+  const RgbdFrame& frame;
+  const cv::Mat& rendered;  ///< depth, metres; NaN beside the model
+  cv::Point origin_px;      ///< its first pixel in the frame
+  const LabRegion* colours;
+
+  bool is_model(const cv::Point& at) const {
+    return at.x >= 0 && at.y >= 0 && at.x < rendered.cols && at.y < rendered.rows && !std::isnan(model(at));
+  }
+  float model(const cv::Point& at) const { return rendered.at<float>(at); }
+  float measured(const cv::Point& at) const { return frame.depth.at<float>(at + origin_px); }
+  bool is_in_frame(const cv::Point& at) const {
+    return cv::Rect(cv::Point(), frame.depth.size()).contains(at + origin_px);
+  }
+};
+
+/// 0 where colours are not known; nothing where they are known of other places only.
+std::optional<float> colours_apart_sq(const OutlineView& view, const cv::Point& inside, const cv::Point& beyond) {
+  if (view.colours == nullptr || view.colours->lab.empty()) return 0.0F;
+  const cv::Mat& lab = view.colours->lab;
+  const cv::Point origin = view.colours->origin_px - view.origin_px;
+  const cv::Rect part(origin, lab.size());
+  if (!part.contains(inside) || !part.contains(beyond)) return std::nullopt;
+  return colour_distance_sq(lab.at<cv::Vec3b>(inside - origin), lab.at<cv::Vec3b>(beyond - origin));
+}
+
+/// From the outline's pixel `at` towards `side`. Nothing where that says nothing: across a notch, beside the frame,
+/// or behind another thing.
+std::optional<AcrossOutline> look_across(const OutlineView& view, const cv::Point& at, const cv::Point& side,
+                                         const DepthTolerance& tolerance) {
+  constexpr double kInside = 0.004;  // metres: not on the edge, whose depth and colour are mixed
+  constexpr double kBeyond = 0.008;
+  const double metres_per_px = view.frame.camera.metres_per_px(view.model(at));
+  const int in_px = 1 + static_cast<int>(kInside / metres_per_px);
+  const int out_px = 1 + static_cast<int>(kBeyond / metres_per_px);
+  const cv::Point inside = at - in_px * side;
+  const cv::Point before = inside - 2 * in_px * side;
+  const cv::Point beyond = at + out_px * side;
+  if (!view.is_model(inside) || view.is_model(beyond) || !view.is_in_frame(beyond)) return std::nullopt;
+  const float here = view.measured(inside);
+  if (here < view.model(inside) - static_cast<float>(tolerance.at(view.model(inside)))) return std::nullopt;
+  const std::optional<float> colour_sq = colours_apart_sq(view, inside, beyond);
+  if (!colour_sq) return std::nullopt;
+  AcrossOutline seen;
+  const auto steps = static_cast<float>(in_px + out_px);
+  seen.apart = steps * static_cast<float>(metres_per_px);
+  seen.gained = view.measured(beyond) - here;
+  const float slope = view.is_model(before) ? view.model(inside) - view.model(before) : kNoValue;
+  seen.expected = slope * steps / static_cast<float>(2 * in_px);
+  seen.colour_sq = *colour_sq;
+  return seen;
+}
+
+/// To the left and right of each row's outline, and above and below each column's.
+void compare_outline(const OutlineView& view, const DepthTolerance& tolerance, Verification& result) {
   const std::array<cv::Point, 4> sides{cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}};
-  for (int y = 0; y < rendered.rows; ++y) {
-    for (int x = 0; x < rendered.cols; ++x) {
-      if (!is_model(x, y)) continue;
-      const float z = rendered.at<float>(y, x);
+  for (int y = 0; y < view.rendered.rows; ++y) {
+    for (int x = 0; x < view.rendered.cols; ++x) {
+      const cv::Point at(x, y);
+      if (std::isnan(view.model(at))) continue;
+      const auto limit = static_cast<float>(tolerance.at(view.model(at)));
       for (const cv::Point& side : sides) {
-        if (is_model(x + side.x, y + side.y)) continue;
-        const int reach_px = 1 + static_cast<int>(kReach / frame.camera.metres_per_px(z));
-        const cv::Point there = cv::Point(x, y) + reach_px * side;
-        if (is_model(there.x, there.y)) continue;  // across a notch
-        const cv::Point pixel = there + region.tl();
-        if (!cv::Rect(cv::Point(), frame.depth.size()).contains(pixel)) continue;
-        const float beyond = frame.depth.at<float>(pixel) - z;
-        const auto limit = static_cast<float>(tolerance.at(z));
-        result.outline_ends += beyond > limit ? 1 : 0;
-        result.outline_continues += std::abs(beyond) <= limit ? 1 : 0;
+        if (view.is_model(at + side)) continue;
+        const std::optional<AcrossOutline> seen = look_across(view, at, side, tolerance);
+        if (!seen || comes_forward(*seen, limit)) continue;
+        ++result.outline;
+        result.outline_goes_on += surface_goes_on(*seen, limit) * colour_goes_on(*seen);
       }
     }
   }
@@ -64,7 +112,7 @@ Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance) 
 }
 
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
-                         const DepthTolerance& tolerance) {
+                         const DepthTolerance& tolerance, const LabRegion* colours) {
   Verification result;
   const RenderedPart part = render_depth_part(mesh, T_camera_object, frame.camera);
   const cv::Rect& region = part.region_px;
@@ -83,7 +131,7 @@ Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::
       result.occluded += beyond < -limit ? 1 : 0;
     }
   }
-  compare_outline(frame, rendered, region, tolerance, result);
+  compare_outline({frame, rendered, region.tl(), colours}, tolerance, result);
   return result;
 }
 

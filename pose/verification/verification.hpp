@@ -21,8 +21,8 @@ struct Verification {
   int agreeing = 0;                ///< measured within the tolerance
   int violating = 0;               ///< measured behind the model: the camera saw through it
   int occluded = 0;                ///< measured in front of the model; says nothing about the pose
-  int outline_ends = 0;            ///< places just outside the outline where the surface ends: measured well behind it
-  int outline_continues = 0;       ///< where the measured surface goes on as if there were no outline
+  int outline = 0;                 ///< places where the model's outline was looked across
+  float outline_goes_on = 0.0F;    ///< those where what is seen goes on as if there were no outline, see AcrossOutline
   float visible_fraction() const;  ///< agreeing of rendered, 0 if nothing is rendered
   float free_space_violation() const;  ///< violating of rendered, 0 if nothing is rendered
 };
@@ -32,7 +32,8 @@ struct Verification {
 /// only near the pose's.
 Verification verify_look(const ViewLook& look, const DepthTolerance& tolerance);
 
+/// `colours`: of the frame, about the object; nullptr: any colour counts as going on.
 Verification verify_pose(const RgbdFrame& frame, const Mesh& mesh, const Eigen::Isometry3d& T_camera_object,
-                         const DepthTolerance& tolerance);
+                         const DepthTolerance& tolerance, const LabRegion* colours = nullptr);
 
 }  // namespace houghstream

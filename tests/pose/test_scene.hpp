@@ -94,7 +94,9 @@ inline RgbdFrame noisy_frame(const std::vector<RenderItem>& items, std::uint64_t
   frame.id.utime = 1000;
   frame.camera = kCamera;
   frame.colour = cv::Mat(kCamera.height, kCamera.width, CV_8UC3, cv::Scalar(90, 90, 90));
-  frame.depth = render_geometry(items, kCamera).depth;
+  const RenderedGeometry rendered = render_geometry(items, kCamera);
+  frame.depth = rendered.depth;
+  frame.colour.setTo(cv::Scalar(110, 140, 160), rendered.id == 1);
   Random random(seed);
   for (int y = 0; y < frame.depth.rows; ++y) {
     for (int x = 0; x < frame.depth.cols; ++x) {

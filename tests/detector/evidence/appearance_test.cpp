@@ -53,15 +53,15 @@ TEST(Appearance, TheRimKnowsTheNearestDepthOfTheObjectButNotBelow) {
 TEST(Appearance, TheOutlineIsCrossedAtBothEndsOfEachLine) {
   const Appearance seen = square();
   EXPECT_EQ(seen.outline.size(), 80U);
-  for (const AcrossOutline& across : seen.outline) {
-    const auto on = [&](const AcrossOutline::Cell& at) {
+  for (const OutlineCells& across : seen.outline) {
+    const auto on = [&](const OutlineCells::Cell& at) {
       return seen.mm[cell(at.column, at.row)] != Appearance::kBeside;
     };
     EXPECT_TRUE(on(across.inside));
     EXPECT_FALSE(on(across.beyond));
     const int apart =
         std::abs(across.inside.row - across.beyond.row) + std::abs(across.inside.column - across.beyond.column);
-    EXPECT_EQ(apart, AcrossOutline::kApart);
+    EXPECT_EQ(apart, OutlineCells::kApart);
     EXPECT_TRUE(across.gained_mm == 0 || across.gained_mm == Appearance::kNoDepth);
   }
 }
@@ -92,7 +92,7 @@ TEST(Appearance, TheOutlineKnowsWhatASlopeGains) {
   const cv::Rect box(20, 20, 40, 40);
   mask(box).setTo(255);
   const Appearance seen = remember_appearance(view, mask, box, {0.0F, 0.0F, 1.0F});
-  for (const AcrossOutline& across : seen.outline) {
+  for (const OutlineCells& across : seen.outline) {
     const int right = across.beyond.column - across.inside.column;
     EXPECT_NEAR(across.gained_mm, 10 * right, 1);
   }

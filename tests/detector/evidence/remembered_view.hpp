@@ -39,7 +39,7 @@ inline TrainedView resized(TrainedView view, float size) {
       if (mm > Appearance::kNoDepth) mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(mm)));
     }
   }
-  for (AcrossOutline& across : view.appearance.outline) {
+  for (OutlineCells& across : view.appearance.outline) {
     if (across.gained_mm > Appearance::kNoDepth)
       across.gained_mm = static_cast<std::int16_t>(std::lround(size * static_cast<float>(across.gained_mm)));
   }

@@ -51,5 +51,20 @@ TEST(LogisticRegression, ExamplesThatAPlanePartsGiveFiniteWeights) {
   EXPECT_EQ(found[2], 0.0);
 }
 
+TEST(LogisticRegression, AHeldWeightStaysAndTheOthersFollowIt) {
+  const Weights truth(0.5, -1.0, 2.0);
+  const std::vector<LogisticExample<3>> examples = drawn_by(truth, 20000);
+  const Weights prior(0.0, 1.0, 0.0);
+  const Weights found = fit_logistic<3>(examples, {prior, 1e-3, 1});
+  EXPECT_EQ(found[1], prior[1]);
+  EXPECT_GT(found[2], 0.5);
+  for (const int other : {0, 2}) {
+    for (const double step : {-0.05, 0.05}) {
+      const Weights moved = found + step * Weights::Unit(other);
+      EXPECT_GT(logistic_loss<3>(examples, moved, {prior, 1e-3}), logistic_loss<3>(examples, found, {prior, 1e-3}));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace houghstream

@@ -12,8 +12,8 @@ PoseEvidence good() {
   evidence.depth.rendered = 2000;
   evidence.depth.agreeing = 1800;
   evidence.depth.violating = 20;
-  evidence.depth.outline_ends = 150;
-  evidence.depth.outline_continues = 15;
+  evidence.depth.outline = 165;
+  evidence.depth.outline_goes_on = 2.0F;
   evidence.colour = ColourComparison{400, 0.6F, 14.0F, 0.5F, 0, 24.0F, 40.0F};
   return evidence;
 }
@@ -46,7 +46,7 @@ TEST(PoseQuality, WhatWasSeenThroughSpeaksAgainstAPose) {
 
 TEST(PoseQuality, ASurfaceThatGoesOnSpeaksAgainstAPose) {
   PoseEvidence evidence = good();
-  std::swap(evidence.depth.outline_ends, evidence.depth.outline_continues);
+  evidence.depth.outline_goes_on = 150.0F;
   EXPECT_LT(quality(evidence), quality(good()));
   EXPECT_EQ(reason(evidence), PoseStatus::kRejectedByOutline);
 }

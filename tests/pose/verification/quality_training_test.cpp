@@ -48,7 +48,7 @@ double way_from_prior(const QualitySettings& settings) {
 TEST(QualityTraining, FewExamplesLeaveThePriorLittle) {
   const double by_few = way_from_prior(fit_quality_settings(drawn(3), QualitySettings{}, 1.0));
   EXPECT_GT(by_few, 0.0);
-  EXPECT_LT(by_few, 0.3 * way_from_prior(fit_quality_settings(drawn(20000), QualitySettings{}, 1.0)));
+  EXPECT_LT(by_few, 0.4 * way_from_prior(fit_quality_settings(drawn(20000), QualitySettings{}, 1.0)));
   EXPECT_LT(way_from_prior(fit_quality_settings(drawn(3), QualitySettings{}, 100.0)), 0.1 * by_few);
 }
 
@@ -63,6 +63,13 @@ TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
   const QualitySettings told_apart = fit_quality_settings(examples, QualitySettings{}, 1.0);
   EXPECT_GT(told_apart.weights.print, alone.weights.print + 0.5);
   EXPECT_NEAR(told_apart.weights.outline, alone.weights.outline, 0.25);
+}
+
+TEST(QualityTraining, WhatIsSeenThroughWeighsAsItDid) {
+  std::vector<QualityExample> examples = drawn(2000);
+  for (QualityExample& example : examples) example.terms.seen_through = example.is_right ? -1.0 : 1.0;
+  QualitySettings prior;
+  EXPECT_EQ(fit_quality_settings(examples, prior, 1.0).weights.seen_through, prior.weights.seen_through);
 }
 
 TEST(QualityTraining, NoExamplesGiveThePrior) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/geometry/renderer.hpp"
 #include "tests/pose/test_scene.hpp"
 
 namespace houghstream {
@@ -25,7 +26,8 @@ TEST(Verification, TruePoseAgreesAlmostEverywhere) {
   EXPECT_GT(found.visible_fraction(), 0.95F);  // 2 % of the depth is lost
   EXPECT_LT(found.free_space_violation(), 0.01F);
   EXPECT_EQ(found.occluded, 0);
-  EXPECT_GT(found.outline_ends, found.outline_continues);
+  EXPECT_GT(found.outline, 200);
+  EXPECT_LT(found.outline_goes_on, 0.4F * static_cast<float>(found.outline));
 }
 
 TEST(Verification, ModelInFrontOfWhatWasSeenViolatesFreeSpace) {
@@ -56,19 +58,40 @@ TEST(Verification, PointsOfAViewTellWhatRenderedPixelsTell) {
     EXPECT_GT(points.rendered, 300);
     EXPECT_NEAR(points.visible_fraction(), pixels.visible_fraction(), 0.06) << scale;
     EXPECT_NEAR(points.free_space_violation(), pixels.free_space_violation(), 0.06) << scale;
-    EXPECT_EQ(points.outline_ends + points.outline_continues, 0);
+    EXPECT_EQ(points.outline, 0);
   }
+}
+
+/// Its large face in the table's.
+Eigen::Isometry3d sunk_into_the_table(const BoxOnTable& scene) {
+  Eigen::Isometry3d sunk = scene.truth * Eigen::Translation3d(-0.3, 0.2, -0.13 - 0.03);
+  sunk.rotate(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX()));
+  return sunk;
 }
 
 TEST(Verification, FaceSunkIntoTheTableAgreesButHasNoOutline) {
   const BoxOnTable scene;
-  Eigen::Isometry3d sunk =
-      scene.truth * Eigen::Translation3d(-0.3, 0.2, -0.13 - 0.03);  // its large face in the table's
-  sunk.rotate(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX()));
-  const Verification found = verify_pose(scene.frame, scene.object, sunk, kDepthTolerance);
+  const Verification found = verify_pose(scene.frame, scene.object, sunk_into_the_table(scene), kDepthTolerance);
   EXPECT_GT(found.visible_fraction(), 0.4F);
   EXPECT_LT(found.free_space_violation(), 0.01F);
-  EXPECT_GT(found.outline_continues, 20 * found.outline_ends);
+  EXPECT_GT(found.outline, 200);
+  EXPECT_GT(found.outline_goes_on, 0.7F * static_cast<float>(found.outline));
+}
+
+TEST(Verification, WhatIsFlushWithTheTableEndsWhereItsColourDoes) {
+  const BoxOnTable scene;
+  const Eigen::Isometry3d pose = sunk_into_the_table(scene);
+  const auto goes_on = [&](const cv::Mat& lab) {
+    const LabRegion colours{lab, {}, {}};
+    const Verification found = verify_pose(scene.frame, scene.object, pose, kDepthTolerance, &colours);
+    return found.outline_goes_on / static_cast<float>(found.outline);
+  };
+  cv::Mat lab(scene.frame.depth.size(), CV_8UC3, cv::Scalar(120, 128, 128));
+  EXPECT_GT(goes_on(lab), 0.7F) << "all of one colour";
+  const RenderedPart part = render_depth_part(scene.object, pose, scene.frame.camera);
+  const cv::Mat is_object = part.depth == part.depth;  // not NaN
+  lab(part.region_px).setTo(cv::Scalar(120, 170, 160), is_object);
+  EXPECT_LT(goes_on(lab), 0.05F) << "the object is red";
 }
 
 TEST(Verification, OutsideTheImageNothingIsRendered) {
