@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "pipeline/types/frame.hpp"
@@ -28,16 +27,15 @@ struct Appearance {
   static constexpr int kBoxSide = 20;  ///< cells per side of the box
   static constexpr int kRim = 2;       ///< cells around it
   static constexpr int kSide = kBoxSide + 2 * kRim;
-  static constexpr std::int16_t kBeside = -32768;              ///< the cell does not show the object
-  static constexpr std::int16_t kNoDepth = -32767;             ///< it does, but no depth was measured
-  static constexpr std::size_t kMostCrossings = 4 * kBoxSide;  ///< of an outline: two of each row and column
+  static constexpr std::int16_t kBeside = -32768;   ///< the cell does not show the object
+  static constexpr std::int16_t kNoDepth = -32767;  ///< it does, but no depth was measured
   using Cells = std::array<std::int16_t, kSide * kSide>;
   Cells mm{};      ///< row by row; as it lies across the ray to the centre, see ReliefTilt
   Cells beside{};  ///< beside the outline: depth of the nearest cell of the object; elsewhere kBeside
   std::array<std::array<std::uint8_t, 3>, kSide * kSide> lab{};  ///< colour, 8-bit CIE L*a*b*; of the object only
   /// At both ends of each row and column. Where those are fewer, one from row 0 ends them: the rim never shows the
   /// object.
-  std::array<OutlineCells, kMostCrossings> outline{};
+  std::array<OutlineCells, 4 * kBoxSide> outline{};
 };
 
 /// What is to be remembered of a view: `mask` is CV_8UC1, 255 on the object, `box_px` its bounding box, `centre_camera`

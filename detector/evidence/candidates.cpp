@@ -46,11 +46,15 @@ PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<Placed
 void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, std::vector<PlacedView>& compared,
                   Evidence& evidence) {
   constexpr float kHopeless = 0.02F;  // score: votes bring hidden objects views that hardly fit
+  const auto take = [&](const PlacedView& placed) {
+    evidence.fit = placed.fit;
+    evidence.outline = look_across_outline(input.forest.views[placed.view], placed.centre_camera, input.frame);
+  };
   if (compared.empty()) return;
-  evidence.fit = best_unaligned(compared).fit;
+  take(best_unaligned(compared));
   if (score(input.forest.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
   const PlacedView best = climb(input, align_best_few(input.forest.views, input.frame, compared), compared);
-  evidence.fit = best.fit;
+  take(best);
   evidence.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
 }
 

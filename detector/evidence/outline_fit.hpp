@@ -1,30 +1,35 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-
-#include "detector/evidence/appearance.hpp"
 #include "pipeline/geometry/across_outline.hpp"
 
 namespace houghstream {
-
-/// What is seen across an outline: the first `count`.
-struct OutlineLooks {
-  std::size_t count = 0;
-  std::array<AcrossOutline, Appearance::kMostCrossings> seen;
-};
 
 /// Whether what a hypothesis takes for the object ends where the object's outline is: shares of the outline, 0 to 1; 0
 /// where nothing of it is seen. A part of a larger thing, or of a longer one, looks like the object within the outline
 /// only. Depth cannot tell it where the object touches what it stands on; that its colour goes on, or its own slope,
 /// can. (By the contrast of a window with what surrounds it Alexe, Deselaers and Ferrari 2010 tell objects.)
-struct OutlineFit {
-  float surface_goes_on = 0.0F;  ///< straight on from within
-  float colour_goes_on = 0.0F;   ///< the same colour, with no step back in depth
-  float goes_on = 0.0F;          ///< the surface, in the same colour
-};
+class OutlineFit {
+ public:
+  /// `tolerance`: of depth, metres.
+  void add(const AcrossOutline& seen, float tolerance) {
+    const float surface = houghstream::surface_goes_on(seen, tolerance);
+    ++count_;
+    surface_ += surface;
+    colour_ += steps_back(seen, tolerance) ? 0.0F : plain_colour_goes_on(seen);
+    both_ += surface * houghstream::colour_goes_on(seen);
+  }
 
-/// `tolerance`: of depth, metres.
-OutlineFit fit_outline(const OutlineLooks& looks, float tolerance);
+  float surface_goes_on() const { return share(surface_); }  ///< straight on from within
+  float colour_goes_on() const { return share(colour_); }    ///< the same colour, with no step back in depth
+  float goes_on() const { return share(both_); }             ///< the surface, in the same colour
+
+ private:
+  float share(float sum) const { return count_ > 0 ? sum / static_cast<float>(count_) : 0.0F; }
+
+  int count_ = 0;
+  float surface_ = 0.0F;
+  float colour_ = 0.0F;
+  float both_ = 0.0F;
+};
 
 }  // namespace houghstream

@@ -54,10 +54,10 @@ ScoreTerms score_terms(const Evidence& evidence) {
   terms.extent_likeness = terms.extent * fit.likeness;
   terms.contrast_likeness = fit.contrast * fit.likeness;
   terms.paleness = fit.paleness;
-  terms.goes_on = fit.outline.goes_on;
-  terms.surface_goes_on = fit.outline.surface_goes_on;
-  terms.colour_goes_on = fit.outline.colour_goes_on;
-  terms.goes_on_likeness = fit.outline.goes_on * fit.likeness;
+  terms.goes_on = evidence.outline.goes_on();
+  terms.surface_goes_on = evidence.outline.surface_goes_on();
+  terms.colour_goes_on = evidence.outline.colour_goes_on();
+  terms.goes_on_likeness = terms.goes_on * fit.likeness;
   return terms;
 }
 

@@ -12,6 +12,7 @@ struct Evidence {
   float distance = 1.0F;     ///< of the centre from the camera, metres
   float radius_px = 40.0F;   ///< of the object at that distance, at about the usual focal length: see octaves_scale
   ViewFit fit;               ///< of the remembered view that fits best
+  OutlineFit outline;        ///< of the same
   float other_size = -0.4F;  ///< see gain_of_other_size; about what objects have, where it was not looked for
 };
 

@@ -113,41 +113,41 @@ constexpr std::array<const char*, kScoreTerms> kScoreTermNames = {"constant",
 static_assert(kScoreTermNames.back() != nullptr, "a term has no name");
 
 /// The weights that are assumed before any example is seen: what sixteen household objects have in common. hs-teach
-/// learnt them from 64249 hypotheses, 3601 of them true, in 240 practice rooms each of two stores of seven and nine
+/// learnt them from 64257 hypotheses, 3599 of them true, in 240 practice rooms each of two stores of seven and nine
 /// objects of `hs-render training --objects all_20` (`hs-teach practise -v` says what a store's objects have in
 /// common).
 constexpr ScoreTerms prior_weights() {
   ScoreTerms weights;
-  weights.constant = 2.62F;
-  weights.mass = 1.72F;
-  weights.shown = 1.60F;
-  weights.seen_through = -3.31F;
-  weights.unknown = 1.34F;
-  weights.continued = -1.56F;
-  weights.likeness = 4.00F;
-  weights.hue_conflict = -4.54F;
-  weights.foreign_colour = -1.74F;
-  weights.unevenness = -1.43F;
+  weights.constant = 3.04F;
+  weights.mass = 1.76F;
+  weights.shown = 1.36F;
+  weights.seen_through = -3.15F;
+  weights.unknown = 1.07F;
+  weights.continued = -1.88F;
+  weights.likeness = 3.95F;
+  weights.hue_conflict = -4.81F;
+  weights.foreign_colour = -1.73F;
+  weights.unevenness = -1.32F;
   weights.unknown_mass = -0.44F;
-  weights.unknown_likeness = 1.09F;
-  weights.unknown_distance = 0.51F;
-  weights.likeness_hue_conflict = -2.66F;
-  weights.other_size = -2.67F;
-  weights.certainty = 0.19F;
-  weights.shown_sq = 0.48F;
-  weights.other_size_sq = -0.77F;
-  weights.seen_through_certainty = -0.92F;
+  weights.unknown_likeness = 1.21F;
+  weights.unknown_distance = 0.49F;
+  weights.likeness_hue_conflict = -2.57F;
+  weights.other_size = -2.95F;
+  weights.certainty = 0.18F;
+  weights.shown_sq = 0.46F;
+  weights.other_size_sq = -1.56F;
+  weights.seen_through_certainty = -0.71F;
   weights.hue_conflict_foreign_colour = 1.40F;
-  weights.unevenness_sq = -0.98F;
-  weights.extent = 1.45F;
-  weights.contrast = 0.40F;
-  weights.extent_likeness = -0.59F;
-  weights.contrast_likeness = -0.57F;
-  weights.paleness = 0.31F;
-  weights.goes_on = -3.65F;
-  weights.surface_goes_on = -3.12F;
-  weights.colour_goes_on = -5.03F;
-  weights.goes_on_likeness = -3.83F;
+  weights.unevenness_sq = -1.22F;
+  weights.extent = 1.66F;
+  weights.contrast = 0.20F;
+  weights.extent_likeness = -0.70F;
+  weights.contrast_likeness = -0.39F;
+  weights.paleness = 0.26F;
+  weights.goes_on = -3.37F;
+  weights.surface_goes_on = -2.93F;
+  weights.colour_goes_on = -4.99F;
+  weights.goes_on_likeness = -3.65F;
   return weights;
 }
 

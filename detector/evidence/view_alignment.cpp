@@ -7,7 +7,7 @@ namespace houghstream {
 
 float agreement(const ViewFit& fit) {
   return fit.visible + 0.5F * fit.unknown - fit.seen_through + 0.5F * fit.likeness - 0.25F * fit.continued -
-         0.2F * fit.hue_conflict - 0.5F * fit.outline.goes_on;
+         0.2F * fit.hue_conflict;
 }
 
 PlacedView align_view(const std::vector<TrainedView>& views, PlacedView placed, const LabFrame& frame,

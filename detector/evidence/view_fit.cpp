@@ -254,12 +254,42 @@ Likeness compare_colours(const Tally& tally, const Appearance& appearance, const
   return likeness;
 }
 
-/// What lies in front of the object, within its outline or beyond, is left out. Without branches, as compare().
-OutlineFit compare_outline(const Appearance& appearance, const Comparison& comparison, float shift, float tolerance,
-                           const CellColours& colours) {
-  OutlineLooks looks;
-  const float apart_x = OutlineCells::kApart * comparison.metres_per_px * comparison.cell_width;
-  const float apart_y = OutlineCells::kApart * comparison.metres_per_px * comparison.cell_height;
+/// Of depth, metres: alignment, and a structured-light camera's noise.
+float tolerance_at(float z) {
+  return 0.010F + 0.003F * z * z;
+}
+
+}  // namespace
+
+ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
+  const Comparison comparison = compare(view, centre_camera, frame.frame, size);
+  const float shift = common_shift(comparison);
+  const float tolerance = tolerance_at(centre_camera.z());
+  const Tally tally = tally_cells(comparison, shift, tolerance);
+  const Likeness likeness = compare_colours(tally, view.appearance, CellColours(comparison, frame));
+  ViewFit fit;
+  fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
+  fit.visible = tally.share(tally.visible);
+  fit.hidden = tally.share(tally.hidden);
+  fit.seen_through = tally.share(tally.seen_through);
+  fit.unknown = tally.share(tally.unknown);
+  fit.continued = continued_share(comparison, shift, tolerance);
+  fit.likeness = likeness.correlation();
+  fit.foreign_colour = likeness.foreign_colour();
+  fit.hue_conflict = likeness.hue_conflict();
+  fit.paleness = likeness.paleness();
+  fit.contrast = likeness.contrast();
+  fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
+  return fit;
+}
+
+OutlineFit look_across_outline(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame) {
+  const Comparison comparison = compare(view, centre_camera, frame.frame, 1.0F);
+  const CellColours colours(comparison, frame);
+  const float shift = common_shift(comparison);
+  const float tolerance = tolerance_at(centre_camera.z());
+  const Appearance& appearance = view.appearance;
+  OutlineFit fit;
   for (const OutlineCells& cells : appearance.outline) {
     const OutlineCells::Cell in = cells.inside;
     const OutlineCells::Cell out = cells.beyond;
@@ -268,44 +298,17 @@ OutlineFit compare_outline(const Appearance& appearance, const Comparison& compa
     const std::int16_t mm = appearance.mm[cell];
     const float inside = comparison.depth[cell];
     const float beyond = comparison.depth[out.row * kSide + out.column];
-    AcrossOutline& seen = looks.seen[looks.count];
-    seen.apart = in.row == out.row ? apart_x : apart_y;
+    const bool is_in_frame = !std::isinf(inside) && !std::isinf(beyond);
+    const bool is_hidden = mm > Appearance::kNoDepth && inside - comparison.metres_per_mm * mm - shift < -tolerance;
+    if (!is_in_frame || is_hidden) continue;
+    AcrossOutline seen;
+    const float cell_px = in.row == out.row ? comparison.cell_width : comparison.cell_height;
+    seen.apart = OutlineCells::kApart * comparison.metres_per_px * cell_px;
     seen.gained = beyond - inside;
     seen.expected = cells.gained_mm > Appearance::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
     seen.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
-    const bool nearer = comparison.metres_per_mm * mm + shift - inside > tolerance;
-    const int hidden = (mm > Appearance::kNoDepth ? 1 : 0) & (nearer ? 1 : 0);
-    const int another = comes_forward(seen, tolerance) ? 1 : 0;
-    const int beside_frame = (std::isinf(inside) ? 1 : 0) | (std::isinf(beyond) ? 1 : 0);
-    looks.count += (beside_frame | hidden | another) == 0 ? 1 : 0;
+    if (!comes_forward(seen, tolerance)) fit.add(seen, tolerance);
   }
-  return fit_outline(looks, tolerance);
-}
-
-}  // namespace
-
-ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame, float size) {
-  const Comparison comparison = compare(view, centre_camera, frame.frame, size);
-  const float shift = common_shift(comparison);
-  const float z = centre_camera.z();
-  const float tolerance = 0.010F + 0.003F * z * z;  // alignment, and a structured-light camera's noise
-  const Tally tally = tally_cells(comparison, shift, tolerance);
-  const CellColours colours(comparison, frame);
-  const Likeness likeness = compare_colours(tally, view.appearance, colours);
-  ViewFit fit;
-  fit.unevenness = tally.unevenness / static_cast<float>(std::max(tally.visible, 1));
-  fit.visible = tally.share(tally.visible);
-  fit.hidden = tally.share(tally.hidden);
-  fit.seen_through = tally.share(tally.seen_through);
-  fit.unknown = tally.share(tally.unknown);
-  fit.continued = continued_share(comparison, shift, tolerance);
-  fit.outline = compare_outline(view.appearance, comparison, shift, tolerance, colours);
-  fit.likeness = likeness.correlation();
-  fit.foreign_colour = likeness.foreign_colour();
-  fit.hue_conflict = likeness.hue_conflict();
-  fit.paleness = likeness.paleness();
-  fit.contrast = likeness.contrast();
-  fit.visible_box_px = visible_box(comparison, tally.columns, tally.rows);
   return fit;
 }
 

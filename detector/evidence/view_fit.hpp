@@ -30,8 +30,7 @@ struct ViewFit {
   float hue_conflict = 0.0F;    ///< see Likeness
   float paleness = 0.0F;        ///< see Likeness
   float contrast = 0.0F;        ///< see Likeness
-  OutlineFit outline;
-  cv::Rect2f visible_box_px;  ///< of what is visible or unknown, frame pixels; empty where nothing is
+  cv::Rect2f visible_box_px;    ///< of what is visible or unknown, frame pixels; empty where nothing is
 };
 
 /// The view's relief compared with the frame, pixel by pixel of the relief, after moving it along the ray by at most
@@ -40,5 +39,9 @@ struct ViewFit {
 /// the view is taken for one of an object so many times as large.
 ViewFit fit_view(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame,
                  float size = 1.0F);
+
+/// Whether what is seen ends where the view's outline is. What lies in front of the object, within or beyond, has no
+/// say.
+OutlineFit look_across_outline(const TrainedView& view, const Eigen::Vector3f& centre_camera, const LabFrame& frame);
 
 }  // namespace houghstream

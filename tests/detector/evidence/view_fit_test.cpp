@@ -119,6 +119,10 @@ TEST(ViewFit, ALargerThingGoesOnBesideTheOutlineAndComesNearerThere) {
   EXPECT_EQ(beside(-0.06F), 0.0F) << "what is behind";
 }
 
+OutlineFit outline_of(const RgbdFrame& frame, const Eigen::Vector3f& centre = kCentre) {
+  return look_across_outline(toy::remembered_view(), centre, toy::lab_frame(frame, frame.colour, 1.0F));
+}
+
 /// What lies around the tile, `behind` metres behind its edges and painted in `colour`.
 OutlineFit outline_fit(double behind, const cv::Scalar& colour) {
   RgbdFrame frame = tile_frame();
@@ -126,18 +130,18 @@ OutlineFit outline_fit(double behind, const cv::Scalar& colour) {
   cv::bitwise_not(toy::training_views().front().mask, outside);
   frame.depth.setTo(kDistance + behind, outside);
   frame.colour.setTo(colour, outside);
-  return fit(frame).outline;
+  return outline_of(frame);
 }
 
 TEST(ViewFit, AnObjectEndsAtItsOutlineWhereDepthOrColourDoes) {
   const OutlineFit alone = outline_fit(0.3, {0, 200, 0});
-  EXPECT_LT(alone.surface_goes_on, 0.05F);
-  EXPECT_LT(alone.colour_goes_on, 0.05F);
-  EXPECT_LT(alone.goes_on, 0.05F);
+  EXPECT_LT(alone.surface_goes_on(), 0.05F);
+  EXPECT_LT(alone.colour_goes_on(), 0.05F);
+  EXPECT_LT(alone.goes_on(), 0.05F);
   const OutlineFit lying_on_another = outline_fit(0.0, {0, 200, 0});
-  EXPECT_GT(lying_on_another.surface_goes_on, 0.3F);
-  EXPECT_LT(lying_on_another.colour_goes_on, 0.05F);
-  EXPECT_LT(lying_on_another.goes_on, 0.05F);
+  EXPECT_GT(lying_on_another.surface_goes_on(), 0.3F);
+  EXPECT_LT(lying_on_another.colour_goes_on(), 0.05F);
+  EXPECT_LT(lying_on_another.goes_on(), 0.05F);
 }
 
 /// The remembered view is a window of a plain wall.
@@ -148,27 +152,27 @@ TEST(ViewFit, APartOfALargerThingDoesNotEndAtTheOutline) {
   const cv::Mat mask = toy::training_views().front().mask;
   TrainedView window = toy::remembered_view();
   window.appearance = remember_appearance(wall, mask, cv::boundingRect(mask), kCentre);
-  const auto outline = [&] { return fit_view(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F)).outline; };
-  EXPECT_GT(outline().surface_goes_on, 0.9F);
-  EXPECT_GT(outline().colour_goes_on, 0.9F);
-  EXPECT_GT(outline().goes_on, 0.9F);
+  const auto outline = [&] { return look_across_outline(window, kCentre, toy::lab_frame(wall, wall.colour, 1.0F)); };
+  EXPECT_GT(outline().surface_goes_on(), 0.9F);
+  EXPECT_GT(outline().colour_goes_on(), 0.9F);
+  EXPECT_GT(outline().goes_on(), 0.9F);
   cv::Mat outside;
   cv::bitwise_not(mask, outside);
   wall.depth.setTo(kDistance + 0.3, outside);
-  EXPECT_LT(outline().surface_goes_on, 0.1F);
-  EXPECT_LT(outline().colour_goes_on, 0.1F) << "another thing of its colour, behind it";
+  EXPECT_LT(outline().surface_goes_on(), 0.1F);
+  EXPECT_LT(outline().colour_goes_on(), 0.1F) << "another thing of its colour, behind it";
 }
 
 TEST(ViewFit, WhatHidesTheOutlineHasNoSayInWhereTheObjectEnds) {
   RgbdFrame frame = tile_frame();
-  const OutlineFit whole = fit(frame).outline;
+  const OutlineFit whole = outline_of(frame);
   const cv::Rect left(0, 0, frame.colour.cols / 2, frame.colour.rows);
   frame.depth(left).setTo(0.5F);
   frame.colour(left).setTo(cv::Scalar(0, 255, 0));
-  EXPECT_NEAR(fit(frame).outline.goes_on, whole.goes_on, 0.1F);
+  EXPECT_NEAR(outline_of(frame).goes_on(), whole.goes_on(), 0.1F);
   frame.depth.setTo(0.5F);
-  EXPECT_EQ(fit(frame).outline.goes_on, 0.0F);
-  EXPECT_EQ(fit(frame).outline.colour_goes_on, 0.0F);
+  EXPECT_EQ(outline_of(frame).goes_on(), 0.0F);
+  EXPECT_EQ(outline_of(frame).colour_goes_on(), 0.0F);
 }
 
 TEST(ViewFit, AViewMayBeTakenForOneOfALargerObject) {
@@ -240,7 +244,8 @@ TEST(ViewFit, PrintThatIsFinerThanWhatIsRememberedIsAveraged) {
 TEST(ViewFit, OutsideTheFrameNothingIsCompared) {
   const ViewFit result = fit(tile_frame(), {2.0F, 0.0F, kDistance});
   EXPECT_EQ(result.visible + result.hidden + result.seen_through + result.unknown, 0.0F);
-  EXPECT_EQ(result.outline.surface_goes_on + result.outline.colour_goes_on, 0.0F);
+  const OutlineFit outline = outline_of(tile_frame(), {2.0F, 0.0F, kDistance});
+  EXPECT_EQ(outline.surface_goes_on() + outline.colour_goes_on(), 0.0F);
   EXPECT_TRUE(result.visible_box_px.empty());
 }
 
