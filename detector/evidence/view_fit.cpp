@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <utility>
 
 #include "detector/evidence/likeness.hpp"
@@ -29,14 +29,25 @@ struct Comparison {
   std::array<float, kSide * kSide> excess;  // at these, metres; NaN where depth is not measured or not remembered
   std::size_t beside_cells = 0;
   std::array<float, kSide * kSide> excess_beside;  // the first beside_cells: beside the outline
-  std::array<float, kSide * kSide> depth;  // over the centre's, metres; NaN: not measured; infinite: not in the frame
-  float left = 0.0F;                       // of the first cell, frame pixels
+  std::array<int, kSide> column_px{};              // frame pixels that the cells' centres lie in
+  std::array<int, kSide> row_px{};
+  std::array<float, kSide> row_depth{};  // depth that the relief is counted from, in a row at the centre's column...
+  std::array<float, kSide> gained{};     // ...and more in a column
+  float left = 0.0F;                     // of the first cell, frame pixels
   float top = 0.0F;
   float cell_width = 0.0F;
   float cell_height = 0.0F;
   cv::Point2f centre_px;  // of the view, as cell_centre()
   float metres_per_px = 0.0F;
   float metres_per_mm = 0.0F;  // of the view
+
+  /// How far a cell's surface lies behind the relief's zero, metres; NaN where it is not measured. Nothing where it is
+  /// not in the frame.
+  std::optional<float> beyond_centre(const RgbdFrame& frame, OutlineCells::Cell cell) const {
+    const cv::Point at(column_px[cell.column], row_px[cell.row]);
+    if (!cv::Rect(cv::Point(), frame.depth.size()).contains(at)) return std::nullopt;
+    return frame.depth.at<float>(at) - (row_depth[cell.row] + gained[cell.column]);
+  }
 
   /// Frame pixels from the left upper edge of the first pixel.
   cv::Point2f cell_centre(std::size_t row, std::size_t column) const {
@@ -66,29 +77,24 @@ Comparison compare(const TrainedView& view, const Eigen::Vector3f& centre, const
   const float metres_per_mm = out.metres_per_mm;
   const float metres_per_px = out.metres_per_px;
   const ReliefTilt tilt = relief_tilt(centre);
-  const cv::Point2f centre_px = out.centre_px;
-  out.depth.fill(std::numeric_limits<float>::infinity());
-  std::array<int, kSide> column_px{};
-  std::array<float, kSide> expected{};  // depth that the relief is counted from, in a row
-  std::array<float, kSide> gained{};
-  for (std::size_t column = 0; column < kSide; ++column) {
-    const float x = out.cell_centre(0, column).x;
-    column_px[column] = static_cast<int>(std::floor(x));
-    gained[column] = tilt.right * metres_per_px * (x - centre_px.x);
+  for (std::size_t i = 0; i < kSide; ++i) {
+    const cv::Point2f px = out.cell_centre(i, i);
+    out.column_px[i] = static_cast<int>(std::floor(px.x));
+    out.row_px[i] = static_cast<int>(std::floor(px.y));
+    out.gained[i] = tilt.right * metres_per_px * (px.x - out.centre_px.x);
+    out.row_depth[i] = centre.z() + tilt.down * metres_per_px * (px.y - out.centre_px.y);
   }
+  std::array<float, kSide> expected{};  // depth that the relief is counted from, in a row
   for (std::size_t row = 0; row < kSide; ++row) {
-    const float y_px = out.cell_centre(row, 0).y;
-    const int y = static_cast<int>(std::floor(y_px));
+    const int y = out.row_px[row];
     if (y < 0 || y >= frame.depth.rows) continue;
     const auto* depth = frame.depth.ptr<float>(y);
-    const float row_depth = centre.z() + tilt.down * metres_per_px * (y_px - centre_px.y);
-    for (std::size_t column = 0; column < kSide; ++column) expected[column] = row_depth + gained[column];
+    for (std::size_t column = 0; column < kSide; ++column) expected[column] = out.row_depth[row] + out.gained[column];
     for (std::size_t column = 0; column < kSide; ++column) {
-      const int x = column_px[column];
+      const int x = out.column_px[column];
       if (x < 0 || x >= frame.depth.cols) continue;
       const std::size_t cell = row * kSide + column;
       const float beyond_centre = depth[x] - expected[column];
-      out.depth[cell] = beyond_centre;
       const std::int16_t remembered = view.appearance.mm[cell];
       const std::int16_t neighbour = view.appearance.beside[cell];
       out.cells[out.object_cells] = {static_cast<std::uint16_t>(cell), static_cast<std::uint8_t>(row),
@@ -294,17 +300,16 @@ OutlineFit look_across_outline(const TrainedView& view, const Eigen::Vector3f& c
     const OutlineCells::Cell in = cells.inside;
     const OutlineCells::Cell out = cells.beyond;
     if (in.row == 0) break;
-    const std::size_t cell = in.row * kSide + in.column;
-    const std::int16_t mm = appearance.mm[cell];
-    const float inside = comparison.depth[cell];
-    const float beyond = comparison.depth[out.row * kSide + out.column];
-    const bool is_in_frame = !std::isinf(inside) && !std::isinf(beyond);
-    const bool is_hidden = mm > Appearance::kNoDepth && inside - comparison.metres_per_mm * mm - shift < -tolerance;
-    if (!is_in_frame || is_hidden) continue;
+    const std::optional<float> inside = comparison.beyond_centre(frame.frame, in);
+    const std::optional<float> beyond = comparison.beyond_centre(frame.frame, out);
+    if (!inside || !beyond) continue;
+    const std::int16_t mm = appearance.mm[in.row * kSide + in.column];
+    const bool is_hidden = mm > Appearance::kNoDepth && *inside - comparison.metres_per_mm * mm - shift < -tolerance;
+    if (is_hidden) continue;
     AcrossOutline seen;
     const float cell_px = in.row == out.row ? comparison.cell_width : comparison.cell_height;
     seen.apart = OutlineCells::kApart * comparison.metres_per_px * cell_px;
-    seen.gained = beyond - inside;
+    seen.gained = *beyond - *inside;
     seen.expected = cells.gained_mm > Appearance::kNoDepth ? comparison.metres_per_mm * cells.gained_mm : kNoValue;
     seen.colour_sq = colour_distance_sq(colours.at(in.row, in.column), colours.at(out.row, out.column));
     if (!comes_forward(seen, tolerance)) fit.add(seen, tolerance);
