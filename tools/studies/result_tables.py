@@ -117,6 +117,24 @@ def stream_table(summary):
     return table([header, *speed.stream_rows(summary)])
 
 
+def attitude_table(summary):
+    from studies.bench import attitudes
+
+    return table(attitudes.rows(summary))
+
+
+def attitude_defaults(summary):
+    from studies.bench import attitudes
+
+    return table(attitudes.default_rows(summary))
+
+
+def attitude_words(summary):
+    from studies.bench import attitudes
+
+    return attitudes.words(summary)
+
+
 def growth_table(summary):
     series = {"objects": "objects", "trees": "trees", "pixels": "pixels"}
     parts = []

@@ -10,6 +10,9 @@ import shutil
 from studies.command import die
 from studies.measured import REPOSITORY, commit_name, read_json_if_any
 from studies.result_tables import (
+    attitude_defaults,
+    attitude_table,
+    attitude_words,
     bop_rivals,
     bop_table,
     bop_words,
@@ -85,7 +88,8 @@ def reproduce_tables(folder):
                 f"{show(summary['recall_at_default'])}; training {show(summary['train_seconds'], '{:.0f}')} s.")  # fmt: skip
 
     def measured(name, make):
-        return lambda summary: None if name in summary["settings"]["left_out"] else table(make(summary))
+        left_out = "Left out by a quick run: `tools/reproduce` without `--quick` measures it."
+        return lambda summary: left_out if name in summary["settings"]["left_out"] else table(make(summary))
 
     return [
         ("At a glance, beside the paper", of(tables.glance)),
@@ -95,7 +99,6 @@ def reproduce_tables(folder):
         ("Another sensor", of(tables.other_sensor)),
         ("Camera-recorded data", of(tables.real)),
         ("Twenty objects", measured("objects_20", tables.twenty)),
-        ("What lies or leans", measured("attitudes", tables.attitudes)),
         ("What a score means", lambda summary: table(tables.reliability(summary["reliability"])),
          shown("reliability.svg", "Predicted score against the share of true detections")),
         ("What still fails", lambda _: "The gravest of each scene; red: false, yellow: not found from the default score on.",
@@ -115,7 +118,7 @@ def demo_sections(out, commit):
 def bench_sections(out, commit):
     file = out / "bench" / "summary.json"
     speed, stream, growth = (Source(file, commit, part) for part in ("speed", "stream", "growth"))
-    pose = Source(out / "bench" / "pose.json", commit)
+    pose, attitudes = (Source(out / "bench" / f"{part}.json", commit) for part in ("pose", "attitudes"))
     return [
         section(
             "Speed: one frame", speed, "tools/bench speed", speed_table, speed_gains, stage_table, small_speed_table
@@ -123,6 +126,9 @@ def bench_sections(out, commit):
         section("Speed: a minute of replay at 30 Hz, frame to poses", stream, "tools/bench stream", stream_table),
         section("Speed: how time grows", growth, "tools/bench growth", growth_table),
         section("Poses", pose, "tools/bench pose", pose_table, pose_words, recorded_pose_words),
+        section(
+            "What lies or leans", attitudes, "tools/bench attitudes", attitude_table, attitude_defaults, attitude_words
+        ),
     ]
 
 

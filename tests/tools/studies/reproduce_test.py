@@ -205,13 +205,6 @@ class Choosing(Case):
         self.assertEqual([found[key] for key in ("auc_mean", "auc_same_four", "auc")], [None, None, None])
         self.assertEqual((found["time_ratio"], found["auc_mean_of_four"] is None), (1.5, False))
 
-    def test_what_lies_is_measured_with_its_poses(self):
-        self.assertEqual(self.run_it("--only", "evaluate_every_5").returncode, 0)
-        found = self.summary()["attitudes"]["table_lying"]
-        self.assertEqual(
-            {name: figures["bop_ar"] for name, figures in found.items()}, {"upright": 0.45, "attitudes": 0.45}
-        )
-
     def test_list_runs_nothing(self):
         listed = self.run_it("--list")
         self.assertEqual((listed.returncode, self.calls()), (0, []))

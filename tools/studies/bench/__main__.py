@@ -8,10 +8,10 @@ from studies.command import Options, die, positive, prepare, recorded_folder, st
 from studies.stream import ProcessFailed, enter_private_network, enter_shared_network
 from studies.work import UnitFailed, locked
 
-PARTS = ("speed", "stream", "growth", "pose")
+PARTS = ("speed", "stream", "growth", "pose", "attitudes")
 TARGETS = ("hs-render", "hs-train", "hs-study-train", "hs-capture", "hs-detect", "hs-pose", "hs-observe", "hs-evaluate",
            "hs-study-evaluate", "hs-linemod", "hs-bench-speed", "hs-bench-kernels", "hs-bench-pose", "hs-fuse",
-           "hs-bench-real")  # fmt: skip
+           "hs-bench-real", "hs-teach")  # fmt: skip
 
 
 def part(text):
@@ -23,14 +23,15 @@ def part(text):
 def parse(words):
     parser = Options("bench", "Measures everything from nothing to a report: installs, builds, renders data, trains, and "
                               "then times detection beside its rivals, streams a minute of frames through the processes, "
-                              "lets the number of objects grow, and compares poses. Sets of the BOP challenge: tools/bench "
-                              "bop --help.")  # fmt: skip
+                              "lets the number of objects grow, compares poses, and looks for what lies or leans. Sets of "
+                              "the BOP challenge: tools/bench bop --help.")  # fmt: skip
     add = parser.add_argument
-    add("parts", nargs="*", type=part, metavar="speed | stream | growth | pose",
+    add("parts", nargs="*", type=part, metavar="speed | stream | growth | pose | attitudes",
         help="speed: time a frame: profiles, stages, threads, instruction sets, the reference engine, LINEMOD. stream: a "
              "minute of replay at 30 Hz: latency from frame to pose, losses, CPU time, memory. growth: time with 1 to 40 "
              "objects, 5 to 30 trees, 320x240 to 1280x960 pixels. pose: accuracy and time, beside PCL's ICP and two other "
-             "methods. Default: all four")  # fmt: skip
+             "methods. attitudes: what lies, leans and is held, and what standing objects lose where that is taught too. "
+             "Default: all five")  # fmt: skip
     add(
         "--every",
         type=positive,

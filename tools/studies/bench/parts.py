@@ -4,7 +4,9 @@ import json
 import shutil
 import subprocess
 
-from studies.bench import pose, speed
+from studies.bench import attitudes, pose, speed
+from studies.bop.plan import RANKED as RANKED_POSES
+from studies.bop.plan import teach_seconds
 from studies.command import TEST_SCENES, call, recorded_views, step
 from studies.measured import about, threads, write_json
 from studies.stream import Stream
@@ -43,15 +45,19 @@ class Bench:
         return self.units.add(name, "", program, *options, "--threads", threads(), "--out", "{out}", "--views",
                               f"bop:{{{views}}}", "--background", f"bop:{{{rooms}}}")  # fmt: skip
 
-    def make(self):
-        """Returns the path of each unit by name."""
+    def make_store(self):
         units = self.units.all()
         store = Store(self.out, self.programs, units, files="data")
         store.require_programs()
         for unit in units if self.options.fresh else ():
             store.forget(unit)
         Runner(store).run(units)
-        return {unit.name: store.file(unit) for unit in units}
+        return store
+
+    def make(self):
+        """Returns the path of each unit by name."""
+        store = self.make_store()
+        return {name: store.file(unit) for name, unit in store.units.items()}
 
     def fresh_folder(self, name):
         """What an earlier run measured does not speak for this one."""
@@ -227,9 +233,43 @@ def bench_pose(bench):
     pose.write(bench.out)
 
 
+def bench_attitudes(bench):
+    """The four objects, taught by their meshes upright and in every attitude, where they lie and where they stand."""
+    models = f"{{{bench.views()}}}/models"
+    scenes = [scene for group in attitudes.GROUPS.values() for scene in group]
+    for scene in scenes:
+        bench.scene(scene)
+    for name in attitudes.TAUGHT:
+        bench.units.add(f"attitudes/{name}", "", "hs-teach", "mesh", models, "--attitudes", name, "--threads", threads(),
+                        "--out", "{out}/store")  # fmt: skip
+    store = bench.make_store()
+    out = bench.fresh_folder("attitudes")
+    for name in attitudes.TAUGHT:
+        for scene in scenes:
+            step(f"attitudes: {scene}, taught {name}")
+            folders = attitudes.scene_folders(bench.out, name, scene)
+            look = ("--scene", store.path(f"scene/{scene}"), "--objects", store.path(f"attitudes/{name}") / "store",
+                    "--every", bench.options.every, "--threads", threads())  # fmt: skip
+            for folder, options in ((folders.ranked, RANKED_POSES), (folders.default, ())):
+                call(bench.programs / "hs-evaluate", *look, *options, "--out", folder, into=folder.with_suffix(".txt"))
+    seconds = {name: teach_seconds(store.log(store.units[f"attitudes/{name}"])) for name in attitudes.TAUGHT}
+    write_json(out / "teach_seconds.json", seconds)
+    bench.finish("attitudes", out)
+    attitudes.write(bench.out)
+
+
+PARTS = {
+    "speed": bench_speed,
+    "stream": bench_stream,
+    "growth": bench_growth,
+    "pose": bench_pose,
+    "attitudes": bench_attitudes,
+}
+
+
 def run(options):
     bench = Bench(options)
     for part in options.parts:
-        {"speed": bench_speed, "stream": bench_stream, "growth": bench_growth, "pose": bench_pose}[part](bench)
+        PARTS[part](bench)
     step("report")
     speed.write(options.out)

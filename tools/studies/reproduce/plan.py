@@ -22,7 +22,6 @@ from studies.work import Units
 
 CHECK_DEPTH = ("--check-depth",)
 HOUGH_FRAME = 0
-ATTITUDES_EVERY = 5  # poses are measured too, which takes longer
 
 
 @dataclasses.dataclass(frozen=True)
@@ -97,9 +96,7 @@ class Planner:
         self.units.add(unit, frames.figure, *command, *options, what=name, scene=frames.scene, seed=seed)
 
     def _files(self, forest, source, scene, every):
-        files = ("--scene", source.scenes[scene], "--forest", f"{{{forest}}}")
-        models = ("--models", source.models) if source.models else ()
-        return (*files, *models, "--every", every, "--out", "{out}")
+        return ("--scene", source.scenes[scene], "--forest", f"{{{forest}}}", "--every", every, "--out", "{out}")
 
     def linemod(self, source, scenes, figure, every, prefix=""):
         """With and without its check of depth. Learns its templates without chance: one run stands for all. As evaluate()
@@ -192,18 +189,6 @@ def add_twenty_objects(planner, few):
         planner.side_by_side(forests, source, scene, "objects")
 
 
-def add_attitudes(planner, usual):
-    """Detections and poses of what lies, of a forest that was taught what stands and of one that was taught both."""
-    upright, every = sources.attitudes(planner.units, usual)
-    forests = {
-        "upright_realtime": planner.train("realtime", upright, 1, "attitudes"),
-        "attitudes_realtime": planner.train("realtime", every, 1, "attitudes", "attitudes_"),
-    }
-    for scene in upright.scenes:
-        for name, forest in forests.items():
-            planner.measure(name, "realtime", forest, Frames(upright, scene, "attitudes", ATTITUDES_EVERY))
-
-
 def add_comparison(planner, source):
     """One run of everything."""
     first = planner.protocol.seeds[0]
@@ -248,8 +233,6 @@ def make_plan(dataset, folder, real, protocol):
         add_real(planner, recorded)
     if dataset == "rendered" and "objects_20" not in protocol.left_out:
         add_twenty_objects(planner, source)
-    if dataset == "rendered" and "attitudes" not in protocol.left_out:
-        add_attitudes(planner, source)
     # What the protocol asks to be repeated, as training has its luck.
     for seed in protocol.seeds[1:]:
         if source:

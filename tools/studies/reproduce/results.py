@@ -18,9 +18,7 @@ BINS = 10  # of the score
 def evaluation_rows(summary):
     """(object, metric, value) of one summary.json; object "" is the whole frame."""
     rows = [(name, metric, value) for metric in BY_OBJECT for name, value in summary.get(metric, {}).items()]
-    whole = [(metric, summary.get(metric)) for metric in WHOLE]
-    whole.append(("bop_ar", summary["bop19"]["ar"]["all"] if "bop19" in summary else None))
-    return rows + [("", metric, value) for metric, value in whole] + time_rows(summary)
+    return rows + [("", metric, summary.get(metric)) for metric in WHOLE] + time_rows(summary)
 
 
 def time_rows(summary):

@@ -57,7 +57,6 @@ def page(summary, results, drawn):
         timings=tables.timings(summary),
         other_sensor=tables.other_sensor(summary),
         twenty=tables.twenty(summary),
-        attitudes=tables.attitudes(summary),
         real=tables.real(summary),
         reliability_chart=drawn["reliability"],
         reliability=tables.reliability(summary["reliability"]),

@@ -5,7 +5,7 @@ import pathlib
 
 from studies.command import RECORDED_CAMERA as CAMERA
 from studies.command import die, recorded_views
-from studies.reproduce.variants import ATTITUDE_SCENES, OTHER_SENSOR, OTHER_SENSOR_SCENES, SCENES, SCENES_20
+from studies.reproduce.variants import OTHER_SENSOR, OTHER_SENSOR_SCENES, SCENES, SCENES_20
 
 RENDERED_DISTANCES = ("--min-distance", "0.75", "--max-distance", "2.1")
 RECORDED_DISTANCES = ("--min-distance", "0.3", "--max-distance", "0.8")
@@ -18,7 +18,6 @@ class Source:
     training: tuple  # options of hs-train and hs-linemod
     distances: tuple  # at which objects stand in the scenes, options of hs-linemod
     scenes: dict  # "{NAME}" of the unit that makes it, by scene
-    models: str = ""  # to measure poses with too
 
 
 def rendered_scenes(units, names, figure, sensor=None):
@@ -52,17 +51,6 @@ def twenty(units, few):
 def other_sensor(units, usual):
     """The same objects in scenes that another sensor saw than the one of the training views."""
     return dataclasses.replace(usual, scenes=rendered_scenes(units, OTHER_SENSOR_SCENES, "sensor", OTHER_SENSOR))
-
-
-def attitudes(units, usual):
-    """Taught as usual, upright, and taught in all attitudes, each with scenes in which things lie and stand."""
-    every = ("--attitudes", "upright,tilted,lying", *TAUGHT_AT)
-    views = units.add("data/training_attitudes", "attitudes", "hs-render", "training", *every, "--out", "{out}")
-    scenes = rendered_scenes(units, ATTITUDE_SCENES, "attitudes")
-    training = ("--views", f"bop:{{{views}}}", *usual.training[2:])
-    models = "{data/training}/models"
-    upright = dataclasses.replace(usual, scenes=scenes, models=models)
-    return upright, dataclasses.replace(upright, training=training)
 
 
 def located(folder, name):

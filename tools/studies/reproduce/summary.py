@@ -4,7 +4,6 @@ from studies.measured import mean_of, ratio, relative
 from studies.reproduce import paper
 from studies.reproduce.results import calibration_error, reliability
 from studies.reproduce.variants import (
-    ATTITUDE_SCENES,
     FEATURE_SCENE,
     FEATURES,
     OTHER_SENSOR,
@@ -92,18 +91,6 @@ def other_sensor(results):
     }  # fmt: skip
 
 
-def attitudes(results):
-    """AUC, and average recall of poses, of a forest taught upright and one taught in all attitudes."""
-
-    def figures(what, scene):
-        return {"auc": results.auc(what, scene), "bop_ar": results.mean("bop_ar", what=what, scene=scene)}
-
-    return {
-        scene: {name: figures(f"{name}_realtime", scene) for name in ("upright", "attitudes")}
-        for scene in ATTITUDE_SCENES
-    }
-
-
 def strides(results):
     def measured(stride):
         what = f"stride_{stride}"
@@ -177,7 +164,6 @@ def summarise(results):
         "time": time,
         "gain_over_original": gains(time),
         "other_sensor": other_sensor(results),
-        "attitudes": attitudes(results),
         "reliability": {"bins": bins, "calibration_error": calibration_error(bins)},
     }
     paths = [path for path in missing(summary) if not path.endswith(".paper")]

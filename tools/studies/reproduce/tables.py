@@ -151,15 +151,6 @@ def other_sensor(summary):
     return rows
 
 
-def attitudes(summary):
-    scenes = list(summary["attitudes"])
-    rows = [("AUC, average recall of poses", *scenes)]
-    for name, words in (("upright", "taught upright only"), ("attitudes", "taught in all attitudes")):
-        found = [summary["attitudes"][scene][name] for scene in scenes]
-        rows.append((words, *(f"{show(each['auc'], '{:.2f}')}, {show(each['bop_ar'], '{:.2f}')}" for each in found)))
-    return rows
-
-
 def real(summary):
     found = summary["real"]
     return [

@@ -39,7 +39,7 @@ TRAINING = {**FEATURES, **PROFILES, **SCALE_HANDLING, **HALF_SIZE}
 NOT_IN_QUICK = (
     *OTHER_KERNELS,
     *("honv", "curvature", "pfh", "fpfh", "objects_20", "real_gall", "real_paper"),
-    *("final_depth_by_pixel", "linemod_no_check", "real_linemod_no_check", "attitudes"),
+    *("final_depth_by_pixel", "linemod_no_check", "real_linemod_no_check"),
 )
 
 # The same forest under two names: the study's baseline is the profile, as is the one with five scales.
@@ -51,7 +51,6 @@ SCALE_SCENES = ("table_small_1", "desk_2", "table_small_2")
 STRIDES = (1, 2, 3, 4, 6, 8)
 OTHER_SENSOR = "time_of_flight"  # training and all other scenes are rendered with structured_light
 OTHER_SENSOR_SCENES = ("table_small_1", "desk_2", "kitchen_small_1")
-ATTITUDE_SCENES = ("table_lying", "meeting_lying", "development_table", "development_kitchen")
 
 
 def forest_of(what):
@@ -136,7 +135,6 @@ DETECTOR_NAMES = {  # of Figure 6
 LEFT_OUT_NAMES = {
     **FEATURE_NAMES,
     "objects_20": "twenty objects",
-    "attitudes": "objects that lie or lean",
     "real_gall": "gall on recorded pictures",
     "real_paper": "paper on recorded pictures",
     "linemod_no_check": "LINEMOD without depth check",
