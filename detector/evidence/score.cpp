@@ -61,8 +61,12 @@ ScoreTerms score_terms(const Evidence& evidence) {
   return terms;
 }
 
+double log_odds(const ScoreModel& model, const ScoreTerms& terms) {
+  return to_vector(model.weights).dot(to_vector(terms));
+}
+
 float score(const ScoreModel& model, const Evidence& evidence) {
-  return static_cast<float>(logistic(to_vector(model.weights).dot(to_vector(score_terms(evidence)))));
+  return static_cast<float>(logistic(log_odds(model, score_terms(evidence))));
 }
 
 ScoreModel fit_score_model(const std::vector<ScoreExample>& examples, const ScoreModel& prior) {

@@ -19,6 +19,9 @@ struct Evidence {
 /// The evidence as the terms that ScoreModel::weights multiply.
 ScoreTerms score_terms(const Evidence& evidence);
 
+/// The model's weighted sum of the terms: the logarithm of the odds that it is an object.
+double log_odds(const ScoreModel& model, const ScoreTerms& terms);
+
 /// Probability that the hypothesis is an object of its class (logistic regression, Platt 1999).
 float score(const ScoreModel& model, const Evidence& evidence);
 

@@ -114,24 +114,44 @@ std::vector<Forest> grow_trees(const TrainingSet& set, const Profile& profile, c
   return trees;
 }
 
+/// Tells about every tenth of both sources' frames as they are asked for, from several threads.
+class Counted {
+ public:
+  Counted(int count, const Progress& progress) : count_(count), progress_(progress) {}
+
+  ValidationSource through(const ValidationSource& source) {
+    return {source.count, [this, compose = source.frame](int index) {
+              tell();
+              return compose(index);
+            }};
+  }
+
+ private:
+  void tell() {
+    const std::lock_guard lock(mutex_);
+    ++asked_;
+    if (asked_ * 10 / count_ > (asked_ - 1) * 10 / count_)
+      progress_(fmt::format("score: {} of {} composed pictures", asked_, count_));
+  }
+
+  const int count_;
+  const Progress& progress_;
+  std::mutex mutex_;
+  int asked_ = 0;
+};
+
 /// The objects' views are the last of the forest's.
 void learn_scores(const Rooms& rooms, const Profile& profile, const Progress& progress, Forest& forest) {
   std::set<int> class_ids;
   for (const TrainingView* view : rooms.objects) class_ids.insert(view->class_id);
   const auto first_view = static_cast<std::uint32_t>(forest.views.size() - rooms.objects.size());
-  ValidationSource frames = composed_frames(rooms.objects, rooms.for_score, profile.training);
-  std::mutex progress_mutex;
-  int asked = 0;
-  frames.frame = [&, compose = frames.frame](int index) {
-    {
-      const std::lock_guard lock(progress_mutex);
-      ++asked;
-      if (asked * 10 / frames.count > (asked - 1) * 10 / frames.count)
-        progress(fmt::format("score: {} of {} composed pictures", asked, frames.count));
-    }
-    return compose(index);
-  };
-  train_score_model(frames, class_ids, first_view, profile, forest);
+  const ValidationSource plain = composed_frames(rooms.objects, rooms.for_score, profile.training);
+  const ValidationSource strangers = stranger_frames(rooms.objects, rooms.for_score, profile.training);
+  Counted counted(plain.count + strangers.count, progress);
+  train_score_model(counted.through(plain), class_ids, first_view, profile, forest);
+  calibrate_scores(find_score_examples(counted.through(strangers), first_view, profile, forest), class_ids, forest);
+  progress(fmt::format("score from {} composed pictures of {} rooms", plain.count + strangers.count,
+                       rooms.for_score.size()));
 }
 
 /// The set of what trees learn from. Views that the score will not ask for are let go as soon as they are in it.
@@ -181,10 +201,7 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   note_view_neighbours(forest);
   pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
-  if (!learns_scores(settings)) return forest;
-  learn_scores(rooms, profile, progress, forest);
-  progress(
-      fmt::format("score from {} composed pictures of {} rooms", settings.validation_frames, rooms.for_score.size()));
+  if (learns_scores(settings)) learn_scores(rooms, profile, progress, forest);
   return forest;
 }
 

@@ -11,6 +11,7 @@
 #include "detector/training/pictures/sensor_errors.hpp"
 #include "detector/training/pictures/validation_frames.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/logistic_regression.hpp"
 #include "pipeline/base/parallel.hpp"
 
 namespace houghstream::training {
@@ -21,7 +22,8 @@ constexpr float kMinIou = 0.5F;
 constexpr double kMinVisible = 0.1;
 
 /// As many objects as make most of a picture without hiding each other, and nearly twice as many that look like them.
-constexpr ComposedThings kThings = {6, 5};
+constexpr ComposedThings kThings = {6, 5, 0};
+constexpr ComposedThings kThingsAmongStrangers = {6, 5, 5};
 
 /// Strongest first; one that overlaps a stronger one of its class would not be reported, so it is no example.
 ScoreExamples judge(const std::vector<Candidate>& candidates, const ValidationFrame& truth) {
@@ -49,15 +51,64 @@ ScoreExamples judge(const std::vector<Candidate>& candidates, const ValidationFr
 
 /// A room with objects, in which near surfaces may have lost their depth.
 ValidationFrame compose(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
-                        const TrainingSettings& settings, Random& random) {
+                        const ComposedThings& things, const TrainingSettings& settings, Random& random) {
   constexpr double kLeast = 0.05;  // of the depth is kept
   constexpr double kMost = 0.6;
-  ValidationFrame composed = make_validation_frame(objects, room, kThings, settings, random);
+  ValidationFrame composed = make_validation_frame(objects, room, things, settings, random);
   if (random.uniform() >= settings.dazzled_share) return composed;
   const double limit = random.uniform(settings.min_distance, settings.max_distance);
   const double kept = std::exp(random.uniform(std::log(kLeast), std::log(kMost)));
   lose_near_depth(limit, kept, composed.frame.depth, random);
   return composed;
+}
+
+/// As many as the settings say, numbered from `first` on. What is referred to must outlive it.
+ValidationSource frames_from(int first, const ComposedThings& things, const std::vector<const TrainingView*>& objects,
+                             const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
+  return {settings.validation_frames, [first, things, &objects, &rooms, &settings](int index) {
+            const auto item = static_cast<std::uint64_t>(first + index);
+            Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, item);
+            return compose(objects, rooms[item % rooms.size()]->frame, things, settings, random);
+          }};
+}
+
+/// Of all frames together.
+struct Pooled {
+  ScoreExamples by_class;
+  std::vector<ScoreExample> all;
+};
+
+Pooled pooled(const std::vector<ScoreExamples>& by_frame) {
+  Pooled out;
+  for (const ScoreExamples& part : by_frame) {
+    for (const auto& [class_id, examples] : part) {
+      std::vector<ScoreExample>& own = out.by_class[class_id];
+      own.insert(own.end(), examples.begin(), examples.end());
+      out.all.insert(out.all.end(), examples.begin(), examples.end());
+    }
+  }
+  return out;
+}
+
+/// Of log odds: (factor, offset).
+using OddsScale = Eigen::Vector2d;
+using OddsExamples = std::vector<LogisticExample<2>>;
+
+OddsExamples odds_examples(const ScoreModel& model, const std::vector<ScoreExample>& examples) {
+  OddsExamples out;
+  for (const ScoreExample& example : examples)
+    out.push_back({{log_odds(model, example.terms), 1.0}, example.is_object});
+  return out;
+}
+
+OddsScale fit_scale(const OddsExamples& examples, const OddsScale& prior) {
+  constexpr double kStiffness = 1.0;
+  return fit_logistic<2>(examples, {prior, kStiffness});
+}
+
+void scale_odds(const OddsScale& scale, ScoreModel& model) {
+  for (const auto term : kScoreTermList) model.weights.*term *= static_cast<float>(scale[0]);
+  model.weights.constant += static_cast<float>(scale[1]);
 }
 
 std::string described(const ScoreTerms& weights) {
@@ -84,11 +135,14 @@ std::vector<Candidate> search_frame(const Search& search, const RgbdFrame& frame
 
 ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
                                  const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
-  return {settings.validation_frames, [&](int index) {
-            Random random = Random::for_item(settings.seed ^ 0x73636F7265ULL, static_cast<std::uint64_t>(index));
-            const TrainingView& room = *rooms[static_cast<std::size_t>(index) % rooms.size()];
-            return compose(objects, room.frame, settings, random);
-          }};
+  return frames_from(0, kThings, objects, rooms, settings);
+}
+
+ValidationSource stranger_frames(const std::vector<const TrainingView*>& objects,
+                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings) {
+  ValidationSource source = frames_from(settings.validation_frames, kThingsAmongStrangers, objects, rooms, settings);
+  source.count = (source.count + 1) / 2;  // for two numbers of each object
+  return source;
 }
 
 std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, std::uint32_t first_view,
@@ -101,7 +155,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
   workspaces.make_room(threads);
   parallel_for_workers(threads, source.count, [&](int worker, int f) {
     const ValidationFrame validation = source.frame(f);
-    std::vector<std::uint32_t> shown = validation.look_alikes;
+    std::vector<std::uint32_t> shown = validation.others;
     for (const ValidationFrame::Object& object : validation.objects) {
       if (object.view) shown.push_back(*object.view);
     }
@@ -114,26 +168,36 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
 }
 
 void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {
-  ScoreExamples by_class;
-  std::vector<ScoreExample> all;
-  for (const ScoreExamples& part : by_frame) {
-    for (const auto& [class_id, examples] : part) {
-      std::vector<ScoreExample>& own = by_class[class_id];
-      own.insert(own.end(), examples.begin(), examples.end());
-      all.insert(all.end(), examples.begin(), examples.end());
-    }
-  }
-  const ScoreModel common = fit_score_model(all, ScoreModel{});
-  log_debug("scores of all objects together, {} examples:{}", all.size(), described(common.weights));
+  Pooled examples = pooled(by_frame);
+  const ScoreModel common = fit_score_model(examples.all, ScoreModel{});
+  log_debug("scores of all objects together, {} examples:{}", examples.all.size(), described(common.weights));
   for (ObjectClass& object : forest.classes) {
     if (class_ids.count(object.class_id) == 0) continue;  // an older object, judged before
-    object.score_model = fit_score_model(by_class[object.class_id], common);
+    object.score_model = fit_score_model(examples.by_class[object.class_id], common);
   }
 }
 
 void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
                        const Profile& profile, Forest& forest) {
   fit_scores(find_score_examples(source, first_view, profile, forest), class_ids, forest);
+}
+
+void calibrate_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {
+  Pooled examples = pooled(by_frame);
+  OddsExamples all;
+  std::map<int, OddsExamples> by_class;
+  for (const ObjectClass& object : forest.classes) {
+    if (class_ids.count(object.class_id) == 0) continue;
+    OddsExamples& own = by_class[object.class_id];
+    own = odds_examples(object.score_model, examples.by_class[object.class_id]);
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  const OddsScale common = fit_scale(all, OddsScale(1.0, 0.0));
+  log_debug("log odds among strangers, {} examples: {:.2f} times, {:+.2f}", all.size(), common[0], common[1]);
+  for (ObjectClass& object : forest.classes) {
+    const auto own = by_class.find(object.class_id);
+    if (own != by_class.end()) scale_odds(fit_scale(own->second, common), object.score_model);
+  }
 }
 
 }  // namespace houghstream::training

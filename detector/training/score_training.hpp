@@ -25,6 +25,12 @@ struct ValidationSource {
 ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
                                  const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings);
 
+/// Half as many after those: things stand in them too that have an object's colours and another shape, or its shape in
+/// another's colours, as rooms in which people live are full of. Composed ones else hold hardly anything that ends
+/// where its outline is, but the objects, and scores that are learnt there are too high.
+ValidationSource stranger_frames(const std::vector<const TrainingView*>& objects,
+                                 const std::vector<const TrainingView*>& rooms, const TrainingSettings& settings);
+
 /// What the forest finds in a frame, compared with what is there: by class id.
 using ScoreExamples = std::map<int, std::vector<ScoreExample>>;
 
@@ -37,8 +43,13 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
 /// of them together.
 void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest);
 
-/// Both.
+/// find_score_examples() and fit_scores().
 void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
                        const Profile& profile, Forest& forest);
+
+/// Scales and shifts the log odds of each class in `class_ids`, so that a score is right about as often as it says
+/// among these examples, beginning from what does so for all of them together (Platt 1999). Which detection of an
+/// object scores higher than which stays.
+void calibrate_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest);
 
 }  // namespace houghstream::training

@@ -45,19 +45,19 @@ inline constexpr std::array<const char*, kQualityTerms.size()> kQualityTermNames
 
 /// The probability that a pose is right, by logistic regression on the evidence. hs-learn-quality
 /// (tools/studies/quality) learns these numbers, and tells how many poses are right from which `least` on in scenes
-/// that the fit has not seen (a quarter in turn). They are of 1620 poses of detections from score 0.1 on in 14 frames
-/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 680 were right. In scenes
-/// that the fit has not seen 622 of 633 are right from `least` on. That of `seen_through` is older: it is not
+/// that the fit has not seen (a quarter in turn). They are of 1279 poses of detections from score 0.1 on in 14 frames
+/// each of development_world_0 to 13, every other world seen by the time-of-flight camera; 678 were right. In scenes
+/// that the fit has not seen 642 of 653 are right from `least` on. That of `seen_through` is older: it is not
 /// learnt. What hs-teach learns of an object takes their place.
 struct QualitySettings {
-  double bias = -5.49;
-  QualityTerms weights = {1.32, 0.45, 1.59, 2.22, 2.52, 7.34, 1.16, -0.12};
+  double bias = -5.54;
+  QualityTerms weights = {1.56, 0.45, 1.18, 2.87, 2.79, 7.25, 1.42, -0.27};
   /// Means of right poses: what is farthest below them is the reason for "no pose". Those of colour stand for a model
   /// without colours.
-  QualityTerms typical = {2.82, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.28};
-  float least = 0.8F;                ///< poses of lower quality are not published...
-  float least_of_candidates = 0.8F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
-  PresenceSettings presence;         ///< what the quality says of whether the object is there at all
+  QualityTerms typical = {1.95, 3.06, -0.17, 2.89, -0.23, 0.80, -5.29, -5.29};
+  float least = 0.75F;                ///< poses of lower quality are not published...
+  float least_of_candidates = 0.75F;  ///< ...nor are these of candidates (Detection::reported), most of which are false
+  PresenceSettings presence;          ///< what the quality says of whether the object is there at all
 };
 
 QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& settings);

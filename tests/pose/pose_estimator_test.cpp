@@ -97,7 +97,7 @@ TEST(PoseEstimator, NothingThereAndSomethingElseAreRejectedWithoutAPose) {
     both.detections.push_back(empty);
     for (const ObjectPose& pose : estimator.estimate(scene.frame, both).poses) {
       const bool has_reason = pose.status == PoseStatus::kRejectedByDepth || pose.status == PoseStatus::kRefuted ||
-                              pose.status == PoseStatus::kNotConverged;
+                              pose.status == PoseStatus::kRejectedByOutline || pose.status == PoseStatus::kNotConverged;
       EXPECT_TRUE(has_reason) << seed << " " << pose.detection_index << " " << to_string(pose.status);
       EXPECT_FALSE(pose.T_camera_object.has_value());
       EXPECT_EQ(std::isnan(pose.residual), pose.inliers == 0);

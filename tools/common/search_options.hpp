@@ -9,10 +9,6 @@
 
 namespace houghstream {
 
-/// Smallest score that is reported of a store's objects: theirs is learnt in practice rooms (hs-teach), half of which
-/// hold something that looks nearly like an object, through widely varied cameras; real ones are kinder.
-constexpr float kStoreThreshold = 0.65F;
-
 /// From which score on weaker detections are handed to hs-pose as candidates. In the development rooms poses that are
 /// right in 98 % of the cases confirm half of the objects among them; from 0.1 on they bring as many that are wrong.
 constexpr float kCandidatesFrom = 0.2F;

@@ -68,7 +68,6 @@ void run_with_forest(const DetectOptions& options) {
 
 /// A store may change while frames go by: each frame is searched by what is there when its turn comes.
 void run_with_store(DetectOptions options) {
-  if (!options.search.threshold) options.search.threshold = kStoreThreshold;
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   store::StoreWatch<ReadyDetector> watch(options.objects, [&](const store::ObjectStore& store) {
     return load_detector(store, options.search, made_up.get());

@@ -8,6 +8,7 @@
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "tools/common/search_options.hpp"
 #include "tools/common/searched_objects.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
@@ -218,9 +219,9 @@ void add_options(CommandLine& app, EvaluateOptions& options) {
 
 /// A store's forest and models, where one is named, and what hs-detect publishes unless told otherwise.
 static EvaluateOptions with_store(EvaluateOptions options) {
-  options.rules.operating_score = options.operating_score.value_or(reported_from(options.known));
+  options.rules.operating_score = options.operating_score.value_or(EvidenceSettings{}.threshold);
   if (options.min_quality) publish_from(*options.min_quality, options.pose);
-  if (const std::optional<store::ObjectStore> objects = take_store(options.known, options.search))
+  if (const std::optional<store::ObjectStore> objects = take_store(options.known))
     take_from_store(*objects, options.min_quality, options.pose);
   return options;
 }

@@ -15,7 +15,7 @@ Detector make_detector(const store::ObjectStore& store, const FinderOptions& opt
   Forest forest = load_store_forest(store);
   SearchOptions search;
   search.threads = options.threads;
-  search.threshold = options.threshold.value_or(kStoreThreshold);
+  search.threshold = options.threshold;
   search.candidates_from = kCandidatesFrom;
   const DetectionSettings settings = search.settings_for(forest);
   return Detector(std::move(forest), settings);

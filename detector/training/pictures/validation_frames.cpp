@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "detector/training/pictures/camera_variation.hpp"
 #include "detector/training/pictures/composites.hpp"
@@ -72,21 +73,80 @@ TrainingView resized(const TrainingView& view, Random& random) {
   return out;
 }
 
-/// Puts things that look nearly like objects into the frame, `count` of each sort; returns the views they were made of.
-std::vector<std::uint32_t> add_look_alikes(const std::vector<const TrainingView*>& objects, int count,
-                                           const TrainingSettings& settings, Stage& stage, Random& random) {
-  std::vector<std::uint32_t> views;
-  for (int i = 0; i < 2 * count; ++i) {
-    const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
-    views.push_back(static_cast<std::uint32_t>(index));
-    const TrainingView other = i % 2 == 0 ? recoloured(*objects[index], random) : resized(*objects[index], random);
-    const double distance = draw_distance(settings, random);
-    const TrainingView bent_view = bent(other, settings.depth_error, random);
-    const std::optional<Composite> composite = make_composite(bent_view, stage.frame, distance, settings, random);
-    if (composite) put_back(*composite, 0, stage);
-  }
-  return views;
+/// The view of a thing that has the object's colours and pattern, but is clearly narrower or wider.
+TrainingView squeezed(const TrainingView& view, Random& random) {
+  const double width = random.uniform() < 0.5 ? random.uniform(0.4, 0.7) : random.uniform(1.4, 2.2);
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(width * view.mask.cols))), view.mask.rows);
+  const double scale = static_cast<double>(size.width) / view.mask.cols;
+  TrainingView out = view;
+  out.frame.colour = cv::Mat();  // the view's own pixels stay as they are
+  out.frame.depth = cv::Mat();
+  out.mask = cv::Mat();
+  cv::resize(view.frame.colour, out.frame.colour, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::resize(view.frame.depth, out.frame.depth, size, 0, 0, cv::INTER_NEAREST);
+  cv::resize(view.mask, out.mask, size, 0, 0, cv::INTER_NEAREST);
+  out.frame.camera.width = size.width;
+  out.frame.camera.cx = (view.frame.camera.cx + 0.5) * scale - 0.5;
+  out.T_camera_object.translation().x() *= scale;
+  return out;
 }
+
+/// The view of a thing that has one object's shape and another's colours and pattern.
+TrainingView painted(const TrainingView& shape, const TrainingView& paint) {
+  const cv::Rect from = cv::boundingRect(paint.mask);
+  const cv::Rect to = cv::boundingRect(shape.mask);
+  cv::Mat picture = paint.frame.colour(from).clone();
+  picture.setTo(cv::mean(picture, paint.mask(from)), paint.mask(from) == 0);
+  TrainingView out = shape;
+  out.frame.colour = shape.frame.colour.clone();
+  cv::resize(picture, picture, to.size(), 0, 0, cv::INTER_AREA);
+  picture.copyTo(out.frame.colour(to), shape.mask(to));
+  return out;
+}
+
+/// What is no object, into a frame in which no object stands yet.
+class Others {
+ public:
+  Others(const std::vector<const TrainingView*>& objects, const TrainingSettings& settings, Stage& stage,
+         Random& random)
+      : objects_(objects), settings_(settings), stage_(stage), random_(random) {}
+
+  void add_look_alike(bool in_other_colours) {
+    const TrainingView& view = draw();
+    put(in_other_colours ? recoloured(view, random_) : resized(view, random_));
+  }
+
+  void add_stranger(bool in_other_paint) {
+    const TrainingView& view = draw();
+    if (!in_other_paint) return put(squeezed(view, random_));
+    const TrainingView& paint = draw();
+    // Another view of the same object has no other paint to give.
+    put(paint.class_id == view.class_id ? squeezed(view, random_) : painted(view, paint));
+  }
+
+  /// The views that they were made of.
+  std::vector<std::uint32_t> views() && { return std::move(views_); }
+
+ private:
+  const TrainingView& draw() {
+    const int index = random_.below(static_cast<int>(objects_.size()));
+    views_.push_back(static_cast<std::uint32_t>(index));
+    return *objects_[static_cast<std::size_t>(index)];
+  }
+
+  void put(const TrainingView& thing) {
+    const double distance = draw_distance(settings_, random_);
+    const TrainingView bent_view = bent(thing, settings_.depth_error, random_);
+    const std::optional<Composite> composite = make_composite(bent_view, stage_.frame, distance, settings_, random_);
+    if (composite) put_back(*composite, 0, stage_);
+  }
+
+  const std::vector<const TrainingView*>& objects_;
+  const TrainingSettings& settings_;
+  Stage& stage_;
+  Random& random_;
+  std::vector<std::uint32_t> views_;
+};
 
 }  // namespace
 
@@ -102,7 +162,10 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   out.frame.depth = room.depth.clone();
   Stage stage{out.frame, cv::Mat::zeros(room.colour.size(), CV_8UC1)};
   std::vector<int> whole_px;
-  out.look_alikes = add_look_alikes(objects, things.look_alikes, even_light, stage, random);
+  Others others(objects, even_light, stage, random);
+  for (int i = 0; i < 2 * things.look_alikes; ++i) others.add_look_alike(i % 2 == 0);
+  for (int i = 0; i < 2 * things.strangers; ++i) others.add_stranger(i % 2 == 0);
+  out.others = std::move(others).views();
   for (int label = 1; label <= things.objects; ++label) {
     const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
     const TrainingView& view = *objects[index];

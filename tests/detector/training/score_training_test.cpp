@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -135,6 +136,45 @@ TEST(ScoreTraining, LearnsFromAnySourceOfFrames) {
       EXPECT_EQ(listed(with.weights), listed(taught.classes[c].score_model.weights));
     }
   }
+}
+
+/// By the object's mass alone, whose log odds the model gives: many are none, whatever it says.
+std::vector<ScoreExamples> judged_by_mass(int class_id, double log_odds, double offset) {
+  std::vector<ScoreExamples> frames;
+  Random random(7);
+  for (int i = 0; i < 4000; ++i) {
+    const double odds = random.uniform(-3.0, 3.0);
+    ScoreExample example;
+    example.terms.mass = static_cast<float>(odds / log_odds);
+    example.is_object = random.uniform() < 1.0 / (1.0 + std::exp(-(odds + offset)));
+    frames.push_back({{class_id, {example}}});
+  }
+  return frames;
+}
+
+TEST(ScoreTraining, CalibratedScoresAreRightAsOftenAsTheySayAndKeepTheirOrder) {
+  constexpr double kOfMass = 2.0;
+  constexpr double kFewer = -1.5;
+  Forest forest;
+  forest.classes = {{1, "mug", 0.1F, 1.0F, {}}, {2, "older", 0.1F, 1.0F, {}}};
+  for (ObjectClass& object : forest.classes) {
+    object.score_model.weights = {};
+    object.score_model.weights.mass = kOfMass;
+  }
+  calibrate_scores(judged_by_mass(1, kOfMass, kFewer), {1}, forest);
+  const ScoreTerms& weights = forest.classes[0].score_model.weights;
+  EXPECT_NEAR(weights.constant, kFewer, 0.15);
+  EXPECT_NEAR(weights.mass, kOfMass, 0.2);
+  EXPECT_EQ(forest.classes[1].score_model.weights.mass, static_cast<float>(kOfMass));  // was not asked for
+  EXPECT_EQ(forest.classes[1].score_model.weights.constant, 0.0F);
+}
+
+TEST(ScoreTraining, WithoutExamplesScoresStayAsTheyAre) {
+  Forest forest;
+  forest.classes = {{1, "mug", 0.1F, 1.0F, {}}};
+  const ScoreTerms before = forest.classes[0].score_model.weights;
+  calibrate_scores({}, {1}, forest);
+  EXPECT_EQ(listed(forest.classes[0].score_model.weights), listed(before));
 }
 
 }  // namespace

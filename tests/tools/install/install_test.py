@@ -165,11 +165,12 @@ for number in range(100):
         run("/usr/bin/python3", "-c", script, cls.log, env=python_of_installation())
 
     def listen(self, *words):
-        """What a program prints while the log of poses is played in a private network, again until it prints something."""
+        """What a program prints while the log of poses is played in a private network, again until it prints something; it
+        has a second to end its line."""
         play = (
             'stdbuf -oL "$@" > "$SAID" 2>&1 & '
             'for again in $(seq 20); do sleep 1; lcm-logplayer "$LOG" > /dev/null 2>&1; grep -q mug "$SAID" && break; done; '
-            'kill %1; wait; cat "$SAID"'
+            'sleep 1; kill %1; wait; cat "$SAID"'
         )
         said = self.folder / "said.txt"
         return run(*PRIVATE, "bash", "-c", play, "bash", *words,

@@ -7,6 +7,7 @@
 #include "detector/stages.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
+#include "tools/common/search_options.hpp"
 #include "tools/common/searched_objects.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/studies/failures/failures.hpp"
@@ -65,8 +66,8 @@ void run(const FailureOptions& options) {
 FailureOptions with_store(FailureOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE");
-  options.operating_score = options.operating_score.value_or(reported_from(options.known));
-  take_store(options.known, options.search);
+  options.operating_score = options.operating_score.value_or(EvidenceSettings{}.threshold);
+  take_store(options.known);
   return options;
 }
 

@@ -11,6 +11,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/baseline/register_pcl.hpp"
+#include "tools/common/search_options.hpp"
 #include "tools/common/searched_objects.hpp"
 #include "tools/common/stored_quality.hpp"
 #include "tools/common/tool_main.hpp"
@@ -102,7 +103,7 @@ void run(const BenchOptions& options) {
 BenchOptions with_store(BenchOptions options) {
   require(options.known.store.empty() == !options.known.forest.empty(),
           "expected either --objects STORE or --forest FILE and --models FOLDER");
-  if (const std::optional<store::ObjectStore> objects = take_store(options.known, options.search))
+  if (const std::optional<store::ObjectStore> objects = take_store(options.known))
     take_from_store(*objects, std::nullopt, options.pose);
   return options;
 }

@@ -26,7 +26,7 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
                                   int pictures) {
   constexpr int kShownOneIn = 4;
   constexpr std::uint64_t kSeed = 20110701;
-  constexpr training::ComposedThings kThings = {4, 2};
+  constexpr training::ComposedThings kThings = {4, 2, 0};
   ComposedExamples out;
   std::vector<const TrainingView*> shown;
   std::vector<const TrainingView*> rooms;

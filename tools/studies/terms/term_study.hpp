@@ -15,9 +15,9 @@
 namespace houghstream::terms {
 
 struct StudyRules {
-  double min_visible = 0.5;  ///< less visible objects are passed over
-  float score = 0.75F;       ///< from which an object counts as reported
-  float false_score = 0.3F;  ///< from which a false candidate is looked at
+  double min_visible = 0.5;                    ///< less visible objects are passed over
+  float score = EvidenceSettings{}.threshold;  ///< from which an object counts as reported
+  float false_score = 0.3F;                    ///< from which a false candidate is looked at
   SuppressionSettings suppression;
 };
 

@@ -19,7 +19,7 @@ struct TilesAndRooms {
   }
 };
 
-constexpr ComposedThings kThings = {4, 2};
+constexpr ComposedThings kThings = {4, 2, 0};
 
 /// By the camera that taught: another one's depth has other holes and lies a few pixels beside.
 ValidationFrame compose(const TilesAndRooms& toys, std::uint64_t seed, double occluded_share,
@@ -64,9 +64,52 @@ TEST(ValidationFrames, OccludersLeaveLessOfTheObjects) {
   EXPECT_LT(occluded, 0.85 * open);
 }
 
-TEST(ValidationFrames, AsManyLookAlikesOfEachSortAsAskedForStandThereToo) {
+TEST(ValidationFrames, AsManyLookAlikesAndStrangersOfEachSortAsAskedForStandThereToo) {
   const TilesAndRooms toys;
-  EXPECT_EQ(compose(toys, 1, 0.0).look_alikes.size(), 4U);
+  EXPECT_EQ(compose(toys, 1, 0.0).others.size(), 2U * 2U);
+  TrainingSettings settings = toy::quick_profile().training;
+  Random random(1);
+  const ComposedThings things{0, 0, 4};
+  const ValidationFrame strangers = make_validation_frame(toys.objects, toy::room(9), things, settings, random);
+  EXPECT_EQ(strangers.others.size(), 4U + 2U * 4U);  // each of the second sort is made of two views
+  EXPECT_TRUE(strangers.objects.empty());
+}
+
+/// Width over height of what stands before the room, which is flat.
+std::vector<double> widths_of_things(const cv::Mat& depth, const cv::Mat& room) {
+  constexpr float kBefore_m = 0.1F;
+  constexpr int kLeastPixels = 100;
+  cv::Mat labels;
+  cv::Mat stats;
+  cv::Mat centroids;
+  std::vector<double> widths;
+  const int count = cv::connectedComponentsWithStats(depth < room - kBefore_m, labels, stats, centroids);
+  for (int i = 1; i < count; ++i) {
+    if (stats.at<int>(i, cv::CC_STAT_AREA) < kLeastPixels) continue;
+    widths.push_back(static_cast<double>(stats.at<int>(i, cv::CC_STAT_WIDTH)) / stats.at<int>(i, cv::CC_STAT_HEIGHT));
+  }
+  return widths;
+}
+
+TEST(ValidationFrames, AStrangerIsNarrowerOrWiderThanAnyObjectOrHasItsShape) {
+  const TilesAndRooms toys;  // all are square
+  const RgbdFrame room = toy::room(9);
+  TrainingSettings settings = toy::quick_profile().training;
+  settings.occluded_share = 0.0;
+  settings.depth_error = {};
+  settings.camera_share = 0.0;
+  int other = 0;
+  int square = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    const ValidationFrame frame = make_validation_frame(toys.objects, room, {0, 0, 1}, settings, random);
+    for (const double width : widths_of_things(frame.frame.depth, room.depth)) {
+      if (width < 0.75 || width > 1.35) ++other;
+      if (width > 0.85 && width < 1.18) ++square;
+    }
+  }
+  EXPECT_GE(other, 15);
+  EXPECT_GE(square, 5);
 }
 
 TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
@@ -81,7 +124,7 @@ TEST(ValidationFrames, AnotherCameraChangesThePictureAndNotTheTruth) {
       EXPECT_EQ(same.objects[i].box_visible_px, other.objects[i].box_visible_px);
       EXPECT_EQ(same.objects[i].visible_fraction, other.objects[i].visible_fraction);
     }
-    EXPECT_EQ(same.look_alikes, other.look_alikes);
+    EXPECT_EQ(same.others, other.others);
   }
 }
 
