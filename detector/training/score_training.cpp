@@ -73,21 +73,15 @@ ValidationSource frames_from(int first, const ComposedThings& things, const std:
 }
 
 /// Of all frames together.
-struct Pooled {
+ScoreExamples joined(const std::vector<ScoreExamples>& by_frame) {
   ScoreExamples by_class;
-  std::vector<ScoreExample> all;
-};
-
-Pooled pooled(const std::vector<ScoreExamples>& by_frame) {
-  Pooled out;
   for (const ScoreExamples& part : by_frame) {
     for (const auto& [class_id, examples] : part) {
-      std::vector<ScoreExample>& own = out.by_class[class_id];
+      std::vector<ScoreExample>& own = by_class[class_id];
       own.insert(own.end(), examples.begin(), examples.end());
-      out.all.insert(out.all.end(), examples.begin(), examples.end());
     }
   }
-  return out;
+  return by_class;
 }
 
 /// Of log odds: (factor, offset).
@@ -168,12 +162,16 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
 }
 
 void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {
-  Pooled examples = pooled(by_frame);
-  const ScoreModel common = fit_score_model(examples.all, ScoreModel{});
-  log_debug("scores of all objects together, {} examples:{}", examples.all.size(), described(common.weights));
+  ScoreExamples by_class = joined(by_frame);
+  std::vector<ScoreExample> all;
+  for (const ScoreExamples& part : by_frame) {
+    for (const auto& [class_id, examples] : part) all.insert(all.end(), examples.begin(), examples.end());
+  }
+  const ScoreModel common = fit_score_model(all, ScoreModel{});
+  log_debug("scores of all objects together, {} examples:{}", all.size(), described(common.weights));
   for (ObjectClass& object : forest.classes) {
     if (class_ids.count(object.class_id) == 0) continue;  // an older object, judged before
-    object.score_model = fit_score_model(examples.by_class[object.class_id], common);
+    object.score_model = fit_score_model(by_class[object.class_id], common);
   }
 }
 
@@ -183,13 +181,13 @@ void train_score_model(const ValidationSource& source, const std::set<int>& clas
 }
 
 void calibrate_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {
-  Pooled examples = pooled(by_frame);
+  ScoreExamples examples = joined(by_frame);
   OddsExamples all;
   std::map<int, OddsExamples> by_class;
   for (const ObjectClass& object : forest.classes) {
     if (class_ids.count(object.class_id) == 0) continue;
     OddsExamples& own = by_class[object.class_id];
-    own = odds_examples(object.score_model, examples.by_class[object.class_id]);
+    own = odds_examples(object.score_model, examples[object.class_id]);
     all.insert(all.end(), own.begin(), own.end());
   }
   const OddsScale common = fit_scale(all, OddsScale(1.0, 0.0));

@@ -20,6 +20,8 @@ double draw_distance(const TrainingSettings& settings, Random& random) {
 struct Stage {
   RgbdFrame& frame;
   cv::Mat labels;  // CV_8UC1: which object each pixel shows, 0 = none
+  const TrainingSettings& settings;
+  Random& random;
 };
 
 /// Copies the composite into the whole frame it was cut from.
@@ -33,6 +35,20 @@ void put_back(const Composite& composite, std::uint8_t label, Stage& stage) {
   composite.frame.depth.copyTo(frame.depth(place));
   if (!composite.occluder.empty()) labels(place).setTo(0, composite.occluder);
   labels(place).setTo(label, composite.mask);
+}
+
+/// Returns how many pixels it has as a whole; 1 where there is no room for it.
+int put(const TrainingView& thing, double distance, std::uint8_t label, Stage& stage) {
+  const TrainingView bent_view = bent(thing, stage.settings.depth_error, stage.random);
+  const std::optional<Composite> composite =
+      make_composite(bent_view, stage.frame, distance, stage.settings, stage.random);
+  if (!composite) return 1;
+  put_back(*composite, label, stage);
+  return composite->whole_px;
+}
+
+std::uint32_t draw_view(const std::vector<const TrainingView*>& views, Random& random) {
+  return static_cast<std::uint32_t>(random.below(static_cast<int>(views.size())));
 }
 
 /// The view of a thing that has the object's shape and pattern, but other colours: hues turned, and where there are
@@ -107,21 +123,19 @@ TrainingView painted(const TrainingView& shape, const TrainingView& paint) {
 /// What is no object, into a frame in which no object stands yet.
 class Others {
  public:
-  Others(const std::vector<const TrainingView*>& objects, const TrainingSettings& settings, Stage& stage,
-         Random& random)
-      : objects_(objects), settings_(settings), stage_(stage), random_(random) {}
+  Others(const std::vector<const TrainingView*>& objects, Stage& stage) : objects_(objects), stage_(stage) {}
 
   void add_look_alike(bool in_other_colours) {
     const TrainingView& view = draw();
-    put(in_other_colours ? recoloured(view, random_) : resized(view, random_));
+    put_none(in_other_colours ? recoloured(view, stage_.random) : resized(view, stage_.random));
   }
 
   void add_stranger(bool in_other_paint) {
     const TrainingView& view = draw();
-    if (!in_other_paint) return put(squeezed(view, random_));
+    if (!in_other_paint) return put_none(squeezed(view, stage_.random));
     const TrainingView& paint = draw();
     // Another view of the same object has no other paint to give.
-    put(paint.class_id == view.class_id ? squeezed(view, random_) : painted(view, paint));
+    put_none(paint.class_id == view.class_id ? squeezed(view, stage_.random) : painted(view, paint));
   }
 
   /// The views that they were made of.
@@ -129,22 +143,14 @@ class Others {
 
  private:
   const TrainingView& draw() {
-    const int index = random_.below(static_cast<int>(objects_.size()));
-    views_.push_back(static_cast<std::uint32_t>(index));
-    return *objects_[static_cast<std::size_t>(index)];
+    views_.push_back(draw_view(objects_, stage_.random));
+    return *objects_[views_.back()];
   }
 
-  void put(const TrainingView& thing) {
-    const double distance = draw_distance(settings_, random_);
-    const TrainingView bent_view = bent(thing, settings_.depth_error, random_);
-    const std::optional<Composite> composite = make_composite(bent_view, stage_.frame, distance, settings_, random_);
-    if (composite) put_back(*composite, 0, stage_);
-  }
+  void put_none(const TrainingView& thing) { put(thing, draw_distance(stage_.settings, stage_.random), 0, stage_); }
 
   const std::vector<const TrainingView*>& objects_;
-  const TrainingSettings& settings_;
   Stage& stage_;
-  Random& random_;
   std::vector<std::uint32_t> views_;
 };
 
@@ -160,22 +166,19 @@ ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& ob
   out.frame = room;
   out.frame.colour = room.colour.clone();
   out.frame.depth = room.depth.clone();
-  Stage stage{out.frame, cv::Mat::zeros(room.colour.size(), CV_8UC1)};
+  Stage stage{out.frame, cv::Mat::zeros(room.colour.size(), CV_8UC1), even_light, random};
   std::vector<int> whole_px;
-  Others others(objects, even_light, stage, random);
+  Others others(objects, stage);
   for (int i = 0; i < 2 * things.look_alikes; ++i) others.add_look_alike(i % 2 == 0);
   for (int i = 0; i < 2 * things.strangers; ++i) others.add_stranger(i % 2 == 0);
   out.others = std::move(others).views();
   for (int label = 1; label <= things.objects; ++label) {
-    const auto index = static_cast<std::size_t>(random.below(static_cast<int>(objects.size())));
+    const std::uint32_t index = draw_view(objects, random);
     const TrainingView& view = *objects[index];
     const double distance = draw_distance(settings, random);
-    const TrainingView bent_view =
-        bent(resurfaced(view, settings.surface_variation, random), settings.depth_error, random);
-    const std::optional<Composite> composite = make_composite(bent_view, out.frame, distance, even_light, random);
-    out.objects.push_back({view.class_id, static_cast<std::uint32_t>(index), {}, 0.0});
-    whole_px.push_back(composite ? composite->whole_px : 1);
-    if (composite) put_back(*composite, static_cast<std::uint8_t>(label), stage);
+    const TrainingView object = resurfaced(view, settings.surface_variation, random);
+    whole_px.push_back(put(object, distance, static_cast<std::uint8_t>(label), stage));
+    out.objects.push_back({view.class_id, index, {}, 0.0});
   }
   for (int label = 1; label <= things.objects; ++label) {
     const auto index = static_cast<std::size_t>(label - 1);
