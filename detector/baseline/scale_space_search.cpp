@@ -169,7 +169,7 @@ std::vector<ScalePeak> level_peaks(const Search& search, int class_index, const 
   const VotingSettings& settings = search.settings.voting;
   const cv::Mat image = hough_image(search, class_index, seen);
   const int reach_px = static_cast<int>(std::lround(kVoteReach * settings.vote_sigma * seen.px_per_offset));
-  const auto limit = static_cast<std::size_t>(settings.candidates_per_class);
+  const auto limit = static_cast<std::size_t>(settings.maxima_per_class);
   const std::vector<cv::Point> maxima = maxima_of(image, reach_px, settings.min_mass_share, limit);
   std::vector<Hypothesis> hypotheses = gather_supporters(search, class_index, seen, maxima);
   BoxMemory box_memory;

@@ -1,24 +1,34 @@
 #include "detector/evidence/candidates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace houghstream {
 namespace {
 
 using WeighedViews = std::vector<std::pair<std::uint32_t, float>>;
 
-/// Compares the first views that most votes remember with the frame; more where a class was taught in many attitudes.
-void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, float spread,
+constexpr std::size_t kMostAttitudes = 3;  // that are looked into, however many a class was taught in
+
+/// Views that are compared of a class that was taught in one attitude: the first that most votes remember.
+constexpr std::size_t kViews = 8;
+
+/// Compares the first `count` views that most votes remember with the frame; those that are compared already come
+/// first.
+void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, std::size_t count,
                    std::vector<PlacedView>& compared) {
-  constexpr float kViews = 8.0F;
-  const auto wanted = static_cast<std::size_t>(kViews * spread);
   const std::vector<std::uint32_t>& excluded = input.excluded_views;
+  const Eigen::Vector3f& centre = hypothesis.centre_camera;
+  std::size_t place = 0;
   for (const auto& [view, weight] : hypothesis.views) {
-    if (compared.size() == wanted) break;
+    if (place == count) break;
     if (std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
-    const Eigen::Vector3f& centre = hypothesis.centre_camera;
-    compared.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
+    if (place == compared.size()) {
+      compared.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
+    }
+    ++place;
   }
 }
 
@@ -41,21 +51,70 @@ PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<Placed
   return align_view(input.forest.views, best, input.frame, 0.5F);
 }
 
-/// Completes the evidence by the view that agrees best with the frame, aligned with it. What is hopeless where it
-/// stands is left there: most maxima are of that kind, and aligning takes longer than all else about them.
-void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, std::vector<PlacedView>& compared,
-                  Evidence& evidence) {
+/// Where to climb from: the view that agrees best, and those that agree next best of attitudes unlike these, up to
+/// `count`, at most kMostAttitudes.
+class Starts {
+ public:
+  Starts(const EvidenceInput& input, std::size_t count, std::vector<PlacedView>& compared) {
+    constexpr float kUnlike = 0.6F;  // radians
+    const auto rotation = [&](const PlacedView& placed) {
+      return Eigen::Quaternionf(input.forest.views[placed.view].R_ray_object);
+    };
+    starts_[count_++] = align_best_few(input.forest.views, input.frame, compared);
+    for (const PlacedView& next : compared) {
+      if (count_ == count) break;
+      const auto is_like = [&](const PlacedView& start) {
+        return rotation(start).angularDistance(rotation(next)) <= kUnlike;
+      };
+      if (std::none_of(begin(), end(), is_like)) starts_[count_++] = next;
+    }
+  }
+  const PlacedView* begin() const { return starts_.data(); }
+  const PlacedView* end() const { return starts_.data() + count_; }
+
+ private:
+  std::array<PlacedView, kMostAttitudes> starts_;
+  std::size_t count_ = 0;
+};
+
+/// What a view says where it stands, `evidence` otherwise.
+void look_at_view(const EvidenceInput& input, const PlacedView& placed, Evidence& evidence) {
+  evidence.fit = placed.fit;
+  evidence.outline = look_across_outline(input.forest.views[placed.view], placed.centre_camera, input.frame);
+}
+
+/// Completes the evidence by the view that agrees best with the frame, aligned with it; of views of unlike attitudes by
+/// that which speaks most for an object, as all objects have it in common: a view of a small side agrees easily with a
+/// part of the object, and only what lies beyond its outline tells. What is hopeless where it stands is left there:
+/// most maxima are of that kind, and looking further takes longer than all else about them.
+void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, float spread,
+                  std::vector<PlacedView>& compared, Evidence& evidence) {
   constexpr float kHopeless = 0.02F;  // score: votes bring hidden objects views that hardly fit
-  const auto take = [&](const PlacedView& placed) {
-    evidence.fit = placed.fit;
-    evidence.outline = look_across_outline(input.forest.views[placed.view], placed.centre_camera, input.frame);
-  };
+  constexpr ScoreModel kCommon;
+  const auto attitudes = static_cast<std::size_t>(spread);
+  compare_views(input, hypothesis, kViews, compared);
   if (compared.empty()) return;
-  take(best_unaligned(compared));
+  look_at_view(input, best_unaligned(compared), evidence);
   if (score(input.forest.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
-  const PlacedView best = climb(input, align_best_few(input.forest.views, input.frame, compared), compared);
-  take(best);
-  evidence.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
+  compare_views(input, hypothesis, static_cast<std::size_t>(kViews * spread), compared);
+  const Evidence unaligned = evidence;
+  const auto climbed = static_cast<std::ptrdiff_t>(compared.size());
+  double most = -std::numeric_limits<double>::infinity();
+  for (const PlacedView& start : Starts(input, attitudes, compared)) {
+    const auto before = static_cast<std::ptrdiff_t>(compared.size());
+    const PlacedView best = climb(input, start, compared);
+    Evidence own = unaligned;
+    look_at_view(input, best, own);
+    own.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
+    const double odds = log_odds(kCommon, score_terms(own));
+    // Only what the best was climbed through speaks for a rotation.
+    const bool is_best = odds > most;
+    compared.erase(compared.begin() + (is_best ? climbed : before),
+                   is_best ? compared.begin() + before : compared.end());
+    if (!is_best) continue;
+    most = odds;
+    evidence = own;
+  }
 }
 
 /// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was
@@ -113,8 +172,7 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   detection.box_px = backprojected_box(input.forest, hypothesis, input.patches, camera, own.box);
   detection.score = vote_score(candidate.evidence.mass_share);
   if (input.forest.scoring == Scoring::kEvidence) {
-    compare_views(input, hypothesis, spread, own.compared);
-    add_best_fit(input, hypothesis, own.compared, candidate.evidence);
+    add_best_fit(input, hypothesis, spread, own.compared, candidate.evidence);
     detection.score = score(object.score_model, candidate.evidence);
     detection.box_px = visible_box(detection.box_px, candidate.evidence.fit.visible_box_px, camera);
   }
@@ -150,10 +208,9 @@ std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vec
 
 float attitude_spread(const Forest& forest, std::uint32_t class_index) {
   constexpr float kOneAttitude = 150.0F;  // views of a turntable
-  constexpr float kMost = 3.0F;
   const auto views = std::count_if(forest.views.begin(), forest.views.end(),
                                    [&](const TrainedView& view) { return view.class_index == class_index; });
-  return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, kMost);
+  return std::clamp(static_cast<float>(views) / kOneAttitude, 1.0F, static_cast<float>(kMostAttitudes));
 }
 
 }  // namespace houghstream

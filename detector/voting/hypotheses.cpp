@@ -134,8 +134,8 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
 std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingMemory& memory) {
   const std::vector<ObjectClass>& classes = input.forest.classes;
   const std::vector<std::size_t> order = by_work(classes.size(), input.posteriors);
-  const int limit = candidates_of_each(input.settings, classes.size());
-  const auto most = static_cast<std::size_t>(input.settings.max_per_class);
+  const int limit = each_of(classes.size(), input.settings.maxima_per_class);
+  const auto most = static_cast<std::size_t>(each_of(classes.size(), input.settings.candidates_per_class));
   std::vector<std::vector<Hypothesis>> by_class(classes.size());
   memory.workers.make_room(threads);
   parallel_for_workers(threads, static_cast<int>(order.size()), [&](int worker, int i) {

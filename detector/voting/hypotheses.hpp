@@ -55,13 +55,14 @@ struct VotingMemory {
   PerWorker<Worker> workers;
 };
 
-/// The maxima of a class's votes in own.space with at least `least_mass`, of which at most `limit` are looked at,
-/// strongest first.
+/// The maxima of a class's votes in own.space with at least `least_mass`, of which the Hough image's `limit` highest
+/// are looked at, heaviest first.
 std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, float least_mass, int limit,
                                          VotingMemory::Worker& own);
 
 /// Casts the votes of every class and finds their maxima: class by class in one pass, so that a class's Hough space is
-/// still in the cache. Ordered by class, each class's strongest first; the same for any number of threads.
+/// still in the cache. Ordered by class, each class's heaviest first: what is near has more patches, and so more
+/// votes, while its mass is that of what is far. The same for any number of threads.
 std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingMemory& memory);
 
 }  // namespace houghstream

@@ -53,11 +53,11 @@ float start_depth(const HoughSpace& space, const HoughCell& cell, MaximaMemory& 
 
 }  // namespace
 
-int candidates_of_each(const VotingSettings& settings, std::size_t classes) {
+int each_of(std::size_t classes, int per_class) {
   constexpr int kFewClasses = 4;
   constexpr int kLeast = 6;
-  const int shared = settings.candidates_per_class * kFewClasses / std::max(static_cast<int>(classes), kFewClasses);
-  return std::max(shared, std::min(settings.candidates_per_class, kLeast));
+  const int shared = per_class * kFewClasses / std::max(static_cast<int>(classes), kFewClasses);
+  return std::max(shared, std::min(per_class, kLeast));
 }
 
 std::vector<Eigen::Vector3f> find_maxima(const HoughSpace& space, const Camera& camera, const VotingSettings& settings,

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/stages.hpp"
+#include "tests/detector/evidence/remembered_view.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream {
@@ -52,14 +53,58 @@ TEST(Candidates, NoClassOffersMoreThanItMay) {
   RgbdFrame frame = toy::room(77);
   toy::put_tile(0, 80, 119.5, 0.7, frame);
   toy::put_tile(0, 240, 119.5, 0.7, frame);
-  const auto stripes = [&](int max_per_class) {
+  const auto stripes = [&](int candidates_per_class) {
     DetectionSettings settings;
-    settings.voting.max_per_class = max_per_class;
+    settings.voting.candidates_per_class = candidates_per_class;
     const std::vector<Candidate> found = candidates(frame, settings);
     return std::count_if(found.begin(), found.end(), [](const Candidate& c) { return c.detection.class_id == 1; });
   };
-  EXPECT_GE(stripes(250), 2);
+  EXPECT_GE(stripes(20), 2);
   EXPECT_EQ(stripes(1), 1);
+}
+
+/// The middle of the toy view alone, as if another side of the object looked like it.
+TrainedView middle_part() {
+  const TrainingView whole = toy::training_views().front();
+  const cv::Rect box = cv::boundingRect(whole.mask);
+  const cv::Rect part(box.x + box.width / 4, box.y + box.height / 4, box.width / 2, box.height / 2);
+  cv::Mat mask = cv::Mat::zeros(whole.mask.size(), CV_8U);
+  whole.mask(part).copyTo(mask(part));
+  TrainedView view = toy::remembered_view();
+  for (float& side : view.box) side *= 0.5F;
+  view.R_ray_object = Eigen::AngleAxisf(1.0F, Eigen::Vector3f::UnitX());
+  view.appearance = remember_appearance(whole.frame, mask, part, {0.0F, 0.0F, toy::kDistance});
+  return view;
+}
+
+/// What is found at the toy view's place by its view and that of its middle part, of a class of so many views.
+Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
+  Forest forest;
+  forest.classes.emplace_back().radius = 0.08F;
+  forest.views = {toy::remembered_view(), middle_part()};
+  forest.views.resize(views);
+  forest.view_neighbours.resize(views);
+  for (std::uint32_t v = 0; v < views; ++v) forest.view_neighbours[v].fill(v);
+  Hypothesis hypothesis;
+  hypothesis.centre_camera = {0.0F, 0.0F, toy::kDistance};
+  hypothesis.mass = 1.0F;
+  hypothesis.weight = 1.0F;
+  hypothesis.views = {{0, 0.5F}, {1, 0.5F}};
+  EvidenceMemory memory;
+  const EvidenceInput input{forest, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, {}};
+  return weigh_evidence(input, {hypothesis}, 1, memory).front().evidence;
+}
+
+TEST(Candidates, APartThatAgreesBetterIsNotTakenForTheWholeInAnotherAttitude) {
+  TrainingView seen = toy::training_views().front();
+  const cv::Rect box = cv::boundingRect(seen.mask);
+  const cv::Size quarter(box.width, box.height / 4);
+  for (const int above : {0, box.height * 3 / 4}) {  // something stands in front of all but the part
+    seen.frame.depth(cv::Rect(cv::Point(box.x, box.y + above), quarter)).setTo(0.4F);
+  }
+  EXPECT_LT(evidence_among(2, seen.frame).fit.visible_box_px.width, 0.6F * static_cast<float>(box.width))
+      << "of one attitude's views the best is climbed from";
+  EXPECT_GT(evidence_among(400, seen.frame).fit.visible_box_px.width, 0.9F * static_cast<float>(box.width));
 }
 
 TEST(AttitudeSpread, GrowsWithTheViewsOfTheClass) {

@@ -38,18 +38,23 @@ void add_cluster(const Eigen::Vector3f& centre, float area, PatchGrid& patches) 
   }
 }
 
-std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
-  const Forest forest = centre_forest();
+PatchPosteriors all_voting(const Forest& forest, const PatchGrid& patches) {
   const std::vector<std::int32_t> leaves(patches.size(), 0);
   PatchPosteriors posteriors(forest, 1, 0.0F);
   std::vector<std::uint32_t> all(patches.size());
   std::iota(all.begin(), all.end(), 0U);
   posteriors.note({0, all.size(), all.data(), leaves.data()});
+  return posteriors;
+}
+
+std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
+  const Forest forest = centre_forest();
+  const PatchPosteriors posteriors = all_voting(forest, patches);
   const VotingSettings settings;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
   VotingMemory::Worker own;
   cast_votes(input, 0, own.casting, own.space);
-  return class_hypotheses(input, 0, least_mass, settings.candidates_per_class, own);
+  return class_hypotheses(input, 0, least_mass, settings.maxima_per_class, own);
 }
 
 TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {
@@ -82,6 +87,24 @@ TEST(Hypotheses, CentresBehindEachOtherAreNotMixed) {
   ASSERT_FALSE(found.empty());
   EXPECT_NEAR(found[0].centre_camera.z(), 0.8F, 0.001F);
   EXPECT_EQ(found[0].vote_count, 8);
+}
+
+TEST(Hypotheses, WhatIsFarIsNotPassedOverForWhatHasMorePatches) {
+  const Eigen::Vector3f near(-0.1F, 0.0F, 0.8F);
+  const Eigen::Vector3f far(0.2F, 0.0F, 1.6F);
+  PatchGrid patches;
+  for (int i = 0; i < 2; ++i) add_cluster(near, 0.0001F, patches);
+  add_cluster(far, 0.0004F, patches);
+  const Forest forest = centre_forest();
+  const PatchPosteriors posteriors = all_voting(forest, patches);
+  VotingSettings settings;
+  settings.min_mass_share = 0.0F;
+  settings.candidates_per_class = 1;
+  const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
+  VotingMemory memory;
+  const std::vector<Hypothesis> found = find_hypotheses(input, 1, memory);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_LT((found[0].centre_camera - far).norm(), 0.001F) << found[0].centre_camera.transpose();
 }
 
 TEST(Hypotheses, WeakOnesAndEmptySpacesGiveNothing) {

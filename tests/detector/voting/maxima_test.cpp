@@ -69,14 +69,11 @@ TEST(Maxima, LowOnesAndTooManyAreNotLookedAt) {
 }
 
 TEST(Maxima, OfManyClassesFewerOfEachAreLookedAt) {
-  VotingSettings settings;
-  settings.candidates_per_class = 24;
-  EXPECT_EQ(candidates_of_each(settings, 1), 24);
-  EXPECT_EQ(candidates_of_each(settings, 4), 24);
-  EXPECT_EQ(candidates_of_each(settings, 6), 16);
-  EXPECT_EQ(candidates_of_each(settings, 40), 6);
-  settings.candidates_per_class = 5;
-  EXPECT_EQ(candidates_of_each(settings, 40), 5) << "no more than asked for";
+  EXPECT_EQ(each_of(1, 24), 24);
+  EXPECT_EQ(each_of(4, 24), 24);
+  EXPECT_EQ(each_of(6, 24), 16);
+  EXPECT_EQ(each_of(40, 24), 6);
+  EXPECT_EQ(each_of(40, 5), 5) << "no more than asked for";
 }
 
 }  // namespace
