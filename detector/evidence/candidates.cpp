@@ -91,29 +91,31 @@ void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, floa
                   std::vector<PlacedView>& compared, Evidence& evidence) {
   constexpr float kHopeless = 0.02F;  // score: votes bring hidden objects views that hardly fit
   constexpr ScoreModel kCommon;
-  const auto attitudes = static_cast<std::size_t>(spread);
   compare_views(input, hypothesis, kViews, compared);
   if (compared.empty()) return;
   look_at_view(input, best_unaligned(compared), evidence);
   if (score(input.forest.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
   compare_views(input, hypothesis, static_cast<std::size_t>(kViews * spread), compared);
   const Evidence unaligned = evidence;
-  const auto climbed = static_cast<std::ptrdiff_t>(compared.size());
+  const auto attitudes = static_cast<std::size_t>(spread);
+  const std::size_t by_votes = compared.size();
   double most = -std::numeric_limits<double>::infinity();
   for (const PlacedView& start : Starts(input, attitudes, compared)) {
-    const auto before = static_cast<std::ptrdiff_t>(compared.size());
+    const std::size_t before = compared.size();
     const PlacedView best = climb(input, start, compared);
     Evidence own = unaligned;
     look_at_view(input, best, own);
     own.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
     const double odds = log_odds(kCommon, score_terms(own));
     // Only what the best was climbed through speaks for a rotation.
-    const bool is_best = odds > most;
-    compared.erase(compared.begin() + (is_best ? climbed : before),
-                   is_best ? compared.begin() + before : compared.end());
-    if (!is_best) continue;
+    if (odds <= most) {
+      compared.resize(before);
+      continue;
+    }
     most = odds;
     evidence = own;
+    const auto first = compared.begin() + static_cast<std::ptrdiff_t>(by_votes);
+    compared.erase(first, first + static_cast<std::ptrdiff_t>(before - by_votes));
   }
 }
 
