@@ -11,4 +11,9 @@ inline double log_odds(double probability, double margin = 0.001) {
   return std::log(p / (1.0 - p));
 }
 
+/// The probability of log odds.
+inline double logistic(double odds) {
+  return 1.0 / (1.0 + std::exp(-odds));
+}
+
 }  // namespace houghstream

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/base/log_odds.hpp"
+
 namespace houghstream {
 
 /// A judged example: the values that the weights multiply, and what came of it.
@@ -22,10 +24,6 @@ struct LogisticPrior {
   double stiffness = 1.0;
   std::optional<int> held = std::nullopt;
 };
-
-inline double logistic(double x) {
-  return 1.0 / (1.0 + std::exp(-x));
-}
 
 /// Minus the logarithm of what the weights make of the examples and of how far they leave the prior.
 template <int N>

@@ -1,8 +1,8 @@
 #include "pose/following/object_follower.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "pipeline/base/log_odds.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
 #include "pose/following/motion.hpp"
@@ -11,7 +11,7 @@ namespace houghstream {
 namespace {
 
 float probability(double odds) {
-  return static_cast<float>(1.0 / (1.0 + std::exp(-odds)));
+  return static_cast<float>(logistic(odds));
 }
 
 }  // namespace

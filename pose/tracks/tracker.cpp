@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <set>
 
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/log_odds.hpp"
 #include "pose/tracks/looked_for.hpp"
 #include "pose/tracks/world_clock.hpp"
 
@@ -277,7 +277,7 @@ WorldObjects Tracker::State::report(const FrameSeen& seen) const {
     object.class_id = track.class_id;
     object.class_name = track.class_name;
     object.state = track.state;
-    object.probability = static_cast<float>(1.0 / (1.0 + std::exp(-track.log_odds)));
+    object.probability = static_cast<float>(logistic(track.log_odds));
     object.moving = filter.moving();
     object.T_world_object = filter.T_world_object();
     object.covariance = filter.covariance();

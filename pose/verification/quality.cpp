@@ -60,7 +60,7 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
 float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
   double sum = settings.bias;
   for (const auto term : kQualityTerms) sum += settings.weights.*term * terms.*term;
-  return static_cast<float>(1.0 / (1.0 + std::exp(-sum)));
+  return static_cast<float>(logistic(sum));
 }
 
 PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {

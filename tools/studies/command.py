@@ -38,6 +38,19 @@ def positive(text):
     return int(text)
 
 
+def some_of(known, what):
+    """The type of an option that names some of the known, separated by commas; their order is the known one's."""
+
+    def parse(text):
+        names = text.split(",")
+        for name in names:
+            if name not in known:
+                raise argparse.ArgumentTypeError(f"unknown {what} {name}, expected {', '.join(known)}")
+        return tuple(name for name in known if name in names)
+
+    return parse
+
+
 class Options(argparse.ArgumentParser):
     """Wrong options end the command with one line. --bin names programs that are there already: none are built. A launcher
     that is installed under another name says so in $HOUGHSTREAM_CALLED."""

@@ -15,7 +15,9 @@ import subprocess
 import sys
 import time
 
+from studies.command import die, step
 from studies.measured import cpu_name, today, write_atomically
+from studies.stream import ProcessFailed
 
 INPUT = re.compile(r"\{([^{}]+)\}")
 MODULES = pathlib.Path(__file__).resolve().parent.parent  # where the package lies
@@ -289,6 +291,19 @@ def locked(out):
         except BlockingIOError:
             raise UnitFailed(f"{out}: another run is writing there") from None
         yield
+
+
+@contextlib.contextmanager
+def command_in(out):
+    """What a command does in its folder, alone there: a failure is one line, and the last line says that it is done."""
+    try:
+        with locked(out):
+            yield
+    except (UnitFailed, ProcessFailed) as error:
+        die(error)
+    except KeyboardInterrupt:
+        die("interrupted; the same command goes on from here")
+    step("done")
 
 
 def make(store, fresh=False):

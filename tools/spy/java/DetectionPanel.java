@@ -44,6 +44,7 @@ final class DetectionPanel {
   DetectionPanel(Consumer<String> chooseCamera) {
     this.chooseCamera = chooseCamera;
     JTable table = new JTable(objects);
+    table.setDefaultEditor(Object.class, null); // only to be read
     for (int i = 0; i < COLUMN_WIDTHS.length; ++i) {
       table.getColumnModel().getColumn(i).setPreferredWidth(COLUMN_WIDTHS[i]);
     }

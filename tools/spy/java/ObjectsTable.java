@@ -4,26 +4,23 @@ import houghstream.detection_t;
 import houghstream.detections_t;
 import houghstream.object_pose_t;
 import houghstream.object_poses_t;
-import java.util.ArrayList;
-import java.util.List;
-import javax.swing.table.AbstractTableModel;
+import javax.swing.table.DefaultTableModel;
 
 /** A row per detection that is reported: what it is, how sure, where, and what became of its pose. */
 @SuppressWarnings("serial")
-final class ObjectsTable extends AbstractTableModel {
-  private static final String[] COLUMNS = {"object", "score", "x, y, z in m", "pose", "quality"};
-  private transient List<String[]> rows = List.of();
+final class ObjectsTable extends DefaultTableModel {
+  ObjectsTable() {
+    super(new String[] {"object", "score", "x, y, z in m", "pose", "quality"}, 0);
+  }
 
   /** `poses` may be null. Detections with scores below `minScore` are left out. */
   void show(detections_t detections, object_poses_t poses, double minScore) {
-    List<String[]> newRows = new ArrayList<>();
+    setRowCount(0);
     for (int i = 0; i < detections.n_detections; ++i) {
       detection_t detection = detections.detections[i];
       object_pose_t pose = poseOf(i, poses);
-      if (detection.score >= minScore && isReported(detection, pose)) newRows.add(row(detection, pose));
+      if (detection.score >= minScore && isReported(detection, pose)) addRow(row(detection, pose));
     }
-    rows = newRows;
-    fireTableDataChanged();
   }
 
   /** A candidate counts where its pose is valid, another detection where its pose does not refute it. `pose` may be
@@ -68,25 +65,5 @@ final class ObjectsTable extends AbstractTableModel {
       case object_pose_t.REFUTED -> "refuted";
       default -> "status " + status;
     };
-  }
-
-  @Override
-  public int getRowCount() {
-    return rows.size();
-  }
-
-  @Override
-  public int getColumnCount() {
-    return COLUMNS.length;
-  }
-
-  @Override
-  public String getColumnName(int column) {
-    return COLUMNS[column];
-  }
-
-  @Override
-  public Object getValueAt(int row, int column) {
-    return rows.get(row)[column];
   }
 }

@@ -8,76 +8,36 @@ import java.awt.FlowLayout;
 import java.awt.image.BufferedImage;
 import java.util.ArrayList;
 import java.util.List;
-import java.util.concurrent.atomic.AtomicReference;
 import javax.swing.ButtonGroup;
 import javax.swing.JComponent;
 import javax.swing.JPanel;
 import javax.swing.JRadioButton;
-import javax.swing.SwingUtilities;
 
 /** Shows the newest message of a channel of frames or of single images. */
-final class PictureViewer implements Viewer {
+final class PictureViewer extends MessageViewer<PictureViewer.Content> {
   /** What a message shows. */
   record Content(long utime, BufferedImage colour, BufferedImage depth, String text, String complaint) {}
 
-  /** Decodes a message. */
-  interface Reader {
-    Content read(byte[] bytes) throws BadMessage;
-  }
-
   private enum Mode { BOTH, COLOUR, DEPTH }
 
-  private final JPanel panel = new JPanel(new BorderLayout());
   private final PicturePane pane = new PicturePane();
-  private final StatusLine status;
-  private final Dimension size;
-  private final Reader reader;
-  private final AtomicReference<byte[]> newest = new AtomicReference<>();
-  private final RateMeter arrivals = new RateMeter();
-  private final List<AutoCloseable> running = new ArrayList<>();
   private Mode mode = Mode.BOTH;
   private Content shown;
 
-  PictureViewer(String channel, Reader reader, Dimension size) {
-    this.reader = reader;
-    this.size = size;
-    status = new StatusLine("waiting for " + channel);
+  private PictureViewer(Reader<Content> reader, Dimension size) {
+    super(reader, size);
     panel.add(pane, BorderLayout.CENTER);
     panel.add(status, BorderLayout.SOUTH);
   }
 
-  static PictureViewer ofFrames(String channel) {
-    PictureViewer viewer = new PictureViewer(channel, PictureViewer::readFrame, new Dimension(1100, 500));
+  static PictureViewer ofFrames() {
+    PictureViewer viewer = new PictureViewer(PictureViewer::readFrame, new Dimension(1100, 500));
     viewer.panel.add(viewer.modeButtons(), BorderLayout.NORTH);
-    viewer.listen(channel);
     return viewer;
   }
 
-  static PictureViewer ofImages(String channel) {
-    PictureViewer viewer = new PictureViewer(channel, PictureViewer::readImage, new Dimension(1100, 640));
-    viewer.listen(channel);
-    return viewer;
-  }
-
-  private void listen(String channel) {
-    Worker worker = Worker.start("viewer of " + channel, this::work);
-    running.add(worker);
-    running.add(new ChannelTap(channel, bytes -> {
-      arrivals.count(RateMeter.nowUs());
-      newest.set(bytes);
-      worker.wake();
-    }));
-  }
-
-  private void work() {
-    byte[] bytes = newest.getAndSet(null);
-    if (bytes == null) return;
-    try {
-      Content content = reader.read(bytes);
-      SwingUtilities.invokeLater(() -> show(content));
-    } catch (BadMessage bad) {
-      SwingUtilities.invokeLater(() -> status.say("", bad.getMessage()));
-    }
+  static PictureViewer ofImages() {
+    return new PictureViewer(PictureViewer::readImage, new Dimension(1100, 640));
   }
 
   static Content readFrame(byte[] bytes) throws BadMessage {
@@ -96,7 +56,7 @@ final class PictureViewer implements Viewer {
     return new Content(image.utime, ImageDecoder.colour(image), null, String.format("%.1f kB", bytes.length * 1e-3), "");
   }
 
-  /** Shows a message; on Swing's thread. */
+  @Override
   void show(Content content) {
     shown = content;
     List<BufferedImage> pictures = new ArrayList<>();
@@ -106,7 +66,7 @@ final class PictureViewer implements Viewer {
     String pixels = pictures.isEmpty() ? "no picture"
         : pictures.get(0).getWidth() + "x" + pictures.get(0).getHeight();
     status.say(String.format("frame %.3f s, %s, %.1f Hz, %s", content.utime * 1e-6, pixels,
-        arrivals.hertz(RateMeter.nowUs()), content.text), content.complaint);
+        hertz(), content.text), content.complaint);
   }
 
   private JComponent modeButtons() {
@@ -122,20 +82,5 @@ final class PictureViewer implements Viewer {
       buttons.add(button);
     }
     return buttons;
-  }
-
-  @Override
-  public JComponent component() {
-    return panel;
-  }
-
-  @Override
-  public Dimension size() {
-    return size;
-  }
-
-  @Override
-  public void close() {
-    Viewer.closeAll(running);
   }
 }

@@ -8,52 +8,19 @@ import java.awt.FontMetrics;
 import java.awt.Graphics;
 import java.awt.Graphics2D;
 import java.awt.RenderingHints;
-import java.util.ArrayList;
-import java.util.List;
-import java.util.concurrent.atomic.AtomicReference;
 import javax.swing.JComponent;
-import javax.swing.JPanel;
-import javax.swing.SwingUtilities;
 
 /** Shows how it goes with an object that is shown to be taught: from where it was seen, state, words and progress. */
-final class TeachingViewer implements Viewer {
-  private final JPanel panel = new JPanel(new BorderLayout());
+final class TeachingViewer extends MessageViewer<teaching_t> {
   private final Spheres spheres = new Spheres();
-  private final StatusLine status;
-  private final AtomicReference<byte[]> newest = new AtomicReference<>();
-  private final List<AutoCloseable> running = new ArrayList<>();
 
-  /** Listens to the channel until it is closed. */
-  TeachingViewer(String channel) {
-    this();
-    status.say("waiting for " + channel, "");
-    Worker worker = Worker.start("viewer of " + channel, this::work);
-    running.add(worker);
-    running.add(new ChannelTap(channel, bytes -> {
-      newest.set(bytes);
-      worker.wake();
-    }));
-  }
-
-  /** Shows what it is given. */
   TeachingViewer() {
-    status = new StatusLine("");
+    super(bytes -> Wire.decode(bytes, "teaching_t", teaching_t::new), new Dimension(640, 420));
     panel.add(spheres, BorderLayout.CENTER);
     panel.add(status, BorderLayout.SOUTH);
   }
 
-  private void work() {
-    byte[] bytes = newest.getAndSet(null);
-    if (bytes == null) return;
-    try {
-      teaching_t teaching = Wire.decode(bytes, "teaching_t", teaching_t::new);
-      SwingUtilities.invokeLater(() -> show(teaching));
-    } catch (Wire.BadMessage bad) {
-      SwingUtilities.invokeLater(() -> status.say("", bad.getMessage()));
-    }
-  }
-
-  /** On Swing's thread. */
+  @Override
   void show(teaching_t teaching) {
     spheres.teaching = teaching;
     spheres.repaint();
@@ -61,10 +28,6 @@ final class TeachingViewer implements Viewer {
     String counts = String.format("%s: %s, %d frames, %d kept", teaching.name, word(teaching.state), teaching.n_frames,
         teaching.n_keyframes);
     status.say(wrong ? counts : counts + " - " + teaching.message, wrong ? teaching.message : "");
-  }
-
-  String said() {
-    return status.getText();
   }
 
   private static String word(byte state) {
@@ -78,21 +41,6 @@ final class TeachingViewer implements Viewer {
       case teaching_t.FAILED -> "failed";
       default -> "state " + state;
     };
-  }
-
-  @Override
-  public JComponent component() {
-    return panel;
-  }
-
-  @Override
-  public Dimension size() {
-    return new Dimension(640, 420);
-  }
-
-  @Override
-  public void close() {
-    Viewer.closeAll(running);
   }
 
   /** The sphere of directions from where the camera is and from behind, filled where the object was seen from. */

@@ -30,10 +30,10 @@ public final class ViewerPlugin implements SpyPlugin {
   private static final Kind DETECTIONS =
       new Kind("Detections and poses", channel -> DetectionViewer.open(channel.name, channel.fingerprint));
   private static final Map<Long, Kind> KINDS = Map.of(
-      images_t.LCM_FINGERPRINT, new Kind("RGB-D viewer", channel -> PictureViewer.ofFrames(channel.name)),
-      image_t.LCM_FINGERPRINT, new Kind("Image viewer", channel -> PictureViewer.ofImages(channel.name)),
-      objects_t.LCM_FINGERPRINT, new Kind("World", channel -> new WorldViewer(channel.name)),
-      teaching_t.LCM_FINGERPRINT, new Kind("Teaching", channel -> new TeachingViewer(channel.name)),
+      images_t.LCM_FINGERPRINT, new Kind("RGB-D viewer", channel -> PictureViewer.ofFrames().listeningTo(channel.name)),
+      image_t.LCM_FINGERPRINT, new Kind("Image viewer", channel -> PictureViewer.ofImages().listeningTo(channel.name)),
+      objects_t.LCM_FINGERPRINT, new Kind("World", channel -> new WorldViewer().listeningTo(channel.name)),
+      teaching_t.LCM_FINGERPRINT, new Kind("Teaching", channel -> new TeachingViewer().listeningTo(channel.name)),
       detections_t.LCM_FINGERPRINT, DETECTIONS,
       object_poses_t.LCM_FINGERPRINT, DETECTIONS);
 

@@ -8,40 +8,24 @@ import java.awt.Dimension;
 import java.awt.Graphics;
 import java.awt.Graphics2D;
 import java.awt.RenderingHints;
-import java.util.ArrayList;
-import java.util.List;
-import java.util.concurrent.atomic.AtomicReference;
 import javax.swing.JComponent;
 import javax.swing.JPanel;
 import javax.swing.JScrollPane;
 import javax.swing.JTable;
-import javax.swing.SwingUtilities;
-import javax.swing.table.AbstractTableModel;
+import javax.swing.table.DefaultTableModel;
+import javax.swing.table.TableModel;
 
 /** Shows the objects of hs-track: from above, and as a table with state and reason. */
-final class WorldViewer implements Viewer {
-  private final JPanel panel = new JPanel(new BorderLayout());
+final class WorldViewer extends MessageViewer<objects_t> {
   private final Map map = new Map();
-  private final Rows rows = new Rows();
-  private final StatusLine status = new StatusLine("");
-  private final AtomicReference<byte[]> newest = new AtomicReference<>();
-  private final List<AutoCloseable> running = new ArrayList<>();
+  private final DefaultTableModel rows =
+      new DefaultTableModel(new String[] {"#", "object", "state", "probability", "x, y, z in m", "m/s", "why"}, 0);
 
-  /** Listens to the channel until it is closed. */
-  WorldViewer(String channel) {
-    this();
-    status.say("waiting for " + channel, "");
-    Worker worker = Worker.start("viewer of " + channel, this::work);
-    running.add(worker);
-    running.add(new ChannelTap(channel, bytes -> {
-      newest.set(bytes);
-      worker.wake();
-    }));
-  }
-
-  /** Shows what it is given. */
   WorldViewer() {
-    JScrollPane table = new JScrollPane(new JTable(rows));
+    super(bytes -> Wire.decode(bytes, "objects_t", objects_t::new), new Dimension(760, 640));
+    JTable objects = new JTable(rows);
+    objects.setDefaultEditor(Object.class, null); // only to be read
+    JScrollPane table = new JScrollPane(objects);
     table.setPreferredSize(new Dimension(640, 180));
     panel.add(map, BorderLayout.CENTER);
     JPanel below = new JPanel(new BorderLayout());
@@ -50,32 +34,27 @@ final class WorldViewer implements Viewer {
     panel.add(below, BorderLayout.SOUTH);
   }
 
-  private void work() {
-    byte[] bytes = newest.getAndSet(null);
-    if (bytes == null) return;
-    try {
-      objects_t world = Wire.decode(bytes, "objects_t", objects_t::new);
-      SwingUtilities.invokeLater(() -> show(world));
-    } catch (Wire.BadMessage bad) {
-      SwingUtilities.invokeLater(() -> status.say("", bad.getMessage()));
-    }
-  }
-
-  /** On Swing's thread. */
+  @Override
   void show(objects_t world) {
     map.world = world;
     map.repaint();
-    rows.show(world);
+    rows.setRowCount(0);
+    for (tracked_object_t object : world.objects) rows.addRow(row(object));
     status.say(String.format("%d objects in %s after a frame of %s", world.n_objects, world.world,
         world.source_channel), "");
   }
 
-  String said() {
-    return status.getText();
+  TableModel table() {
+    return rows;
   }
 
-  JTable table() {
-    return new JTable(rows);
+  private static String[] row(tracked_object_t object) {
+    double speed = Math.sqrt(object.velocity[0] * object.velocity[0] + object.velocity[1] * object.velocity[1]
+        + object.velocity[2] * object.velocity[2]);
+    return new String[] {String.valueOf(object.track_id), object.class_name, word(object.state),
+        String.format("%.2f", object.probability),
+        String.format("%.3f, %.3f, %.3f", object.trans[0], object.trans[1], object.trans[2]),
+        object.moving == 0 ? "" : String.format("%.2f", speed), object.reason};
   }
 
   static String word(byte state) {
@@ -87,62 +66,6 @@ final class WorldViewer implements Viewer {
       case tracked_object_t.GONE -> "gone";
       default -> "state " + state;
     };
-  }
-
-  @Override
-  public JComponent component() {
-    return panel;
-  }
-
-  @Override
-  public Dimension size() {
-    return new Dimension(760, 640);
-  }
-
-  @Override
-  public void close() {
-    Viewer.closeAll(running);
-  }
-
-  /** A row per object. */
-  @SuppressWarnings("serial")
-  private static final class Rows extends AbstractTableModel {
-    private static final String[] COLUMNS = {"#", "object", "state", "probability", "x, y, z in m", "m/s", "why"};
-    private transient List<String[]> rows = List.of();
-
-    void show(objects_t world) {
-      List<String[]> newRows = new ArrayList<>();
-      for (tracked_object_t object : world.objects) {
-        double speed = Math.sqrt(object.velocity[0] * object.velocity[0] + object.velocity[1] * object.velocity[1]
-            + object.velocity[2] * object.velocity[2]);
-        newRows.add(new String[] {String.valueOf(object.track_id), object.class_name, word(object.state),
-            String.format("%.2f", object.probability),
-            String.format("%.3f, %.3f, %.3f", object.trans[0], object.trans[1], object.trans[2]),
-            object.moving == 0 ? "" : String.format("%.2f", speed), object.reason});
-      }
-      rows = newRows;
-      fireTableDataChanged();
-    }
-
-    @Override
-    public int getRowCount() {
-      return rows.size();
-    }
-
-    @Override
-    public int getColumnCount() {
-      return COLUMNS.length;
-    }
-
-    @Override
-    public String getColumnName(int column) {
-      return COLUMNS[column];
-    }
-
-    @Override
-    public Object getValueAt(int row, int column) {
-      return rows.get(row)[column];
-    }
   }
 
   /** The world from above: x to the right, y up. */

@@ -4,9 +4,9 @@ import argparse
 import pathlib
 import sys
 
-from studies.command import Options, die, positive, prepare, recorded_folder, step
-from studies.stream import ProcessFailed, enter_private_network, enter_shared_network
-from studies.work import UnitFailed, locked
+from studies.command import Options, positive, prepare, recorded_folder
+from studies.stream import enter_private_network, enter_shared_network
+from studies.work import command_in
 
 PARTS = ("speed", "stream", "growth", "pose", "attitudes")
 TARGETS = ("hs-render", "hs-train", "hs-study-train", "hs-capture", "hs-detect", "hs-pose", "hs-observe", "hs-evaluate",
@@ -59,14 +59,8 @@ def main():
     options.network = enter_shared_network() if options.shared_bus else enter_private_network()
     from studies.bench import parts  # needs what has been installed
 
-    try:
-        with locked(options.out):
-            parts.run(options)
-    except (UnitFailed, ProcessFailed) as error:
-        die(error)
-    except KeyboardInterrupt:
-        die("interrupted")
-    step("done")
+    with command_in(options.out):
+        parts.run(options)
 
 
 if __name__ == "__main__":

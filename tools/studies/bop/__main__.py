@@ -4,8 +4,8 @@ import argparse
 import pathlib
 import sys
 
-from studies.command import Options, die, positive, prepare, step
-from studies.work import UnitFailed, locked
+from studies.command import Options, die, positive, prepare
+from studies.work import command_in
 
 TARGETS = ("hs-teach", "hs-evaluate", "hs-bench-pose", "hs-failures", "hs-linemod")
 
@@ -77,13 +77,10 @@ def main():
         options.programs = pathlib.Path(prepare(options, TARGETS))
         from studies.bop import report  # needs what has been installed
 
-        with locked(options.out):
+        with command_in(options.out):
             report.run(options, datasets)
-    except (BadSet, UnitFailed) as error:
+    except BadSet as error:
         die(error)
-    except KeyboardInterrupt:
-        die("interrupted")
-    step("done")
 
 
 if __name__ == "__main__":

@@ -4,9 +4,9 @@ import os
 import pathlib
 import sys
 
-from studies.command import Options, die, positive, prepare, step
-from studies.stream import ProcessFailed, enter_private_network, enter_shared_network
-from studies.work import UnitFailed, locked
+from studies.command import Options, die, positive, prepare
+from studies.stream import enter_private_network, enter_shared_network
+from studies.work import command_in
 
 TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-import", "hs-log", "hs-detect", "hs-pose", "hs-view", "hs-observe",
            "hs-spy", "hs-evaluate")  # fmt: skip
@@ -59,14 +59,8 @@ def main():
     options.network = enter_shared_network() if options.shared_bus else enter_private_network()
     from studies.demo import run  # needs what has been installed
 
-    try:
-        with locked(options.out):
-            run.run(options, pathlib.Path(programs))
-    except (UnitFailed, ProcessFailed) as error:
-        die(error)
-    except KeyboardInterrupt:
-        die("interrupted; the same command goes on from here")
-    step("done")
+    with command_in(options.out):
+        run.run(options, pathlib.Path(programs))
 
 
 if __name__ == "__main__":

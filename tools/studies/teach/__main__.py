@@ -1,12 +1,11 @@
 """Options of tools/bench teach. What they ask for is in plan.py, what comes of it in report.py."""
 
-import argparse
 import pathlib
 import sys
 
-from studies.command import Options, die, positive, prepare, step
+from studies.command import Options, positive, prepare, some_of
 from studies.stream import enter_private_network
-from studies.work import UnitFailed, locked
+from studies.work import command_in
 
 # As hs-render takes orders them; those of the scenes objects_20_b, _d and _f.
 OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can", "teapot", "tumbler", "shampoo_bottle", "food_tin", "tea_box",
@@ -14,14 +13,6 @@ OBJECTS = ("bowl", "cereal_box", "coffee_mug", "soda_can", "teapot", "tumbler", 
 QUICK = ("cereal_box", "coffee_mug")
 TARGETS = ("hs-render", "hs-teach", "hs-evaluate", "hs-compare-shown", "hs-capture", "hs-detect", "hs-pose",
            "hs-observe")  # fmt: skip
-
-
-def known_objects(text):
-    names = tuple(text.split(","))
-    for name in names:
-        if name not in OBJECTS:
-            raise argparse.ArgumentTypeError(f"unknown object {name}, expected {', '.join(OBJECTS)}")
-    return tuple(name for name in OBJECTS if name in names)
 
 
 def parse(words):
@@ -32,7 +23,7 @@ def parse(words):
                                     "meshes.")  # fmt: skip
     add = parser.add_argument
     add("--quick", action="store_true", help="two objects, one take of each, fewer frames to look for them in")
-    add("--objects", type=known_objects, metavar="NAMES", help="of the twelve, separated by commas; default all")
+    add("--objects", type=some_of(OBJECTS, "object"), metavar="NAMES", help="of the twelve, separated by commas; default all")
     add("--takes", type=int, choices=(1, 2), help="1: upright only, 2: the object laid down as well (default 2)")
     add("--frames", type=positive, metavar="N", help="of a take, a closed turn at 15 Hz (default 240)")
     add("--every", type=positive, metavar="N", help="look for the objects in every Nth of a scene's 120 frames (default 2)")
@@ -58,14 +49,8 @@ def main():
         enter_private_network()
     from studies.teach import report  # needs what has been installed
 
-    try:
-        with locked(options.out):
-            report.run(options)
-    except UnitFailed as error:
-        die(error)
-    except KeyboardInterrupt:
-        die("interrupted")
-    step("done")
+    with command_in(options.out):
+        report.run(options)
 
 
 if __name__ == "__main__":

@@ -1,24 +1,15 @@
 """Options of tools/bench tracks. What they ask for is in plan.py, what comes of it in report.py."""
 
-import argparse
 import pathlib
 import sys
 
-from studies.command import Options, die, positive, prepare, step
-from studies.stream import ProcessFailed, enter_private_network
-from studies.work import UnitFailed, locked
+from studies.command import Options, die, positive, prepare, some_of
+from studies.stream import enter_private_network
+from studies.work import command_in
 
 # As hs-render takes orders them.
 SEQUENCES = ("walk", "pushed", "carried", "removed", "swapped", "cans", "arm", "jerk", "cameras")
 TARGETS = ("hs-render", "hs-train", "hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-observe", "hs-study-tracks")
-
-
-def known_sequences(text):
-    names = tuple(text.split(","))
-    for name in names:
-        if name not in SEQUENCES:
-            raise argparse.ArgumentTypeError(f"unknown sequence {name}, expected {', '.join(SEQUENCES)}")
-    return tuple(name for name in SEQUENCES if name in names)
 
 
 def parse(words):
@@ -28,7 +19,7 @@ def parse(words):
                                      "them, and compares the tracks with the truth; measures frame to pose at 30, 60 and "
                                      "90 Hz, and forty objects on two hosts.")  # fmt: skip
     add = parser.add_argument
-    add("--sequences", type=known_sequences, default=SEQUENCES, metavar="NAMES", help=f"of {', '.join(SEQUENCES)}; default all")
+    add("--sequences", type=some_of(SEQUENCES, "sequence"), default=SEQUENCES, metavar="NAMES", help=f"of {', '.join(SEQUENCES)}; default all")
     add("--forest", type=pathlib.Path, metavar="FILE", help="of the four objects, with --models; default: taught anew")
     add("--models", type=pathlib.Path, metavar="DIR", help="their models")
     add("--follow", action="store_true", help="poses by hs-pose --follow")
@@ -53,14 +44,8 @@ def main():
         die("network namespaces are refused here, and hosts are made of them; --no-hosts leaves them out")
     from studies.tracks import report  # needs what has been installed
 
-    try:
-        with locked(options.out):
-            report.run(options)
-    except (UnitFailed, ProcessFailed) as error:
-        die(error)
-    except KeyboardInterrupt:
-        die("interrupted")
-    step("done")
+    with command_in(options.out):
+        report.run(options)
 
 
 if __name__ == "__main__":
