@@ -10,12 +10,14 @@
 namespace houghstream {
 namespace {
 
-/// Sums the support of a maximum by voter, into own.by_voter; returns the number of votes.
-int sum_by_voter(const Camera& camera, const Eigen::Vector3f& centre, float vote_sigma, VotingMemory::Worker& own) {
+/// Sums the support of a maximum by voter; returns the number of votes.
+int sum_by_voter(const VotingInput& input, const Eigen::Vector3f& centre, VotingMemory::Worker& own,
+                 SparseSums::Weights& by_voter) {
   const HoughSpace& space = own.space;
+  const float vote_sigma = input.settings.vote_sigma;
   SparseSums::Weights& supports = own.supports;
   own.voter_sums.make_room(space.voters.size());
-  ranges_around(space, camera, centre, vote_sigma, own.ranges);
+  ranges_around(space, input.camera, centre, vote_sigma, own.ranges);
   int count = 0;
   for (const VoteRange& range : own.ranges) {
     supports.resize(std::max<std::size_t>(supports.size(), range.end - range.begin + 1));
@@ -29,14 +31,14 @@ int sum_by_voter(const Camera& camera, const Eigen::Vector3f& centre, float vote
     for (std::size_t i = 0; i < found; ++i) own.voter_sums.add(space.voter[supports[i].first], supports[i].second);
     count += static_cast<int>(found);
   }
-  own.voter_sums.take(own.by_voter);
+  own.voter_sums.take(by_voter);
   return count;
 }
 
-/// Sums the support in own.by_voter by remembered view, heaviest first.
-void sum_by_view(const Forest& forest, VotingMemory::Worker& own, SparseSums::Weights& by_view) {
+/// Sums the support by remembered view, heaviest first.
+void sum_by_view(const Forest& forest, const SparseSums::Weights& by_voter, VotingMemory::Worker& own,
+                 SparseSums::Weights& by_view) {
   constexpr std::size_t kAhead = 8;  // voters, so that their cache misses overlap
-  const SparseSums::Weights& by_voter = own.by_voter;
   const auto class_of = [&](std::size_t s) {
     return &forest.leaf_classes[own.space.voters[by_voter[s].first].leaf_class];
   };
@@ -59,25 +61,30 @@ void sum_by_view(const Forest& forest, VotingMemory::Worker& own, SparseSums::We
   });
 }
 
-/// A maximum with what supports it; its mass is what is seen of the object, the weight times the area of the patches.
-/// One without `least_mass` is left without either.
-Hypothesis gather_support(const VotingInput& input, const Eigen::Vector3f& centre, float least_mass,
-                          VotingMemory::Worker& own) {
-  own.by_patch.clear();
+/// A maximum with its mass, which is what is seen of the object: the weight times the area of the patches.
+Hypothesis weigh_maximum(const VotingInput& input, const Eigen::Vector3f& centre, VotingMemory::Worker& own,
+                         SparseSums::Weights& by_voter) {
   Hypothesis hypothesis;
   hypothesis.centre_camera = centre;
-  hypothesis.vote_count = sum_by_voter(input.camera, centre, input.settings.vote_sigma, own);
-  for (const auto& [index, weight] : own.by_voter) {
-    const std::uint32_t patch = own.space.voters[index].patch;
+  hypothesis.vote_count = sum_by_voter(input, centre, own, by_voter);
+  for (const auto& [index, weight] : by_voter) {
     hypothesis.weight += weight;
-    hypothesis.mass += weight * input.patches.area[patch];
+    hypothesis.mass += weight * input.patches.area[own.space.voters[index].patch];
+  }
+  return hypothesis;
+}
+
+/// What supports it, by patch and by view.
+void add_support(const Forest& forest, const SparseSums::Weights& by_voter, VotingMemory::Worker& own,
+                 Hypothesis& hypothesis) {
+  own.by_patch.clear();
+  for (const auto& [index, weight] : by_voter) {
+    const std::uint32_t patch = own.space.voters[index].patch;
     if (own.by_patch.empty() || own.by_patch.back().first != patch) own.by_patch.emplace_back(patch, 0.0F);
     own.by_patch.back().second += weight;
   }
-  if (hypothesis.mass < least_mass) return hypothesis;
   hypothesis.patches = own.by_patch;
-  sum_by_view(input.forest, own, hypothesis.views);
-  return hypothesis;
+  sum_by_view(forest, by_voter, own, hypothesis.views);
 }
 
 /// The classes, those with the most to do first, so that no thread starts with one when the others have ended.
@@ -116,35 +123,43 @@ void SparseSums::take(Weights& out) {
   }
 }
 
-std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, float least_mass, int limit,
-                                         VotingMemory::Worker& own) {
-  const std::vector<Eigen::Vector3f> maxima = find_maxima(own.space, input.camera, input.settings, limit, own.maxima);
-  std::vector<Hypothesis> hypotheses;
-  hypotheses.reserve(maxima.size());
-  for (const Eigen::Vector3f& centre : maxima) {
-    Hypothesis hypothesis = gather_support(input, centre, least_mass, own);
-    hypothesis.class_index = class_index;
-    if (hypothesis.mass >= least_mass) hypotheses.push_back(std::move(hypothesis));
+std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, VotingMemory::Worker& own) {
+  const VotingSettings& settings = input.settings;
+  const std::size_t classes = input.forest.classes.size();
+  const float least_mass = settings.min_mass_share * input.forest.classes[class_index].expected_mass;
+  const std::vector<Eigen::Vector3f> maxima =
+      find_maxima(own.space, input.camera, settings, each_of(classes, settings.maxima_per_class), own.maxima);
+  std::vector<Hypothesis> weighed;
+  std::vector<std::size_t> order;
+  own.by_voter.resize(std::max(own.by_voter.size(), maxima.size()));
+  for (std::size_t i = 0; i < maxima.size(); ++i) {
+    weighed.push_back(weigh_maximum(input, maxima[i], own, own.by_voter[i]));
+    if (weighed.back().mass >= least_mass) order.push_back(i);
   }
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.mass > b.mass; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return weighed[a].mass > weighed[b].mass; });
+  const auto most = static_cast<std::size_t>(each_of(classes, settings.candidates_per_class));
+  if (order.size() > most) order.resize(most);
+  std::vector<Hypothesis> hypotheses;
+  hypotheses.reserve(order.size());
+  for (const std::size_t i : order) {
+    hypotheses.push_back(std::move(weighed[i]));
+    hypotheses.back().class_index = class_index;
+    add_support(input.forest, own.by_voter[i], own, hypotheses.back());
+  }
   return hypotheses;
 }
 
 std::vector<Hypothesis> find_hypotheses(const VotingInput& input, int threads, VotingMemory& memory) {
   const std::vector<ObjectClass>& classes = input.forest.classes;
   const std::vector<std::size_t> order = by_work(classes.size(), input.posteriors);
-  const int limit = each_of(classes.size(), input.settings.maxima_per_class);
-  const auto most = static_cast<std::size_t>(each_of(classes.size(), input.settings.candidates_per_class));
   std::vector<std::vector<Hypothesis>> by_class(classes.size());
   memory.workers.make_room(threads);
   parallel_for_workers(threads, static_cast<int>(order.size()), [&](int worker, int i) {
     const std::size_t c = order[static_cast<std::size_t>(i)];
     VotingMemory::Worker& own = memory.workers[worker];
     cast_votes(input, static_cast<int>(c), own.casting, own.space);
-    const float least_mass = input.settings.min_mass_share * classes[c].expected_mass;
-    by_class[c] = class_hypotheses(input, c, least_mass, limit, own);
-    if (by_class[c].size() > most) by_class[c].resize(most);
+    by_class[c] = class_hypotheses(input, c, own);
   });
   std::vector<Hypothesis> all;
   std::size_t count = 0;

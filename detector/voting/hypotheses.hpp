@@ -49,16 +49,15 @@ struct VotingMemory {
     SparseSums::Weights supports;  ///< of a range's votes
     SparseSums voter_sums;
     SparseSums view_sums;
-    SparseSums::Weights by_voter;
+    std::vector<SparseSums::Weights> by_voter;  ///< of each maximum
     SparseSums::Weights by_patch;
   };
   PerWorker<Worker> workers;
 };
 
-/// The maxima of a class's votes in own.space with at least `least_mass`, of which the Hough image's `limit` highest
-/// are looked at, heaviest first.
-std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, float least_mass, int limit,
-                                         VotingMemory::Worker& own);
+/// Of the maxima of a class's votes in own.space the heaviest, as many as the settings say and heaviest first: those of
+/// the Hough image's highest that have the mass that is asked for.
+std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t class_index, VotingMemory::Worker& own);
 
 /// Casts the votes of every class and finds their maxima: class by class in one pass, so that a class's Hough space is
 /// still in the cache. Ordered by class, each class's heaviest first: what is near has more patches, and so more

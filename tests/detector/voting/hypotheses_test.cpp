@@ -48,13 +48,15 @@ PatchPosteriors all_voting(const Forest& forest, const PatchGrid& patches) {
 }
 
 std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
-  const Forest forest = centre_forest();
+  Forest forest = centre_forest();
+  forest.classes[0].expected_mass = 1.0F;
   const PatchPosteriors posteriors = all_voting(forest, patches);
-  const VotingSettings settings;
+  VotingSettings settings;
+  settings.min_mass_share = least_mass;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
   VotingMemory::Worker own;
   cast_votes(input, 0, own.casting, own.space);
-  return class_hypotheses(input, 0, least_mass, settings.maxima_per_class, own);
+  return class_hypotheses(input, 0, own);
 }
 
 TEST(Hypotheses, TwoClustersGiveTwoMaximaAtTheirMeans) {

@@ -71,9 +71,7 @@ void register_search(const RgbdFrame& frame, const Forest& forest, const Detecti
   add("hypotheses", [&forest, &settings] {
     const VotingInput again = voting_input({forest, settings}, seen);
     for (std::size_t c = 0; c < by_class.size(); ++c) {
-      const float least = settings.voting.min_mass_share * forest.classes[c].expected_mass;
-      const int limit = each_of(forest.classes.size(), settings.voting.maxima_per_class);
-      benchmark::DoNotOptimize(class_hypotheses(again, c, least, limit, by_class[c]));
+      benchmark::DoNotOptimize(class_hypotheses(again, c, by_class[c]));
     }
   });
 }
