@@ -33,8 +33,8 @@ void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, std
 }
 
 /// From the view that agrees best to those that look from beside it, as long as one of them agrees better: votes
-/// remember few of the views that would fit.
-PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<PlacedView>& compared) {
+/// remember few of the views that would fit. All that were looked at are added to `way`.
+PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<PlacedView>& way) {
   constexpr int kSteps = 6;
   const std::vector<std::uint32_t>& excluded = input.excluded_views;
   for (int step = 0; step < kSteps; ++step) {
@@ -42,8 +42,8 @@ PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<Placed
     const Eigen::Vector3f centre = best.centre_camera;
     for (const std::uint32_t view : input.forest.view_neighbours[from]) {
       if (view == from || std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
-      compared.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
-      if (agreement(compared.back().fit) > agreement(best.fit)) best = compared.back();
+      way.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
+      if (agreement(way.back().fit) > agreement(best.fit)) best = way.back();
     }
     if (best.view == from) break;
     best = align_view(input.forest.views, best, input.frame);
@@ -87,10 +87,11 @@ void look_at_view(const EvidenceInput& input, const PlacedView& placed, Evidence
 /// that which speaks most for an object, as all objects have it in common: a view of a small side agrees easily with a
 /// part of the object, and only what lies beyond its outline tells. What is hopeless where it stands is left there:
 /// most maxima are of that kind, and looking further takes longer than all else about them.
-void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, float spread,
-                  std::vector<PlacedView>& compared, Evidence& evidence) {
+void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, float spread, EvidenceMemory::Worker& own,
+                  Evidence& evidence) {
   constexpr float kHopeless = 0.02F;  // score: votes bring hidden objects views that hardly fit
   constexpr ScoreModel kCommon;
+  std::vector<PlacedView>& compared = own.compared;
   compare_views(input, hypothesis, kViews, compared);
   if (compared.empty()) return;
   look_at_view(input, best_unaligned(compared), evidence);
@@ -98,25 +99,22 @@ void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, floa
   compare_views(input, hypothesis, static_cast<std::size_t>(kViews * spread), compared);
   const Evidence unaligned = evidence;
   const auto attitudes = static_cast<std::size_t>(spread);
-  const std::size_t by_votes = compared.size();
+  own.best_way.clear();
   double most = -std::numeric_limits<double>::infinity();
   for (const PlacedView& start : Starts(input, attitudes, compared)) {
-    const std::size_t before = compared.size();
-    const PlacedView best = climb(input, start, compared);
-    Evidence own = unaligned;
-    look_at_view(input, best, own);
-    own.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
-    const double odds = log_odds(kCommon, score_terms(own));
-    // Only what the best was climbed through speaks for a rotation.
-    if (odds <= most) {
-      compared.resize(before);
-      continue;
-    }
+    own.way.clear();
+    const PlacedView best = climb(input, start, own.way);
+    Evidence seen = unaligned;
+    look_at_view(input, best, seen);
+    seen.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
+    const double odds = log_odds(kCommon, score_terms(seen));
+    if (odds <= most) continue;
     most = odds;
-    evidence = own;
-    const auto first = compared.begin() + static_cast<std::ptrdiff_t>(by_votes);
-    compared.erase(first, first + static_cast<std::ptrdiff_t>(before - by_votes));
+    evidence = seen;
+    own.way.swap(own.best_way);
   }
+  // Only what the best was climbed through speaks for a rotation.
+  compared.insert(compared.end(), own.best_way.begin(), own.best_way.end());
 }
 
 /// Views and how much they speak for their rotation, heaviest first: the votes that remember them. Of a class that was
@@ -174,7 +172,7 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   detection.box_px = backprojected_box(input.forest, hypothesis, input.patches, camera, own.box);
   detection.score = vote_score(candidate.evidence.mass_share);
   if (input.forest.scoring == Scoring::kEvidence) {
-    add_best_fit(input, hypothesis, spread, own.compared, candidate.evidence);
+    add_best_fit(input, hypothesis, spread, own, candidate.evidence);
     detection.score = score(object.score_model, candidate.evidence);
     detection.box_px = visible_box(detection.box_px, candidate.evidence.fit.visible_box_px, camera);
   }
