@@ -131,6 +131,8 @@ std::vector<Hypothesis> class_hypotheses(const VotingInput& input, std::size_t c
       find_maxima(own.space, input.camera, settings, each_of(classes, settings.maxima_per_class), own.maxima);
   std::vector<Hypothesis> weighed;
   std::vector<std::size_t> order;
+  weighed.reserve(maxima.size());
+  order.reserve(maxima.size());
   own.by_voter.resize(std::max(own.by_voter.size(), maxima.size()));
   for (std::size_t i = 0; i < maxima.size(); ++i) {
     weighed.push_back(weigh_maximum(input, maxima[i], own, own.by_voter[i]));

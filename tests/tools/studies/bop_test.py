@@ -221,6 +221,18 @@ class BadInput(Case):
         self.refused("the name is 'a b'", "--dataset", f"a b={self.root}")
         self.refused("--seeds with --objects", "--dataset", self.root, "--objects", self.root, "--seeds", "2")
 
+    def test_an_interruption_while_sets_are_read_is_one_line(self):
+        code = (
+            "import signal, sys, studies.bop.__main__ as command\n"
+            "command.open_all = lambda _: signal.raise_signal(signal.SIGINT)\n"
+            "sys.argv[1:] = ['--dataset', 'ycbv=anywhere']\n"
+            "command.main()\n"
+        )
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertIn("interrupted", done.stderr)
+
     def test_what_a_program_says_is_told(self):
         write_set(self.root)
         done = self.run_it("--dataset", self.root, BOP_FAKE_FAILS="yes")

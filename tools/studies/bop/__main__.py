@@ -81,6 +81,8 @@ def main():
             report.run(options, datasets)
     except BadSet as error:
         die(error)
+    except KeyboardInterrupt:  # while sets are read or programs built
+        die("interrupted; the same command goes on from here")
 
 
 if __name__ == "__main__":

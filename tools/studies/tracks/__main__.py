@@ -19,7 +19,8 @@ def parse(words):
                                      "them, and compares the tracks with the truth; measures frame to pose at 30, 60 and "
                                      "90 Hz, and forty objects on two hosts.")  # fmt: skip
     add = parser.add_argument
-    add("--sequences", type=some_of(SEQUENCES, "sequence"), default=SEQUENCES, metavar="NAMES", help=f"of {', '.join(SEQUENCES)}; default all")
+    add("--sequences", type=some_of(SEQUENCES, "sequence"), default=SEQUENCES, metavar="NAMES",
+        help=f"of {', '.join(SEQUENCES)}; default all")  # fmt: skip
     add("--forest", type=pathlib.Path, metavar="FILE", help="of the four objects, with --models; default: taught anew")
     add("--models", type=pathlib.Path, metavar="DIR", help="their models")
     add("--follow", action="store_true", help="poses by hs-pose --follow")
