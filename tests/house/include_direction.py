@@ -16,9 +16,6 @@ ALLOWED = {
     "tools": {"lcmtypes", "pipeline", "drivers", "detector", "pose", "tools"},
     "tests": {"lcmtypes", "pipeline", "drivers", "detector", "pose", "tools", "tests"},
 }
-# Headers that only some places may see: what they are called, where they are welcome.
-OPENNI2 = (re.compile(r"^(OpenNI\.h|openni2/|Driver/OniDriver)"), re.compile(r"^(drivers|tests)/"))
-PCL = (re.compile(r"^pcl/"), re.compile(r"^(pose/baseline|tools/studies|tests)/|^detector/baseline/surface_"))
 LCM = re.compile(r"^(lcm/|houghstream/)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 
@@ -63,9 +60,6 @@ def find_faults(root):
             target = included.split("/")[0]
             if target in ALLOWED and target not in ALLOWED[folder]:
                 faults.append(f"{file}: {folder} may not include {included}")
-            for name, (header, place) in {"OpenNI2": OPENNI2, "PCL": PCL}.items():
-                if header.match(included) and not place.match(file):
-                    faults.append(f"{file}: {name} header {included} does not belong here")
     for file in sources_without_lcm(root, files):
         chain = path_to_lcm(file, files, set())
         if chain:
