@@ -13,12 +13,18 @@ constexpr std::int64_t kWrapToleranceUs = 1'000'000;  // between the device's in
 
 std::int64_t DeviceClock::utime(std::uint64_t device_us, std::int64_t host_us) {
   const std::int64_t device = unwrapped(device_us, host_us);
+  const std::int64_t interval = last_device_us_ ? device - *last_device_us_ : 0;
   const std::int64_t offset = filtered_offset({host_us, host_us - device});
   last_device_us_ = device;
   last_host_us_ = host_us;
-  const std::int64_t utime = device + offset;
-  last_utime_ = last_utime_ ? std::max(utime, *last_utime_ + 1) : utime;
+  last_utime_ = slewed(device + offset, interval);
   return *last_utime_;
+}
+
+std::int64_t DeviceClock::slewed(std::int64_t utime, std::int64_t interval) const {
+  constexpr std::int64_t kSlowest = 4;
+  if (!last_utime_ || utime < *last_utime_ - kSlewUs) return utime;
+  return std::max(utime, *last_utime_ + std::max<std::int64_t>(1, interval / kSlowest));
 }
 
 void DeviceClock::restart() {

@@ -13,17 +13,20 @@ namespace houghstream::openni {
 class DeviceClock {
  public:
   /// utime (microseconds since the epoch) of the image with this device time that arrived at `host_us`, the host's
-  /// time since the epoch. Rises from call to call, and is never later than the arrival as long as the host's clock
-  /// is not set back. A device clock that wraps at 32 bits goes on; one that jumps is followed, at once where it
-  /// shows (times fall, or images would come from the future), else after kLateInARow images.
+  /// time since the epoch. Never later than the arrival but for the second after the host's clock was set back. Rises
+  /// from call to call but where that clock is set back by more than kSlewUs: these utimes follow it at once. After a
+  /// smaller step they run at a quarter of the speed at least until the host's clock has reached them. A device clock
+  /// that wraps at 32 bits goes on; one that jumps is followed, at once where it shows (times fall, or images would
+  /// come from the future), else after kLateInARow images. So is a host's clock that is set forward.
   std::int64_t utime(std::uint64_t device_us, std::int64_t host_us);
 
-  /// Forgets the offset: another device, or the same one after a restart. utimes go on rising.
+  /// Forgets the offset: another device, or the same one after a restart. utimes go on from the last one.
   void restart();
 
   static constexpr std::int64_t kWindowUs = 2'000'000;  ///< 100 ppm of drift make 0.2 ms in it
   static constexpr std::int64_t kLateUs = 100'000;      ///< later than the window's offset: a hiccup, or a jump
   static constexpr int kLateInARow = 5;                 ///< a hiccup of the host does not delay so many images evenly
+  static constexpr std::int64_t kSlewUs = 500'000;      ///< caught up with within 0.7 s
 
  private:
   struct Sample {
@@ -33,6 +36,8 @@ class DeviceClock {
 
   std::int64_t unwrapped(std::uint64_t device_us, std::int64_t host_us);
   std::int64_t filtered_offset(const Sample& sample);
+  /// The utime that follows the last one, `interval` after it by the device's clock.
+  std::int64_t slewed(std::int64_t utime, std::int64_t interval) const;
 
   std::deque<Sample> window_;    // offsets rise from front to back: the front is the smallest
   std::int64_t wrapped_us_ = 0;  // what wraps have taken from the device's count

@@ -3,24 +3,56 @@
 #include <algorithm>
 
 namespace houghstream {
+namespace {
+
+constexpr std::size_t kFrames = 16;  // with results
+constexpr std::size_t kUtimes = 64;  // a result comes within so many frames
+
+template <typename T>
+void push_limited(std::deque<T>& queue, T item, std::size_t limit) {
+  queue.push_back(std::move(item));
+  if (queue.size() > limit) queue.pop_front();
+}
+
+}  // namespace
+
+DetectorCount::Camera* DetectorCount::camera_of(const std::string& channel) {
+  if (cameras_.size() >= kCameras && cameras_.count(channel) == 0) return nullptr;
+  return &cameras_[channel];
+}
+
+DetectorCount::Frame* DetectorCount::Camera::find(std::int64_t utime) {
+  const auto known = std::find_if(frames.begin(), frames.end(), [&](const Frame& f) { return f.utime == utime; });
+  return known == frames.end() ? nullptr : &*known;
+}
+
+void DetectorCount::note_frame(const FrameId& frame) {
+  Camera* camera = camera_of(frame.channel);
+  if (camera == nullptr) return;
+  Frame* known = camera->find(frame.utime);
+  if (known != nullptr && known->has_come) {
+    forget(frame);
+  } else if (known != nullptr) {
+    known->has_come = true;
+  }
+  push_limited(camera->utimes, frame.utime, kUtimes);
+}
 
 void DetectorCount::note_result(const FrameId& frame) {
-  constexpr std::size_t kFrames = 16;
-  if (cameras_.size() >= kCameras && cameras_.count(frame.channel) == 0) return;
-  std::deque<Frame>& frames = cameras_[frame.channel];
-  const auto known = std::find_if(frames.begin(), frames.end(), [&](const Frame& f) { return f.utime == frame.utime; });
-  if (known != frames.end()) {
+  Camera* camera = camera_of(frame.channel);
+  if (camera == nullptr) return;
+  if (Frame* known = camera->find(frame.utime); known != nullptr) {
     ++known->results;
     return;
   }
-  frames.push_back({frame.utime, 1});
-  if (frames.size() > kFrames) frames.pop_front();
+  const bool has_come = std::find(camera->utimes.begin(), camera->utimes.end(), frame.utime) != camera->utimes.end();
+  push_limited(camera->frames, Frame{frame.utime, 1, has_come}, kFrames);
 }
 
 void DetectorCount::forget(const FrameId& frame) {
   const auto camera = cameras_.find(frame.channel);
   if (camera == cameras_.end()) return;
-  std::deque<Frame>& frames = camera->second;
+  std::deque<Frame>& frames = camera->second.frames;
   frames.erase(std::remove_if(frames.begin(), frames.end(), [&](const Frame& f) { return f.utime == frame.utime; }),
                frames.end());
 }
@@ -29,7 +61,7 @@ int DetectorCount::of(const std::string& channel) const {
   int most = 1;
   const auto camera = cameras_.find(channel);
   if (camera == cameras_.end()) return most;
-  for (const Frame& frame : camera->second) most = std::max(most, frame.results);
+  for (const Frame& frame : camera->second.frames) most = std::max(most, frame.results);
   return most;
 }
 

@@ -17,9 +17,14 @@ class DetectorCount {
   /// Cameras whose results are counted; of a further one nothing is known. Results may name any camera.
   static constexpr std::size_t kCameras = 64;
 
+  /// A frame that comes a second time (a log that is replayed, a source that is started again and stamps as before) is
+  /// another frame: results of it are counted anew.
+  void note_frame(const FrameId& frame);
+
+  /// May come before its frame, which then is its own.
   void note_result(const FrameId& frame);
 
-  /// The frame has come again (a log that is replayed): results of it are counted anew.
+  /// Results of this frame are counted anew.
   void forget(const FrameId& frame);
 
   /// At least 1.
@@ -29,8 +34,18 @@ class DetectorCount {
   struct Frame {
     std::int64_t utime = 0;
     int results = 0;
+    bool has_come = false;
   };
-  std::map<std::string, std::deque<Frame>> cameras_;  // by channel, the last frames with results
+  struct Camera {
+    std::deque<Frame> frames;         // the last ones with results
+    std::deque<std::int64_t> utimes;  // of the last frames that have come
+
+    Frame* find(std::int64_t utime);
+  };
+
+  Camera* camera_of(const std::string& channel);
+
+  std::map<std::string, Camera> cameras_;  // by channel
 };
 
 }  // namespace houghstream

@@ -136,10 +136,14 @@ class FollowProcess {
       decoded.frame.stages.push_back(decoded.decoding);
       const RecentFrames::Decoded frame = std::make_shared<const DecodedFrame>(std::move(decoded));
       recent_.keep(frame);
-      ObjectPoses poses = poses_.follow(frame->frame);
-      poses.frame = encoded->id;
-      bus_.publish(channel::kPoses, to_message(poses));
-      transforms_.publish(poses);
+      std::optional<ObjectPoses> poses = poses_.follow(frame->frame);
+      if (!poses) {
+        status_.count_skipped(1);
+        return true;
+      }
+      poses->frame = encoded->id;
+      bus_.publish(channel::kPoses, to_message(*poses));
+      transforms_.publish(*poses);
       status_.count_processed(std::chrono::steady_clock::now() - encoded->arrival);
     } catch (const std::exception& error) {
       status_.count_refused(error.what(), encoded->id.channel + " work");

@@ -20,8 +20,8 @@ class LookBudget {
   /// 0: at every frame.
   explicit LookBudget(double looks_per_second) : looks_per_second_(looks_per_second) {}
 
-  /// Whether this frame is looked at: where enough time has passed since the camera's last look. Times that go back
-  /// begin anew.
+  /// Whether this frame is looked at: where enough time has passed since the camera's last look. Times that go back by
+  /// more than a second begin anew; a frame that is older by less has been overtaken on its way.
   bool is_due(const FrameId& frame);
 
   /// The camera's next look comes after a quarter of the time, once. One that has had no look is left alone: results

@@ -20,12 +20,11 @@ void PairInbox::put_frame(const FrameId& id, SharedBytes bytes) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     Camera& camera = camera_of(id.channel);
-    if (camera.find_frame(id) != nullptr) detectors_.forget(id);
+    detectors_.note_frame(id);
     ByteCount::Held held = frame_bytes_.hold(bytes->size());
-    camera.frames.push_back({{id, std::move(bytes)}, std::move(held)});
+    camera.frames.push_back({{id, std::move(bytes)}, ++camera.frames_seen, std::move(held)});
     if (camera.frames.size() > kHistory) camera.frames.pop_front();
     keep_within_bytes();
-    ++camera.frames_seen;
     camera.fresh = newest_first_ && ahead_;
     drop_hopeless(camera);
     is_awaited = camera.fresh || !camera.waiting.empty();
@@ -125,10 +124,10 @@ void PairInbox::give_up_first(Camera& camera) {
   camera.waiting.pop_front();
 }
 
-const ArrivedFrame* PairInbox::Camera::find_frame(const FrameId& id) const {
+const PairInbox::Kept* PairInbox::Camera::find_frame(const FrameId& id) const {
   const auto found =
       std::find_if(frames.rbegin(), frames.rend(), [&](const Kept& kept) { return kept.frame.id == id; });
-  return found == frames.rend() ? nullptr : &found->frame;
+  return found == frames.rend() ? nullptr : &*found;
 }
 
 std::optional<std::size_t> PairInbox::Camera::first_complete() const {
@@ -181,7 +180,8 @@ void PairInbox::drop_hopeless(Camera& camera) {
 PairedMessages PairInbox::take_pair(Camera& camera) {
   const auto chosen = camera.waiting.begin() + static_cast<std::ptrdiff_t>(*camera.first_complete());
   if (chosen->id == camera.frames.back().frame.id) camera.fresh = false;
-  PairedMessages pair{chosen->id, camera.find_frame(chosen->id)->bytes, std::move(chosen->bytes), chosen->arrival};
+  const Kept& kept = *camera.find_frame(chosen->id);
+  PairedMessages pair{chosen->id, kept.frame.bytes, kept.number, std::move(chosen->bytes), chosen->arrival};
   camera.turn = ++turns_;
   camera.waiting.erase(chosen);
   return pair;

@@ -32,6 +32,7 @@ struct ArrivedFrame {
 struct PairedMessages {
   FrameId id;
   SharedBytes frame;
+  std::int64_t frame_number = 0;  ///< of the camera's frames in their order of arrival: a name may come again
   std::vector<std::uint8_t> detections;
   std::chrono::steady_clock::time_point arrival;  ///< of the detections
 };
@@ -92,6 +93,7 @@ class PairInbox {
  private:
   struct Kept {
     ArrivedFrame frame;
+    std::int64_t number = 0;  // PairedMessages::frame_number
     ByteCount::Held held;
   };
   struct Waiting {
@@ -109,7 +111,7 @@ class PairInbox {
     bool fresh = false;     // the last frame may be taken ahead
     std::int64_t turn = 0;  // when it was served last
 
-    const ArrivedFrame* find_frame(const FrameId& id) const;
+    const Kept* find_frame(const FrameId& id) const;
     std::optional<std::size_t> first_complete() const;
   };
 

@@ -20,6 +20,9 @@ class PoseMemory {
 
   void keep(const ObjectPoses& poses);
 
+  /// Another frame of that name has come (DetectorCount).
+  void note_again(const FrameId& frame) { detectors_.forget(frame); }
+
  private:
   std::map<std::string, std::deque<ObjectPoses>> cameras_;  // by channel, oldest first
   DetectorCount detectors_;

@@ -34,6 +34,7 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
 /// What was found in a frame so far, by all its detectors.
 struct HeardClasses {
   FrameId frame;
+  std::int64_t number = 0;  // PairedMessages::frame_number
   std::set<std::string> names;
 };
 
@@ -139,7 +140,7 @@ class PoseProcess {
     const RecentFrames::Decoded ahead = ahead_.find(pair.id);
     const RecentFrames::Decoded frame = ahead ? ahead : decoded(pair.id, *pair.frame);
     detections.stages.push_back(frame->decoding);
-    note_shared_classes(detections);
+    note_shared_classes(detections, pair.frame_number);
     note_models();
     warn(models_.note(detections));
     ObjectPoses poses = estimate_(frame->frame, detections, memory_.before(detections));
@@ -149,15 +150,20 @@ class PoseProcess {
   }
 
   // Two detectors that know the same object give it two poses.
-  void note_shared_classes(const Detections& detections) {
+  void note_shared_classes(const Detections& detections, std::int64_t frame_number) {
     constexpr std::size_t kFrames = 16;
     const auto heard = std::find_if(heard_.begin(), heard_.end(),
                                     [&](const HeardClasses& classes) { return classes.frame == detections.frame; });
     std::set<std::string> names;
     for (const Detection& detection : detections.detections) names.insert(detection.class_name);
     if (heard == heard_.end()) {
-      heard_.push_back({detections.frame, std::move(names)});
+      heard_.push_back({detections.frame, frame_number, std::move(names)});
       if (heard_.size() > kFrames) heard_.pop_front();
+      return;
+    }
+    if (heard->number != frame_number) {
+      memory_.note_again(detections.frame);
+      *heard = {detections.frame, frame_number, std::move(names)};
       return;
     }
     for (const std::string& name : names) {

@@ -57,9 +57,9 @@ void note_look(const Detections& detections, const DetectionLook& look, const Fo
     double score = settings.missed_score;
     if (found != look.matches.end()) {
       score = detections.detections[static_cast<std::size_t>(found - look.matches.begin())].score;
-      object->found_utime = shown.utime;
+      object->found_us = shown.clock_us;
     } else if (shown.poses[p].pose.visible_fraction < kFullView ||
-               seconds_between(object->found_utime, shown.utime) < settings.missed_after_s) {
+               seconds_between(object->found_us, shown.clock_us) < settings.missed_after_s) {
       continue;
     }
     object->log_odds += settings.score_gain * (score_log_odds(score) - object->log_odds);
@@ -74,12 +74,12 @@ int choose_doubted(const DetectionLook& look, const FollowerSettings& settings, 
   for (const int match : look.matches) {
     FollowedObject* object =
         match >= 0 ? find_followed(shown.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
-    if (object == nullptr || seconds_between(object->doubted_utime, shown.utime) < settings.doubted_after_s) continue;
-    if (chosen != nullptr && chosen->doubted_utime <= object->doubted_utime) continue;
+    if (object == nullptr || seconds_between(object->doubted_us, shown.clock_us) < settings.doubted_after_s) continue;
+    if (chosen != nullptr && chosen->doubted_us <= object->doubted_us) continue;
     chosen = object;
     place = match;
   }
-  if (chosen != nullptr) chosen->doubted_utime = shown.utime;
+  if (chosen != nullptr) chosen->doubted_us = shown.clock_us;
   return place;
 }
 

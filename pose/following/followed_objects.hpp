@@ -27,26 +27,28 @@ struct FollowerSettings {
   double speed_gain = 0.5;        ///< how much the last step moves the speed
 };
 
-/// An object that is followed from frame to frame of one camera.
+/// An object that is followed from frame to frame of one camera. Its times are on the camera's clock
+/// (FollowedCamera::ahead_us).
 struct FollowedObject {
   std::int64_t number = 0;  ///< in the order in which they were found
   int class_id = 0;
   std::string class_name;
   double log_odds = 0.0;                                              ///< of its detections' scores
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
-  std::int64_t utime = 0;                                             ///< of the frame in which it was there
+  std::int64_t clock_us = 0;                                          ///< of the frame in which it was there
   Eigen::Vector3d speed = Eigen::Vector3d::Zero();                    ///< m/s
   Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();                ///< rad/s
-  std::int64_t valid_utime = 0;                                       ///< of its last valid pose
-  std::int64_t found_utime = 0;                                       ///< of its last detection
-  std::int64_t doubted_utime = 0;  ///< when it was last looked for as if it were not followed
+  std::int64_t valid_us = 0;                                          ///< of its last valid pose
+  std::int64_t found_us = 0;                                          ///< of its last detection
+  std::int64_t doubted_us = 0;  ///< when it was last looked for as if it were not followed
   int failures = 0;
   std::optional<Verification> verified;  ///< of the last rendering
 };
 
 /// A frame's poses, and whose they are.
 struct ShownFrame {
-  std::int64_t utime = 0;
+  std::int64_t utime = 0;     ///< names it
+  std::int64_t clock_us = 0;  ///< when it was taken, on the camera's clock
   std::vector<std::int64_t> numbers;
   std::vector<FollowedPose> poses;
 };
@@ -56,6 +58,10 @@ struct FollowedCamera {
   std::vector<FollowedObject> objects;
   std::deque<ShownFrame> shown;  ///< the last ones
   std::int64_t frames = 0;
+  /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
+  /// camera's clock stands still over such a jump.
+  std::int64_t ahead_us = 0;
+  std::optional<std::int64_t> overtaken_utime;  ///< of the last frame that came, where newer ones had overtaken it
 };
 
 }  // namespace houghstream

@@ -5,26 +5,57 @@
 #include "pipeline/base/log_odds.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
+#include "pipeline/types/shifted.hpp"
 #include "pose/following/motion.hpp"
 
 namespace houghstream {
 namespace {
 
+constexpr double kOvertakenS = 1.0;  // by which a frame may come late
+constexpr double kJumpS = 10.0;      // to a later frame: a camera that was away for a moment is no other
+
 float probability(double odds) {
   return static_cast<float>(logistic(odds));
 }
 
+/// Whether newer frames have overtaken this one on its way. Where the one before it seemed so too, and was older, it is
+/// the clock that was set back.
+bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
+  if (camera.shown.empty()) return false;
+  const double passed_s = seconds_between(camera.shown.back().utime, utime);
+  const bool is_older = passed_s < 0.0 && passed_s >= -kOvertakenS;
+  const bool goes_on = camera.overtaken_utime && *camera.overtaken_utime < utime;
+  camera.overtaken_utime.reset();
+  if (is_older && !goes_on) camera.overtaken_utime = utime;
+  return camera.overtaken_utime.has_value();
+}
+
+std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
+  return shifted(utime, camera.ahead_us);
+}
+
+/// Lets the camera's clock stand still where utimes jump: nobody knows how far anything has moved meanwhile.
+void follow_clock(std::int64_t utime, FollowedCamera& camera) {
+  if (camera.shown.empty()) return;
+  const double passed_s = seconds_between(camera.shown.back().utime, utime);
+  if (passed_s >= 0.0 && passed_s <= kJumpS) return;
+  camera.ahead_us = microseconds_between(utime, camera.shown.back().clock_us);
+  for (FollowedObject& object : camera.objects) object.speed = object.turn_rate = Eigen::Vector3d::Zero();
+}
+
 }  // namespace
 
-ObjectPoses ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
+std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator, const RgbdFrame& frame) {
   constexpr std::size_t kShown = 32;  // frames; a detector's answer takes a few
   const std::lock_guard<std::mutex> lock(mutex_);
   StageClock clock;
   FollowedCamera& camera = cameras_[frame.id.channel];
-  if (!camera.shown.empty() && frame.id.utime < camera.shown.back().utime) camera = FollowedCamera();
-  ShownFrame shown{frame.id.utime, {}, follow_all(estimator, frame, camera)};
+  if (is_overtaken(frame.id.utime, camera)) return std::nullopt;
+  follow_clock(frame.id.utime, camera);
+  const std::int64_t clock_us = clock_of(frame.id.utime, camera);
+  ShownFrame shown{frame.id.utime, clock_us, {}, follow_all(estimator, frame, camera)};
   for (std::size_t i = 0; i < camera.objects.size(); ++i) {
-    note_result(shown.poses[i], frame.id.utime, camera.objects[i]);
+    note_result(shown.poses[i], clock_us, camera.objects[i]);
     shown.numbers.push_back(camera.objects[i].number);
   }
   give_up(estimator, camera, shown);
@@ -45,7 +76,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so many, not all objects in the same one
   std::vector<ExpectedObject> expected;
   for (const FollowedObject& object : camera.objects) {
-    const double dt = seconds_between(object.utime, frame.id.utime);
+    const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
     const double used = dt <= kLongest ? dt : 0.0;
     const bool settle = (camera.frames + object.number) % kSettle == 0;
     expected.push_back({object.class_id,
@@ -101,10 +132,10 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
 }
 
 /// Goes on from the result; without evidence it stays where it was, or where the camera's motion has brought it.
-void ObjectFollower::note_result(const FollowedPose& result, std::int64_t utime, FollowedObject& object) const {
+void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const {
   const bool valid = result.pose.status == PoseStatus::kValid;
   const bool kept = valid || result.pose.quality >= settings_.least_kept_quality;
-  const double dt = seconds_between(object.utime, utime);
+  const double dt = seconds_between(object.clock_us, clock_us);
   if (valid && dt > 0.0) {
     const Eigen::Vector3d speed = (result.T_camera_object.translation() - object.T_camera_object.translation()) / dt;
     const Eigen::Vector3d turn_rate =
@@ -116,21 +147,21 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t utime,
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
   object.T_camera_object = result.T_camera_object;
   object.verified = result.verified;
-  object.utime = utime;
-  if (valid) object.valid_utime = utime;
+  object.clock_us = clock_us;
+  if (valid) object.valid_us = clock_us;
 }
 
-bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t utime) const {
+bool ObjectFollower::is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const {
   const bool hidden = result.pose.status == PoseStatus::kOccluded;
   const double longest = hidden ? settings_.longest_hidden_s : settings_.longest_withheld_s;
   return object.failures >= settings_.most_failures || result.pose.status == PoseStatus::kNoModel ||
-         seconds_between(object.valid_utime, utime) > longest;
+         seconds_between(object.valid_us, clock_us) > longest;
 }
 
 /// What is lost, and the weaker of two that have become one.
 void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& camera, ShownFrame& shown) const {
   std::vector<bool> lost(camera.objects.size());
-  for (std::size_t i = 0; i < lost.size(); ++i) lost[i] = is_lost(camera.objects[i], shown.poses[i], shown.utime);
+  for (std::size_t i = 0; i < lost.size(); ++i) lost[i] = is_lost(camera.objects[i], shown.poses[i], shown.clock_us);
   for (std::size_t i = 0; i < lost.size(); ++i) {
     for (std::size_t j = i + 1; j < lost.size(); ++j) {
       const FollowedPose& a = shown.poses[i];
@@ -193,13 +224,16 @@ void ObjectFollower::take_up(const PoseEstimator& estimator, const FrameId& fram
   found.class_name = pose.class_name;
   found.log_odds = score_log_odds(pose.detection_score);
   found.T_camera_object = *pose.T_camera_object;
-  found.utime = found.valid_utime = found.found_utime = found.doubted_utime = frame.utime;
+  const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
+                                 [&](const ShownFrame& shown) { return shown.utime == frame.utime; });
+  found.clock_us = then == camera.shown.rend() ? clock_of(frame.utime, camera) : then->clock_us;
+  found.valid_us = found.found_us = found.doubted_us = found.clock_us;
   bring_up_to_date(frame.utime, camera, found);
   const PlacedObject here{found.class_name, found.T_camera_object};
   std::vector<FollowedObject> others;
   for (const FollowedObject& object : camera.objects) {
     const bool is_here = estimator.are_one(here, {object.class_name, object.T_camera_object}, settings_.apart);
-    const bool is_valid = object.valid_utime == object.utime;
+    const bool is_valid = object.valid_us == object.clock_us;
     if (is_here && is_valid && object.class_name == found.class_name) return;
     if (!is_here || is_valid) others.push_back(object);  // of two valid ones follow() gives the weaker one up
   }
@@ -224,7 +258,7 @@ void ObjectFollower::bring_up_to_date(std::int64_t utime, const FollowedCamera& 
   const std::optional<Eigen::Isometry3d> carried = carried_along(found.T_camera_object, motions);
   if (!carried) return;
   found.T_camera_object = *carried;
-  found.utime = found.valid_utime = now.utime;
+  found.clock_us = found.valid_us = now.clock_us;
 }
 
 }  // namespace houghstream

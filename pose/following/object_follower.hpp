@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,10 @@ class ObjectFollower {
 
   /// The followed objects in the newest frame of a camera, in the order in which they were found; each without a
   /// detection, and with the reason where its pose is withheld. What is lost is told once more, with its reason, and
-  /// is gone from the next frame on. A frame earlier than the last one begins anew. The stage's time, pose.following,
-  /// is appended to `stages` of the frame.
-  ObjectPoses follow(const PoseEstimator& estimator, const RgbdFrame& frame);
+  /// is gone from the next frame on. Nothing for a frame that newer ones have overtaken on its way. Where stamps jump
+  /// (a clock that is set, one wrong stamp) the objects are followed on. The stage's time, pose.following, is appended
+  /// to `stages` of the frame.
+  std::optional<ObjectPoses> follow(const PoseEstimator& estimator, const RgbdFrame& frame);
 
   /// The poses of the detections of a frame that follow() has had: of followed objects as they were then, of others
   /// as PoseEstimator::estimate finds them. What is found is followed from the next frame on.
@@ -37,8 +39,8 @@ class ObjectFollower {
                                        FollowedCamera& camera) const;
   void follow_again(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                     std::vector<FollowedPose>& poses) const;
-  void note_result(const FollowedPose& result, std::int64_t utime, FollowedObject& object) const;
-  bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t utime) const;
+  void note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const;
+  bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
   void give_up(const PoseEstimator& estimator, FollowedCamera& camera, ShownFrame& shown) const;
   DetectionLook begin_look(const PoseEstimator& estimator, const Detections& detections);
   void take_up(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, FollowedCamera& camera);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/geometry/symmetry.hpp"
 #include "pipeline/types/detection.hpp"
@@ -51,6 +52,7 @@ struct FrameSeen {
   std::function<const RgbdFrame*()> image;  ///< its depth, asked only where that is needed; null where there is none
   /// Of the frame of this camera that has come last: without it, the frame of the poses.
   std::optional<std::int64_t> newest_utime = std::nullopt;
+  FrameNumber number = {};  ///< of its source, as far as that says one
 };
 
 /// A pose that was measured in a frame, in the world.

@@ -26,6 +26,7 @@ struct Tracker::State {
 
   void begin_world();
   CameraClock* begin_frame(const FrameSeen& seen);
+  WorldObjects note(const FrameSeen& seen, CameraClock& camera);
   std::vector<SeenPose> new_poses(const FrameSeen& seen, CameraClock& camera) const;
   std::vector<SeenPose> associate(const std::vector<SeenPose>& poses, const std::string& class_name, double seconds);
   void take(Track& track, const SeenPose& pose, double seconds);
@@ -59,12 +60,27 @@ std::size_t Tracker::refused() const {
 
 std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   State& state = *state_;
-  const FrameId& frame = seen.poses.frame;
   state.refused = 0;
   CameraClock* camera = state.begin_frame(seen);
   if (camera == nullptr) return std::nullopt;
-  const std::vector<SeenPose> poses = state.new_poses(seen, *camera);
-  for (Track& track : state.tracks) {
+  const std::int64_t ahead_us = state.clock.ahead_us();
+  if (ahead_us == 0) return state.note(seen, *camera);
+  ObjectPoses poses = seen.poses;
+  poses.frame.utime = camera->utime;
+  WorldObjects world = state.note({poses, seen.detections, seen.T_world_camera, seen.image}, *camera);
+  world.frame = seen.poses.frame;
+  for (TrackedObject& object : world.objects) {
+    object.first_utime = microseconds_between(ahead_us, object.first_utime);
+    object.last_seen.utime = microseconds_between(ahead_us, object.last_seen.utime);
+  }
+  return world;
+}
+
+/// The world after a frame, whose time is on the world's clock.
+WorldObjects Tracker::State::note(const FrameSeen& seen, CameraClock& camera) {
+  const FrameId& frame = seen.poses.frame;
+  const std::vector<SeenPose> poses = new_poses(seen, camera);
+  for (Track& track : tracks) {
     track.pose.predict(frame.utime);
     track.seen_now = track.last_seen == frame;  // by another result of the same frame
   }
@@ -72,14 +88,14 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   for (const SeenPose& pose : poses) classes.insert(pose.class_name);
   std::vector<SeenPose> unknown;
   for (const std::string& class_name : classes) {
-    const std::vector<SeenPose> left = state.associate(poses, class_name, camera->seconds);
+    const std::vector<SeenPose> left = associate(poses, class_name, camera.seconds);
     unknown.insert(unknown.end(), left.begin(), left.end());
   }
-  state.miss_unseen(seen, poses, *camera);
-  for (const SeenPose& pose : unknown) state.begin(pose);
-  state.confirm(frame.utime);
-  state.forget(frame.utime);
-  return state.report(seen);
+  miss_unseen(seen, poses, camera);
+  for (const SeenPose& pose : unknown) begin(pose);
+  confirm(frame.utime);
+  forget(frame.utime);
+  return report(seen);
 }
 
 void Tracker::State::begin_world() {
@@ -93,8 +109,9 @@ void Tracker::State::begin_world() {
 
 /// The camera's clock, which the frame has set; null where the frame is passed over.
 CameraClock* Tracker::State::begin_frame(const FrameSeen& seen) {
-  const FrameId& frame = seen.poses.frame;
-  const TimeOrder order = clock.order_of(frame, seen.newest_utime.value_or(frame.utime));
+  const FrameId& id = seen.poses.frame;
+  const StampedFrame frame{id, seen.number, seen.newest_utime.value_or(id.utime)};
+  const TimeOrder order = clock.order_of(frame);
   if (order == TimeOrder::kLate) return nullptr;
   if (order == TimeOrder::kAnew) begin_world();
   return &clock.set(frame);

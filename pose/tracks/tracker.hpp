@@ -32,7 +32,8 @@ class Tracker {
   Tracker(Tracker&&) noexcept;
 
   /// The world after a frame. One that is older than its camera's last one is late, is passed over, and gives nothing;
-  /// where the camera's frames themselves go back by more than a second, a new world begins. A class that the same
+  /// so does one wrong stamp. A camera's clock that is set leaves the objects what they are, and their times move with
+  /// it; where a source, or its log, begins again in the past, a new world begins (WorldClock). A class that the same
   /// frame was told of before is not told again. Throws InputError for a frame that is more than a second older than
   /// another camera's, as long as that goes on.
   std::optional<WorldObjects> update(const FrameSeen& seen);

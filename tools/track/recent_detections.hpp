@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <mutex>
@@ -18,6 +19,13 @@ class RecentDetections {
     const std::lock_guard<std::mutex> lock(mutex_);
     kept_.push_back(std::move(detections));
     if (kept_.size() > kKept) kept_.pop_front();
+  }
+
+  /// A frame has come: what is known under its name is of another one, of a source that stamps as before.
+  void forget(const FrameId& frame) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    kept_.erase(std::remove_if(kept_.begin(), kept_.end(), [&](const Detections& some) { return some.frame == frame; }),
+                kept_.end());
   }
 
   /// All that any detector found in the frame.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <houghstream/status_t.hpp>
 #include <iterator>
 #include <optional>
@@ -19,7 +18,7 @@ void Silence::hear(const Arrival& arrival) {
     if (status.process != "hs-detect" && status.process != "hs-pose") return;
     const std::string name = fmt::format("{} (process {})", status.process, status.pid);
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (last_.size() < kProcesses || last_.count(name) > 0) last_[name] = arrival.event_us;
+    if (last_.size() < kProcesses || last_.count(name) > 0) last_[name] = steady_us(arrival.time);
   } catch (const InputError&) {
   }
 }

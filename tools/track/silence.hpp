@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -12,14 +13,19 @@
 
 namespace houghstream::track {
 
+/// A moment in microseconds of the clock that nobody sets.
+inline std::int64_t steady_us(std::chrono::steady_clock::time_point moment) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(moment.time_since_epoch()).count();
+}
+
 /// Processes that find objects, and those of them that have fallen silent. May be used from any thread.
 class Silence {
  public:
   /// Takes note of a process' status. What is no status is somebody else's.
   void hear(const Arrival& arrival);
 
-  /// Names of those that have been silent for too long since they were asked for last; each is told once. `now_us` is
-  /// on the clock of the arrivals' event_us.
+  /// Names of those that have been silent for too long since they were asked for last; each is told once. `now_us` as
+  /// steady_us() has it.
   std::vector<std::string> fallen_silent(std::int64_t now_us);
 
   /// Logs those.

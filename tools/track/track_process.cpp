@@ -5,7 +5,6 @@
 #include <deque>
 #include <mutex>
 
-#include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/status_reporter.hpp"
@@ -15,6 +14,7 @@
 #include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/process_loop.hpp"
 #include "pipeline/text/limited_lines.hpp"
+#include "pipeline/types/shifted.hpp"
 #include "tools/track/recent_detections.hpp"
 #include "tools/track/silence.hpp"
 #include "tools/track/world_frame.hpp"
@@ -35,7 +35,7 @@ ByteView view(const std::vector<std::uint8_t>& bytes) {
 /// Poses with their frame, which wait until it is known where the camera was.
 struct Waiting {
   PairedMessages messages;
-  std::int64_t since_us = 0;  ///< on the bus' clock
+  std::int64_t since_us = 0;  ///< on the clock of now_us()
   ByteCount::Held held;       ///< of the frame
 };
 
@@ -81,11 +81,14 @@ class TrackProcess {
   }
 
  private:
-  std::int64_t now_us() const { return bus_.is_log() ? event_us_ : utime_now(); }
+  /// A clock that nobody sets: of a log, the sum of the steps from event to event that lead forward.
+  std::int64_t now_us() const { return bus_.is_log() ? log_us_ : steady_us(std::chrono::steady_clock::now()); }
 
   void note_event(const Arrival& arrival) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    event_us_ = std::max(event_us_, arrival.event_us);
+    if (event_us_ && arrival.event_us > *event_us_)
+      log_us_ = shifted(log_us_, microseconds_between(*event_us_, arrival.event_us));
+    event_us_ = arrival.event_us;
   }
 
   void receive_frame(const Arrival& arrival) {
@@ -95,6 +98,7 @@ class TrackProcess {
       const FrameHeader header = read_frame_header(arrival.bytes);
       const FrameOrder order = status_.note_number({header.sequence, header.utime, header.run}, arrival.channel);
       if (order == FrameOrder::kDuplicate && !bus_.is_log()) return;
+      detections_.forget({arrival.channel, header.utime});
       inbox_.put_frame({arrival.channel, header.utime}, shared_copy(arrival.bytes));
       const std::lock_guard<std::mutex> lock(mutex_);
       newest_[arrival.channel] = header.utime;  // of as many cameras as the inbox takes
@@ -217,8 +221,10 @@ class TrackProcess {
       }
       return &*image;
     };
+    const FrameHeader header = read_frame_header(view(*waiting.messages.frame));
     std::optional<WorldObjects> objects =
-        tracker_.update({poses, &detections, T_world_camera, decode, newest_of(poses.frame.channel)});
+        tracker_.update({poses, &detections, T_world_camera, decode, newest_of(poses.frame.channel),
+                         FrameNumber{header.sequence, header.utime, header.run}});
     if (!objects) {
       status_.count_skipped(1);  // what a detector said late of a frame whose successors are known
       return false;
@@ -282,7 +288,8 @@ class TrackProcess {
   RecentDetections detections_;
   // What the receiving thread writes.
   mutable std::mutex mutex_;
-  std::int64_t event_us_ = 0;
+  std::optional<std::int64_t> event_us_;  // of the last one
+  std::int64_t log_us_ = 0;
   std::map<std::string, std::int64_t> newest_;  // utimes of the frames that came last, by channel
   std::atomic<std::int64_t> poses_{0};
   std::atomic<bool> frames_wait_{false};  // for transforms

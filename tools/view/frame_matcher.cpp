@@ -15,10 +15,8 @@ FrameMatcher::FrameMatcher(MatchSettings settings) : settings_(settings) {
 
 void FrameMatcher::add_frame(const FrameId& id, std::vector<std::uint8_t> bytes, std::int64_t now_us) {
   if (!first_arrival_us_) first_arrival_us_ = last_detections_us_ = last_poses_us_ = now_us;
-  if (const auto known = waiting_.find(id); known != waiting_.end()) {
-    detectors_.forget(id);
-    forget(known);
-  }
+  detectors_.note_frame(id);
+  if (const auto known = waiting_.find(id); known != waiting_.end()) forget(known);
   MatchedFrame& frame = waiting_[id];
   frame.id = id;
   frame.bytes = bytes.size();

@@ -28,6 +28,28 @@ TEST(DetectorCount, AFrameThatComesAgainIsCountedAnew) {
   EXPECT_EQ(detectors.of("LEFT"), 1);
 }
 
+TEST(DetectorCount, ASecondRunWithTheSameStampsIsNoSecondDetector) {
+  DetectorCount detectors;
+  for (int run = 0; run < 3; ++run) {
+    for (int utime = 0; utime < 8; ++utime) {
+      detectors.note_frame({"LEFT", utime});
+      detectors.note_result({"LEFT", utime});
+      EXPECT_EQ(detectors.of("LEFT"), 1) << run << " " << utime;
+    }
+  }
+}
+
+TEST(DetectorCount, AResultMayComeBeforeItsFrame) {
+  DetectorCount detectors;
+  detectors.note_result({"LEFT", 1});
+  detectors.note_frame({"LEFT", 1});
+  detectors.note_result({"LEFT", 1});
+  EXPECT_EQ(detectors.of("LEFT"), 2) << "of the same frame";
+  detectors.note_frame({"LEFT", 1});
+  detectors.note_result({"LEFT", 1});
+  EXPECT_EQ(detectors.of("LEFT"), 1) << "of another one of that name";
+}
+
 TEST(DetectorCount, RemembersAFewCamerasOnly) {
   DetectorCount detectors;
   for (std::size_t i = 0; i < DetectorCount::kCameras; ++i) detectors.note_result({std::to_string(i), 1});

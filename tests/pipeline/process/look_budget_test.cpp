@@ -67,6 +67,36 @@ TEST(LookBudget, TimesMayBeAny) {
   EXPECT_FALSE(budget.is_due({"LEFT", kFirst + 500000}));
 }
 
+TEST(LookBudget, AClockThatIsSetAndOneWrongStampStopNoLooks) {
+  constexpr std::int64_t kHour = 3600000000;
+  LookBudget budget(5.0);
+  std::int64_t utime = 0;
+  const auto looks_of_a_second = [&] {
+    int looks = 0;
+    for (int i = 0; i < 60; ++i) looks += budget.is_due({"LEFT", utime += 16667}) ? 1 : 0;
+    return looks;
+  };
+  for (const std::int64_t step : {-kHour, kHour, -1500000L}) {
+    utime += step;
+    EXPECT_GE(looks_of_a_second(), 4) << step;
+    EXPECT_LE(looks_of_a_second(), 6) << step;
+  }
+  EXPECT_TRUE(budget.is_due({"LEFT", utime + 8760 * kHour}));
+  EXPECT_GE(looks_of_a_second(), 4);
+  utime -= 700000;
+  looks_of_a_second();
+  EXPECT_GE(looks_of_a_second(), 4) << "the second after a step of less than one";
+}
+
+TEST(LookBudget, AFrameThatWasOvertakenIsNoReasonToLook) {
+  LookBudget budget(5.0);
+  EXPECT_TRUE(budget.is_due({"LEFT", 5000000}));
+  EXPECT_FALSE(budget.is_due({"LEFT", 4983333}));
+  EXPECT_FALSE(budget.is_due({"LEFT", 4100000}));
+  EXPECT_FALSE(budget.is_due({"LEFT", 5180000}));
+  EXPECT_TRUE(budget.is_due({"LEFT", 5200000}));
+}
+
 TEST(LookBudget, TimesThatGoBackBeginAnew) {
   LookBudget budget(1.0);
   EXPECT_TRUE(budget.is_due({"LEFT", 9000000}));

@@ -279,6 +279,27 @@ TEST(PoseProcess, ModelsOfOtherObjectsThanTheDetectorsAreToldOnce) {
   EXPECT_NE(log.find("detected are bowl; there are models of mug"), std::string::npos) << log;
 }
 
+TEST(PoseProcess, TwoRunsOfACameraWithEqualStampsAreNotTwoDetectors) {
+  ProcessOnMemq test({channel::kPoses, channel::kStatus});
+  test.start(run_fake);
+  std::size_t sent = 0;
+  for (std::int64_t run = 1; run <= 3; ++run) {
+    for (std::int64_t utime = 10; utime < 14; ++utime) {
+      images_t frame = to_message(make_test_frame(utime), WireFormat{}, utime);
+      add_run(frame, run);
+      test.bus.publish(channel::kFrame, frame);
+      Detections detections = one_bowl(utime);
+      detections.detections[0].score = 0.1F * static_cast<float>(run);
+      test.bus.publish(channel::kDetections, to_message(detections));
+      ASSERT_TRUE(test.wait_for(channel::kPoses, ++sent)) << run << " " << utime;
+    }
+  }
+  test.stop();
+  const auto status = test.last<status_t>(channel::kStatus);
+  EXPECT_EQ(status.last_error, "");
+  EXPECT_EQ(status.frames_processed, 12);
+}
+
 TEST(PoseProcess, TwoDetectorsOfOneObjectAreTold) {
   ProcessOnMemq test({channel::kPoses, channel::kStatus});
   test.start(run_fake);

@@ -86,6 +86,7 @@ class TrackedScene {
   double noise_m = 0.0;
   double quality = 0.9;
   std::int64_t utime = 1000000000;
+  FrameNumber number = {};  ///< of the camera's next frame
 
   /// What is there is also posed.
   void show(const std::vector<std::pair<std::string, Eigen::Isometry3d>>& objects) { standing = posed = objects; }
@@ -111,7 +112,7 @@ class TrackedScene {
       image = depth();
       return &*image;
     };
-    return tracker.update({poses(), nullptr, T_world_camera, render});
+    return tracker.update({poses(), nullptr, T_world_camera, render, std::nullopt, number});
   }
 
   ObjectPoses poses() {

@@ -42,9 +42,80 @@ TEST(TrackerResults, ATimeThatGoesBackBeginsANewWorldALateFrameIsPassedOver) {
   scene.utime -= 2 * test::kFrameUs;
   EXPECT_FALSE(scene.tracker.update({scene.poses(), nullptr, scene.T_world_camera, nullptr}).has_value());
   scene.utime -= 100000000;
+  EXPECT_FALSE(scene.look_if_any().has_value()) << "one stamp may be wrong";
   const WorldObjects world = scene.frame();
   EXPECT_EQ(world.world_number, 2);
   EXPECT_TRUE(world.objects.empty());
+}
+
+/// A scene of which a can is seen, and whose frames have numbers.
+class NumberedScene {
+ public:
+  NumberedScene() {
+    scene.show({{"can", on_table(0, 0)}, {"mug", on_table(0.2, 0)}});
+    for (int i = 0; i < 30; ++i) world = frame();
+  }
+  std::optional<WorldObjects> frame() {
+    scene.utime += test::kFrameUs;
+    scene.number = {number++, scene.utime, 7};
+    return scene.look_if_any();
+  }
+
+  TrackedScene scene;
+  std::optional<WorldObjects> world;
+  std::int64_t number = 0;
+};
+
+TEST(TrackerResults, AClockThatIsSetLeavesTheObjectsAndTheirNumbers) {
+  constexpr std::int64_t kHourUs = 3600000000;
+  for (const std::int64_t step : {-kHourUs, kHourUs}) {
+    NumberedScene it;
+    it.scene.utime += step;
+    EXPECT_FALSE(it.frame().has_value());
+    for (int i = 0; i < 30; ++i) {
+      const std::optional<WorldObjects> world = it.frame();
+      ASSERT_TRUE(world.has_value()) << step << " " << i;
+      EXPECT_EQ(world->world_number, 1);
+      EXPECT_EQ(world->frame, (FrameId{"CAMERA", it.scene.utime}));
+      ASSERT_EQ(world->objects.size(), 2U);
+      EXPECT_EQ(world->objects[0].last_seen, world->frame);
+      EXPECT_EQ(world->objects[0].track_id, it.world->objects[0].track_id);
+      EXPECT_LT(distance(world->objects[0], on_table(0, 0)), 0.001);
+      const double known_s = seconds_between(world->objects[0].first_utime, it.scene.utime);
+      EXPECT_GT(known_s, 0.5);
+      EXPECT_LT(known_s, 70.0) << "its times go with the clock";
+    }
+    it.scene.show({{"mug", on_table(0.2, 0)}});
+    std::optional<WorldObjects> world;
+    for (int i = 0; i < 30; ++i) world = it.frame();
+    ASSERT_EQ(world->objects.size(), 2U);
+    EXPECT_EQ(world->objects[0].state, TrackState::kGone) << "what is taken away is noticed as before";
+    EXPECT_EQ(world->objects[1].state, TrackState::kVisible);
+  }
+}
+
+TEST(TrackerResults, OneFrameDatedAYearAheadOrBackChangesNothing) {
+  constexpr std::int64_t kYearUs = 8760 * std::int64_t{3600000000};
+  NumberedScene without;
+  without.frame();
+  const std::optional<WorldObjects> expected = without.frame();
+  for (const std::int64_t wrong : {kYearUs, -kYearUs}) {
+    NumberedScene it;
+    it.frame();
+    it.scene.utime += wrong;
+    EXPECT_FALSE(it.frame().has_value());
+    it.scene.utime -= wrong + test::kFrameUs;
+    const std::optional<WorldObjects> world = it.frame();
+    ASSERT_TRUE(world.has_value());
+    EXPECT_EQ(world->world_number, 1);
+    ASSERT_EQ(world->objects.size(), expected->objects.size());
+    for (std::size_t i = 0; i < world->objects.size(); ++i) {
+      EXPECT_EQ(world->objects[i].track_id, expected->objects[i].track_id);
+      EXPECT_EQ(world->objects[i].probability, expected->objects[i].probability);
+      EXPECT_EQ(world->objects[i].covariance, expected->objects[i].covariance);
+      EXPECT_EQ(world->objects[i].seen, expected->objects[i].seen);
+    }
+  }
 }
 
 TEST(TrackerResults, AWorldMayBeginAtTimeZero) {

@@ -10,12 +10,15 @@
 namespace houghstream::track {
 namespace {
 
-void hear_of(Silence& silence, const std::string& process, std::int64_t event_us) {
+/// At a time of the steady clock, while the host's is being set back.
+void hear_of(Silence& silence, const std::string& process, std::int64_t time_us) {
   status_t status{};
   status.process = process;
   status.pid = 7;
   const std::vector<std::uint8_t> bytes = encode_message(status);
-  silence.hear({channel::kStatus, {bytes.data(), bytes.size()}, {}, event_us});
+  const std::chrono::steady_clock::time_point time{std::chrono::microseconds(time_us)};
+  const std::int64_t set_back_us = -time_us;
+  silence.hear({channel::kStatus, {bytes.data(), bytes.size()}, time, set_back_us});
 }
 
 TEST(Silence, IsToldOnceOfWhoFindsObjects) {

@@ -20,11 +20,12 @@ def tell(name, seen):
 
 def run_faults(options, out):
     """Yields each one's name and what was seen."""
-    from studies.soak.frame_faults import FrameFaults  # needs the messages' package
+    from studies.soak.clock_faults import ClockFaults  # needs the messages' package
+    from studies.soak.frame_faults import FrameFaults
     from studies.soak.store_faults import StoreFaults
     from studies.soak.stream_faults import StreamFaults
 
-    faults = [fault for kind in (FrameFaults, StreamFaults, StoreFaults) for fault in kind(options, out).all()]
+    faults = [fault for kind in (FrameFaults, ClockFaults, StreamFaults, StoreFaults) for fault in kind(options, out).all()]
     for name, fault in faults:
         if options.only not in name:
             continue

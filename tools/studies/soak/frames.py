@@ -43,9 +43,16 @@ class FrameSender:
 
     def send(self, times, channels=(FRAME,), rate=30.0):
         """A frame for each of `times`, microseconds since the epoch, on each channel."""
+        self.send_numbered(enumerate(times), channels, rate)
+
+    def send_numbered(self, frames, channels=(FRAME,), rate=30.0):
+        """A frame for each (number, utime), in the order in which they stand there."""
         start = time.monotonic()
-        for number, utime in enumerate(times):
-            payload = with_metadata(with_utime(self.frames[number % len(self.frames)], utime), SEQUENCE, number)
-            time.sleep(max(0.0, start + number / rate - time.monotonic()))
-            for channel in channels:
-                self.sender.send(channel, payload)
+        for place, (number, utime) in enumerate(frames):
+            time.sleep(max(0.0, start + place / rate - time.monotonic()))
+            self.send_one(number, utime, channels)
+
+    def send_one(self, number, utime, channels=(FRAME,)):
+        payload = with_metadata(with_utime(self.frames[number % len(self.frames)], utime), SEQUENCE, number)
+        for channel in channels:
+            self.sender.send(channel, payload)

@@ -63,14 +63,14 @@ def rubbish(port, channel, payloads):
         time.sleep(0.01)
 
 
-Heard = collections.namedtuple("Heard", "time sender utime source")
+Heard = collections.namedtuple("Heard", "time sender utime source payload")
 
 
 class Listener:
     """What has been heard on some channels, until stop(): of each message when, from whom, the frame's utime and, of
-    results, the frame's channel."""
+    results, the frame's channel and, where they fit into a datagram, all their bytes."""
 
-    RESULTS = ("HOUGHSTREAM_DETECTIONS", "HOUGHSTREAM_POSES")
+    RESULTS = ("HOUGHSTREAM_DETECTIONS", "HOUGHSTREAM_POSES", "HOUGHSTREAM_OBJECTS")
 
     def __init__(self, port, channels):
         self.socket = receiving_socket(port)
@@ -98,8 +98,10 @@ class Listener:
             channel = name.decode(errors="replace")
             if channel not in self.heard or len(payload) < 16:
                 continue
-            source = frame_of(payload)[0] if channel in self.RESULTS else channel
-            self.heard[channel].append(Heard(time.monotonic(), address, utime_of(payload), source))
+            is_result = channel in self.RESULTS
+            source = frame_of(payload)[0] if is_result else channel
+            kept = payload if is_result and magic == SHORT else None
+            self.heard[channel].append(Heard(time.monotonic(), address, utime_of(payload), source, kept))
 
     def senders(self, channel):
         return {one.sender for one in list(self.heard[channel])}

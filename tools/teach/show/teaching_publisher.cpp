@@ -1,6 +1,7 @@
 #include "tools/teach/show/teaching_publisher.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
@@ -90,14 +91,14 @@ void TeachingPublisher::repeat() noexcept {
 
 bool EnoughSeen::operator()(const ShowProgress& now) {
   constexpr std::int64_t kLeast_us = 6'000'000;
+  constexpr std::int64_t kLongestStep_us = 10'000'000;
+  const std::int64_t step_us = last_utime_ ? microseconds_between(*last_utime_, now.frame.utime) : 0;
+  last_utime_ = now.frame.utime;
+  if (step_us > 0 && step_us <= kLongestStep_us) nothing_new_us_ += step_us;
   const int seen = static_cast<int>(std::count(now.seen.begin(), now.seen.end(), true));
-  const std::int64_t now_us = now.frame.utime;
-  if (!begin_us_ || now_us < *begin_us_) begin_us_ = now_us;  // clocks are set back
-  if (seen != seen_ || now_us < since_us_) since_us_ = now_us;
+  if (seen != seen_) took_us_ += std::exchange(nothing_new_us_, 0);
   seen_ = seen;
-  const std::int64_t nothing_new_us = microseconds_between(since_us_, now_us);
-  const std::int64_t took_us = microseconds_between(*begin_us_, since_us_);
-  return 2 * seen > ShowProgress::kDirections && nothing_new_us > std::max(kLeast_us, took_us / 2);
+  return 2 * seen > ShowProgress::kDirections && nothing_new_us_ > std::max(kLeast_us, took_us_ / 2);
 }
 
 }  // namespace houghstream::teach

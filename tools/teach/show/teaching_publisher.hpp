@@ -49,7 +49,8 @@ class TeachingPublisher : public ShowObserver {
 };
 
 /// Tells when a take shows nothing new any more: more than half of the directions were seen, and for some seconds of
-/// the frames' time, or half as long as that took, no further one. Over the last third of a turn nothing new is seen,
+/// the frames' time, or half as long as that took, no further one. Steps of that time that lead back, or far ahead, are
+/// a clock that is set or a wrong stamp, and no time. Over the last third of a turn nothing new is seen,
 /// and still it has to be closed.
 class EnoughSeen {
  public:
@@ -57,8 +58,9 @@ class EnoughSeen {
 
  private:
   int seen_ = 0;
-  std::optional<std::int64_t> begin_us_;
-  std::int64_t since_us_ = 0;
+  std::optional<std::int64_t> last_utime_;
+  std::int64_t took_us_ = 0;  // from the first frame to the last one that brought something new
+  std::int64_t nothing_new_us_ = 0;
 };
 
 }  // namespace houghstream::teach

@@ -125,5 +125,24 @@ TEST(EnoughSeen, GoesOnWhereTheClockJumps) {
   EXPECT_TRUE(enough(now));
 }
 
+TEST(EnoughSeen, AClockThatIsSetForwardOrOneWrongStampEndsNoTake) {
+  constexpr std::int64_t kHour = 3'600'000'000;
+  for (const std::int64_t step : {kHour, -kHour}) {
+    for (const bool lasts : {true, false}) {
+      EnoughSeen enough;
+      ShowProgress now = tracked(kHour);
+      std::fill_n(now.seen.begin(), 31, true);
+      EXPECT_FALSE(enough(now));
+      now.frame.utime += step;
+      EXPECT_FALSE(enough(now)) << step;
+      if (!lasts) now.frame.utime -= step;
+      now.frame.utime += 5'000'000;
+      EXPECT_FALSE(enough(now)) << step;
+      now.frame.utime += 5'000'000;
+      EXPECT_TRUE(enough(now)) << step;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace houghstream::teach

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace houghstream {
+
+/// `utime` + `by_us`, microseconds; at most what the type holds, as the times of a message or a damaged log may be any.
+inline std::int64_t shifted(std::int64_t utime, std::int64_t by_us) {
+  std::int64_t sum = 0;
+  if (!__builtin_add_overflow(utime, by_us, &sum)) return sum;
+  return by_us > 0 ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
+}
+
+}  // namespace houghstream
