@@ -59,8 +59,9 @@ struct FollowedCamera {
   std::deque<ShownFrame> shown;  ///< the last ones
   std::int64_t frames = 0;
   /// The camera's clock minus its frames' utimes, which jump where the host's clock is set or a stamp is wrong. The
-  /// camera's clock stands still over such a jump.
+  /// camera's clock does not.
   std::int64_t ahead_us = 0;
+  std::int64_t interval_us = 0;                 ///< from the frame before to the last one
   std::optional<std::int64_t> overtaken_utime;  ///< of the last frame that came, where newer ones had overtaken it
 };
 

@@ -11,8 +11,9 @@
 namespace houghstream {
 namespace {
 
-constexpr double kOvertakenS = 1.0;  // by which a frame may come late
-constexpr double kJumpS = 10.0;      // to a later frame: a camera that was away for a moment is no other
+constexpr double kOvertakenS = 1.0;                     // by which a frame may come late
+constexpr std::int64_t kJumpUs = 10'000'000;            // to a later frame: a camera may be away for a moment
+constexpr std::int64_t kLongestIntervalUs = 1'000'000;  // between frames of which one follows the other
 
 float probability(double odds) {
   return static_cast<float>(logistic(odds));
@@ -34,13 +35,16 @@ std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
   return shifted(utime, camera.ahead_us);
 }
 
-/// Lets the camera's clock stand still where utimes jump: nobody knows how far anything has moved meanwhile.
+/// Where utimes jump, the camera's clock advances as it did from the frame before to the last one.
 void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   if (camera.shown.empty()) return;
-  const double passed_s = seconds_between(camera.shown.back().utime, utime);
-  if (passed_s >= 0.0 && passed_s <= kJumpS) return;
-  camera.ahead_us = microseconds_between(utime, camera.shown.back().clock_us);
-  for (FollowedObject& object : camera.objects) object.speed = object.turn_rate = Eigen::Vector3d::Zero();
+  const ShownFrame& last = camera.shown.back();
+  const std::int64_t passed_us = microseconds_between(last.utime, utime);
+  if (passed_us >= 0 && passed_us <= kJumpUs) {
+    camera.interval_us = std::min(passed_us, kLongestIntervalUs);
+  } else {
+    camera.ahead_us = microseconds_between(utime, shifted(last.clock_us, camera.interval_us));
+  }
 }
 
 }  // namespace

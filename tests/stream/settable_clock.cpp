@@ -1,8 +1,11 @@
 // A host's clock that a test may set: loaded before the C library (LD_PRELOAD), it adds the whole seconds in the file
-// that HOUGHSTREAM_SETTABLE_CLOCK names, a binary int64, to what a program reads of the time of day. Clocks that nobody
-// sets are left alone.
+// that HOUGHSTREAM_SETTABLE_CLOCK names, a binary int64, to what a program reads of the time of day, and takes them off
+// the times of day until which it waits. Clocks that nobody sets are left alone.
 
+#include <dlfcn.h>
 #include <fcntl.h>
+#include <pthread.h>
+#include <semaphore.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -27,6 +30,23 @@ std::int64_t added_seconds() {
   return seconds == nullptr ? 0 : *seconds;
 }
 
+/// Other clocks count from the machine's start.
+bool is_time_of_day(const timespec& time) {
+  constexpr time_t kNoUptime = 1'000'000'000;
+  return time.tv_sec - added_seconds() > kNoUptime;
+}
+
+timespec as_the_kernel_has_it(const timespec& time) {
+  timespec out = time;
+  if (is_time_of_day(time)) out.tv_sec -= added_seconds();
+  return out;
+}
+
+template <typename Function>
+Function* next_of(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
 }  // namespace
 
 extern "C" int clock_gettime(clockid_t clock, timespec* out) noexcept {
@@ -41,6 +61,18 @@ extern "C" int gettimeofday(timeval* out, void* /*zone*/) noexcept {
   out->tv_sec = now.tv_sec;
   out->tv_usec = now.tv_nsec / 1000;
   return status;
+}
+
+extern "C" int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* until) {
+  static auto* const next = next_of<decltype(pthread_cond_timedwait)>("pthread_cond_timedwait");
+  const timespec real = as_the_kernel_has_it(*until);
+  return next(condition, mutex, &real);
+}
+
+extern "C" int sem_timedwait(sem_t* semaphore, const timespec* until) {
+  static auto* const next = next_of<decltype(sem_timedwait)>("sem_timedwait");
+  const timespec real = as_the_kernel_has_it(*until);
+  return next(semaphore, &real);
 }
 
 extern "C" time_t time(time_t* out) noexcept {

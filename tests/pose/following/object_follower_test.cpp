@@ -309,12 +309,21 @@ TEST(ObjectFollower, WhatIsFoundInAFrameThatWasOvertakenIsNotFollowedTwice) {
 TEST(ObjectFollower, AClockThatIsSetLosesNothing) {
   for (const std::int64_t step : {-kHour, kHour, -10 * kHour, -1'500'000L}) {
     Following it(box_and_mug());
+    Following steady(box_and_mug());
     it.film.walk();
-    it.next();
+    RgbdFrame frame = it.film.next();
+    it.follower.follow(estimator(), frame);
+    steady.follower.follow(estimator(), frame);
     it.film.utime += step;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 5; ++i) {
       it.film.walk();
-      ASSERT_EQ(valid_ones(it.next()), 2) << step << " " << i;
+      frame = it.film.next();
+      const ObjectPoses stepped = it.follower.follow(estimator(), frame).value();
+      frame.id.utime -= step;
+      const ObjectPoses same = steady.follower.follow(estimator(), frame).value();
+      ASSERT_EQ(stepped.poses.size(), 2U) << step << " " << i;
+      for (std::size_t object = 0; object < 2; ++object)
+        EXPECT_EQ(stepped.poses[object].quality, same.poses[object].quality) << step << " " << i;
     }
   }
 }
