@@ -88,6 +88,18 @@ void check_range(CLI::Option& option, T low, T high) {
                   [low, high](T value) { return value >= low && value <= high; });
 }
 
+std::vector<CLI::App*> subcommands_of(CLI::App& app) {
+  return app.get_subcommands([](CLI::App*) { return true; });
+}
+
+/// Keeps the options of all subcommands out of a configuration file, whose keys are those of the whole line only.
+void exclude_subcommands_from_config(CLI::App& app) {
+  for (CLI::App* subcommand : subcommands_of(app)) {
+    for (CLI::Option* option : subcommand->get_options()) option->configurable(false);
+    exclude_subcommands_from_config(*subcommand);
+  }
+}
+
 }  // namespace
 
 CommandOption& CommandOption::required() {
@@ -198,7 +210,7 @@ void CommandLine::add_common_flag(const std::string& names, bool& value, const s
   std::vector<CLI::App*> commands = {app_.get()};
   for (std::size_t i = 0; i < commands.size(); ++i) {
     commands[i]->add_flag(names, value, words);
-    const std::vector<CLI::App*> jobs = commands[i]->get_subcommands([](CLI::App*) { return true; });
+    const std::vector<CLI::App*> jobs = subcommands_of(*commands[i]);
     commands.insert(commands.end(), jobs.begin(), jobs.end());
   }
 }
@@ -220,6 +232,7 @@ void CommandLine::add_config_file() {
 }
 
 std::string CommandLine::config_template() const {
+  exclude_subcommands_from_config(*app_);
   const std::string unset = "=\"\"";
   std::istringstream lines(app_->config_to_str(true, true));
   std::string text;

@@ -348,5 +348,22 @@ TEST(CommandLine, ATemplateOfAFileIsSuchAFile) {
   EXPECT_EQ(second.share, std::nullopt) << text;
 }
 
+TEST(CommandLine, ATemplateHoldsNoOptionOfASubcommand) {
+  Configured first("");
+  bool verbose = false;
+  int depth = 0;
+  CommandLine job = first.line.add_subcommand("init", "prints a file");
+  job.add_subcommand("deeper", "words").add_option("--depth", depth, "how deep").capture_default_str();
+  first.line.add_common_flag("-v,--verbose", verbose, "log more");
+  EXPECT_EQ(first.line.parse({"init"}), std::nullopt);
+  const std::string text = first.line.config_template();
+  EXPECT_NE(text.find("\nverbose=false\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("init"), std::string::npos) << text;
+  EXPECT_EQ(text.find("deep"), std::string::npos) << text;
+  Configured second(text);
+  second.line.add_common_flag("-v,--verbose", verbose, "log more");
+  EXPECT_EQ(second.line.parse({"--config", second.file.string()}), std::nullopt) << text;
+}
+
 }  // namespace
 }  // namespace houghstream

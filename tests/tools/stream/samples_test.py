@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 SOURCE, EXECUTABLES = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
