@@ -3,6 +3,7 @@
 #include <lcm/lcm.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -10,12 +11,17 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "pipeline/bus/bus_link.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/bus/frame_silence.hpp"
+#include "pipeline/bus/group_membership.hpp"
 #include "pipeline/bus/lcm_url.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
@@ -31,6 +37,18 @@ const std::string kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 // The receiving thread hands messages on at once; this many may wait while it is kept from the processor. LCM's
 // own queue keeps the oldest when it is full.
 constexpr int kQueueCapacity = 100;
+// Where messages are so large that these would have more bytes, fewer wait. LCM lets one more wait than it is told.
+constexpr std::size_t kQueueBytes = std::size_t{128} << 20U;
+
+// For a service manager, which otherwise gives a start some time and no more.
+const std::string kStartTakesTime = "EXTEND_TIMEOUT_USEC=60000000";
+
+// How long an outage, or its end, may go unnoticed.
+constexpr std::chrono::milliseconds kLookPeriod(250);
+
+// LCM states of shorter messages only whether they were sent.
+constexpr std::size_t kShortMessage = 60'000;
+constexpr std::size_t kMaxNetworkChannel = LCM_MAX_CHANNEL_NAME_LENGTH;
 
 std::string complete_url(const std::string& url) {
   const char* environment = std::getenv("LCM_DEFAULT_URL");
@@ -49,6 +67,22 @@ struct Subscription {
   ChannelPattern channels;
   LcmBus::Handler handler;
   LimitedLines& complaints;
+  lcm_subscription_t* made = nullptr;  // LCM's, while there is one
+  int capacity = 0;                    // of its queue
+  std::size_t message_bytes = 1;       // of the largest message lately
+
+  void set_capacity(int messages) {
+    if (messages == capacity) return;
+    capacity = messages;
+    lcm_subscription_set_queue_capacity(made, messages);
+  }
+
+  /// LCM counts messages, not bytes. A large one is forgotten over some hundred smaller ones.
+  void bound_queue(std::size_t bytes) {
+    message_bytes = std::max({bytes, message_bytes - message_bytes / 64, std::size_t{1}});
+    const auto fitting = static_cast<int>(std::min<std::size_t>(kQueueBytes / message_bytes, kQueueCapacity));
+    set_capacity(std::max(fitting, 1));
+  }
 };
 
 // Nothing thrown may cross LCM's callback, which is C.
@@ -62,10 +96,23 @@ void call_handler(const Subscription& subscription, const Arrival& arrival) noex
   }
 }
 
-void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* subscription) {
+void on_message(const lcm_recv_buf_t* buffer, const char* channel, void* context) {
+  auto& subscription = *static_cast<Subscription*>(context);
+  subscription.bound_queue(buffer->data_size);
   const ByteView bytes{static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
-  call_handler(*static_cast<const Subscription*>(subscription),
-               {channel, bytes, std::chrono::steady_clock::now(), buffer->recv_utime});
+  call_handler(subscription, {channel, bytes, std::chrono::steady_clock::now(), buffer->recv_utime});
+}
+
+/// False where LCM refuses.
+bool subscribe_at(lcm_t* lcm, Subscription& subscription) {
+  // LCM puts ^ and $ around it, which would belong to the first and the last alternative only.
+  const ChannelPattern& channels = subscription.channels;
+  const std::string whole = channels.is_name() ? channels.text() : "(" + channels.text() + ")";
+  subscription.made = lcm_subscribe(lcm, whole.c_str(), on_message, &subscription);
+  if (subscription.made == nullptr) return false;
+  subscription.capacity = 0;
+  subscription.bound_queue(1);
+  return true;
 }
 
 /// How many messages each channel of a log holds, for people.
@@ -99,9 +146,19 @@ struct LcmCloser {
 }  // namespace
 
 struct LcmBus::State {
+  State(const std::string& whole_url, AtStart start) : url(whole_url), at_start(start), link(whole_url) {}
+
   std::string url;
+  AtStart at_start;
+  BusLink link;
+  std::atomic<bool> has_way{true};  // a route or a connection, when last looked at
+  std::mutex look_mutex;            // of the next two, and of `lcm` where it is exchanged
+  std::chrono::steady_clock::time_point next_look;
+  std::string send_fault;                 // why the last short message could not be sent
   LimitedLines complaints;                // of handlers
   std::list<Subscription> subscriptions;  // LCM keeps pointers to them
+  std::optional<FrameSilence> frame_silence;
+  std::optional<Subscription> everything;  // of who looks for frames
   std::optional<LogReader> input_log;
   ChannelCounts heard;  // of it
   std::mutex output_mutex;
@@ -112,8 +169,8 @@ struct LcmBus::State {
   std::unique_ptr<lcm_t, LcmCloser> lcm;
 };
 
-LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(std::make_unique<State>()) {
-  state_->url = complete_url(url);
+LcmBus::LcmBus(const std::string& url, const std::string& output_log, AtStart at_start)
+    : state_(std::make_unique<State>(complete_url(url), at_start)) {
   if (is_log_url(state_->url)) {
     const std::string path = state_->url.substr(kFileScheme.size());
     const std::string input = path.substr(0, path.find('?'));
@@ -127,15 +184,35 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log) : state_(s
   }
   require(output_log.empty(), "an output log goes with a file:// URL, not with {}; record a bus with lcm-logger",
           state_->url);
-  require_multicast_route(state_->url);
+  open_network();
+}
+
+void LcmBus::open_network() {
   const std::string unknown = unknown_options_advice(state_->url);
   if (!unknown.empty()) log_warning("{}", unknown);
+  if (multicast_group(state_->url)) wait_until_reachable();
   const BlockStopSignals block;  // LCM's threads, started here, leave signals to ours
   state_->lcm.reset(lcm_create(state_->url.c_str()));
+  // The route may have gone in between.
+  while (state_->lcm == nullptr && !unreachable_reason(state_->url).empty()) {
+    wait_until_reachable();
+    state_->lcm.reset(lcm_create(state_->url.c_str()));
+  }
   require(state_->lcm != nullptr, "LCM cannot be opened at {}", state_->url);
-  if (state_->url.rfind("udpm://", 0) == 0) {
-    const std::string advice = receive_buffer_advice(granted_receive_buffer(kAskedReceiveBuffer));
-    if (!advice.empty()) log_warning("{}", advice);
+  if (!multicast_group(state_->url)) return;
+  const std::string advice = receive_buffer_advice(granted_receive_buffer(kAskedReceiveBuffer));
+  if (!advice.empty()) log_warning("{}", advice);
+}
+
+void LcmBus::wait_until_reachable() {
+  while (true) {
+    const std::string fault = unreachable_reason(state_->url);
+    require(fault.empty() || state_->at_start == AtStart::kWait, "{}: {}", state_->url, fault);
+    state_->link.update(fault, std::chrono::steady_clock::now());
+    if (fault.empty()) return;
+    require(!stop_requested(), "{}: stopped before the bus could be reached", state_->url);
+    notify_service(kStartTakesTime);
+    std::this_thread::sleep_for(kLookPeriod);
   }
 }
 
@@ -147,14 +224,53 @@ LcmBus::~LcmBus() {
 void LcmBus::subscribe(const std::string& channels, Handler handler) {
   state_->subscriptions.push_back({ChannelPattern(channels), std::move(handler), state_->complaints});
   if (is_log()) return;
-  const BlockStopSignals block;
-  // LCM puts ^ and $ around it, which would belong to the first and the last alternative only.
-  const std::string whole = state_->subscriptions.back().channels.is_name() ? channels : "(" + channels + ")";
-  lcm_subscription_t* subscription =
-      lcm_subscribe(state_->lcm.get(), whole.c_str(), on_message, &state_->subscriptions.back());
-  require(subscription != nullptr, "{}: cannot subscribe to {}; is there a multicast route?", state_->url, channels);
-  lcm_subscription_set_queue_capacity(subscription, kQueueCapacity);
+  subscribe_to_network();
   if (is_of_own_host(state_->url)) refuse_others();
+}
+
+void LcmBus::subscribe_to_frames(const std::string& channels, Handler handler) {
+  if (is_log()) return subscribe(channels, std::move(handler));
+  state_->frame_silence.emplace(channels, std::chrono::steady_clock::now());
+  state_->everything.emplace(Subscription{ChannelPattern(".*"),
+                                          [this](const Arrival& arrival) {
+                                            if (is_frame_message(arrival.bytes))
+                                              state_->frame_silence->note_elsewhere(arrival.channel);
+                                          },
+                                          state_->complaints});
+  subscribe(channels, [this, handler = std::move(handler)](const Arrival& arrival) {
+    if (is_frame_message(arrival.bytes)) state_->frame_silence->note_wanted(arrival.time);
+    handler(arrival);
+  });
+}
+
+void LcmBus::look_for_frames() {
+  if (!state_->frame_silence) return;
+  FrameSilence& silence = *state_->frame_silence;
+  const auto now = std::chrono::steady_clock::now();
+  if (!is_reachable()) silence.note_wanted(now);  // nobody is silent who cannot be heard
+  const bool looks = silence.wants_to_listen(now);
+  Subscription& everything = *state_->everything;
+  if (looks && everything.made == nullptr) {
+    subscribe_at(state_->lcm.get(), everything);
+  } else if (!looks && everything.made != nullptr) {
+    lcm_unsubscribe(state_->lcm.get(), std::exchange(everything.made, nullptr));
+  }
+  if (const std::optional<std::string> words = silence.words(now)) log_warning("{}: {}", state_->url, *words);
+}
+
+void LcmBus::subscribe_to_network() {
+  const BlockStopSignals block;
+  while (!subscribe_at(state_->lcm.get(), state_->subscriptions.back())) {
+    // LCM has sent itself messages for ten seconds, and none has come.
+    const std::string fault =
+        "LCM's test message does not come back, is there a route and no firewall? hs-doctor tells";
+    require(state_->at_start == AtStart::kWait, "{}: {}", state_->url, fault);
+    require(!stop_requested(), "{}: stopped before the bus could be reached", state_->url);
+    state_->link.update(fault, std::chrono::steady_clock::now());
+    notify_service(kStartTakesTime);
+    if (!unreachable_reason(state_->url).empty()) wait_until_reachable();
+  }
+  if (!is_reachable() && multicast_group(state_->url)) state_->link.update("", std::chrono::steady_clock::now());
 }
 
 // LCM opens the socket with the first subscription.
@@ -162,6 +278,37 @@ void LcmBus::refuse_others() {
   bool good = true;
   for (const int socket : receiving_sockets(state_->url)) good = refuse_other_hosts(socket) && good;
   if (!good) log_warning("{}: messages of other hosts cannot be kept out: {}", state_->url, std::strerror(errno));
+}
+
+void LcmBus::look_at_network() {
+  const std::lock_guard<std::mutex> lock(state_->look_mutex);
+  if (std::chrono::steady_clock::now() < state_->next_look) return;
+  const std::optional<BusPlace> group = multicast_group(state_->url);
+  const bool is_connected = tcp_server(state_->url) && lcm_get_fileno(state_->lcm.get()) >= 0;
+  std::string fault = is_connected ? "" : unreachable_reason(state_->url);
+  if (group && fault.empty()) {
+    for (const int socket : receiving_sockets(state_->url)) {
+      if (!join_group(socket, group->address))
+        fault = fmt::format("cannot join group {}: {}", group->address, std::strerror(errno));
+    }
+  }
+  state_->has_way = fault.empty();
+  if (!fault.empty()) state_->send_fault.clear();  // whatever it was, this is why
+  const auto now = std::chrono::steady_clock::now();
+  state_->link.update(fault.empty() ? state_->send_fault : fault, now);
+  state_->next_look = now + kLookPeriod;
+}
+
+// LCM connects again to a server when something is published, and a process may publish nothing.
+void LcmBus::reconnect() {
+  const std::unique_lock<std::mutex> lock(state_->publish_mutex, std::try_to_lock);
+  if (!lock.owns_lock()) return;
+  const std::lock_guard<std::mutex> look_lock(state_->look_mutex);
+  const BlockStopSignals block;
+  state_->lcm.reset(lcm_create(state_->url.c_str()));
+  require(state_->lcm != nullptr, "LCM cannot be opened at {}", state_->url);
+  if (state_->everything) state_->everything->made = nullptr;
+  for (Subscription& subscription : state_->subscriptions) subscribe_at(state_->lcm.get(), subscription);
 }
 
 bool LcmBus::handle(std::chrono::milliseconds timeout) {
@@ -175,27 +322,60 @@ bool LcmBus::handle(std::chrono::milliseconds timeout) {
     }
     return true;
   }
-  // LCM would wait on no socket, which ends the process. Who publishes connects again.
+  look_at_network();
+  // LCM would wait on no socket, which ends the process.
   if (lcm_get_fileno(state_->lcm.get()) < 0) {
-    std::this_thread::sleep_for(timeout);
-    fail("{}: not connected, nothing can be received", state_->url);
+    if (state_->has_way) reconnect();
+    if (lcm_get_fileno(state_->lcm.get()) < 0) std::this_thread::sleep_for(timeout);
+    return true;
   }
+  look_for_frames();
   const int handled = lcm_handle_timeout(state_->lcm.get(), static_cast<int>(timeout.count()));
-  require(handled >= 0 || errno == EINTR, "{}: receiving failed: {}", state_->url, std::strerror(errno));
+  const bool is_disconnected = handled < 0 && lcm_get_fileno(state_->lcm.get()) < 0;
+  require(handled >= 0 || is_disconnected || errno == EINTR, "{}: receiving failed: {}", state_->url,
+          std::strerror(errno));
   return true;
 }
 
-void LcmBus::publish(const std::string& channel, ByteView bytes, std::int64_t utime) {
+bool LcmBus::publish(const std::string& channel, ByteView bytes, std::int64_t utime) {
   if (is_log()) {
     const std::lock_guard<std::mutex> lock(state_->output_mutex);
     require(state_->output_log.has_value(), "{} is a log and cannot take results; give --output-log", state_->url);
     state_->output_log->write(utime, channel, bytes);
     ++state_->written;
-    return;
+    return true;
   }
+  look_at_network();
+  const bool is_sent = state_->has_way && send(channel, bytes);
+  if (!is_sent) state_->link.note_unsent();
+  return is_sent;
+}
+
+bool LcmBus::send(const std::string& channel, ByteView bytes) {
   const std::lock_guard<std::mutex> lock(state_->publish_mutex);
-  const int failed = lcm_publish(state_->lcm.get(), channel.c_str(), bytes.data, static_cast<unsigned int>(bytes.size));
-  require(failed == 0, "{}: {} bytes could not be published on {}", state_->url, bytes.size, channel);
+  errno = 0;
+  const auto size = static_cast<unsigned int>(bytes.size);
+  const bool is_sent = lcm_publish(state_->lcm.get(), channel.c_str(), bytes.data, size) == 0;
+  const std::string fault = is_sent ? "" : fmt::format("messages cannot be sent ({})", std::strerror(errno));
+  require(is_sent || channel.size() <= kMaxNetworkChannel, "{}: channel {} of {} bytes, expected at most {}",
+          state_->url, channel, channel.size(), kMaxNetworkChannel);
+  if (multicast_group(state_->url) && (!is_sent || bytes.size < kShortMessage)) {
+    const std::lock_guard<std::mutex> look_lock(state_->look_mutex);
+    state_->send_fault = fault;
+  }
+  return is_sent;
+}
+
+bool LcmBus::is_reachable() const {
+  return state_->link.is_up();
+}
+
+std::int64_t LcmBus::unsent() const {
+  return state_->link.unsent();
+}
+
+std::string LcmBus::last_outage() const {
+  return state_->link.last_outage();
 }
 
 void LcmBus::close() {

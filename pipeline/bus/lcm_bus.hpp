@@ -19,8 +19,15 @@ struct Arrival {
   std::int64_t event_us = 0;  ///< when it was received, microseconds since the epoch; of a log, the event's time
 };
 
+/// What LcmBus does where its network cannot be reached at its start.
+enum class AtStart { kWait, kFail };
+
 /// Where messages come from and go to: an LCM network, or, for a file:// URL, a log that is read event by event and
 /// never skipped, with results going to another log.
+///
+/// A network that cannot be reached (a link that is down, no route, a server that is gone) is waited for. Each outage
+/// is logged once when it begins and once when it ends; meanwhile nothing is received, and what is published is counted
+/// (unsent()) and lost. Within half a second of the network's return the messages of all subscriptions come again.
 class LcmBus {
  public:
   using Handler = std::function<void(const Arrival&)>;
@@ -29,28 +36,44 @@ class LcmBus {
   /// network may send, and nobody is asked who he is. `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with
   /// ttl=0. A udpm URL that does not state it gets a recv_buf_size. Logs what is missing where the kernel grants less
   /// than needed, and options that LCM does not know. `output_log` is for file:// only, and may be empty: then nothing
-  /// can be published. Throws InputError, also where there is no route to the group.
-  explicit LcmBus(const std::string& url, const std::string& output_log = "");
+  /// can be published. Waits for a route to the group of a udpm URL, and tells a service manager that this takes time.
+  /// Throws InputError, also where a stop signal ends the waiting, or `at_start` is kFail and there is no route.
+  explicit LcmBus(const std::string& url, const std::string& output_log = "", AtStart at_start = AtStart::kWait);
   ~LcmBus();
 
   /// Calls `handler` for every message of the channels (a ChannelPattern), from within handle(). What the handler
-  /// throws is logged, one line a second for each channel. Throws InputError where the network cannot be used, or the
-  /// pattern is none.
+  /// throws is logged, one line a second for each channel. Waits for the network as the constructor does. Throws
+  /// InputError as it does, and where the pattern is none.
   void subscribe(const std::string& channels, Handler handler);
 
+  /// The same for frames: where none comes on these channels for three seconds while the network can be reached, it is
+  /// logged on which channels frames come.
+  void subscribe_to_frames(const std::string& channels, Handler handler);
+
   /// Network: waits for one message and handles it, or for `timeout`. Log: handles the next event. False at the end
-  /// of a log. Throws InputError where the log is damaged, or, after `timeout`, where the network is not connected.
+  /// of a log. Throws InputError where the log is damaged.
   bool handle(std::chrono::milliseconds timeout);
 
-  /// May be called from any thread. `utime` is the time of the event where the message goes to a log. Throws InputError
-  /// where the message cannot be sent or written.
-  void publish(const std::string& channel, ByteView bytes, std::int64_t utime);
+  /// May be called from any thread. `utime` is the time of the event where the message goes to a log. Returns false
+  /// where the network cannot be reached. Throws InputError where the message cannot be written, or the name of the
+  /// channel is longer than a network allows.
+  bool publish(const std::string& channel, ByteView bytes, std::int64_t utime);
 
   template <typename Message>
-  void publish(const std::string& channel, const Message& message) {
+  bool publish(const std::string& channel, const Message& message) {
     const std::vector<std::uint8_t> bytes = encode_message(message);
-    publish(channel, {bytes.data(), bytes.size()}, message.utime);
+    return publish(channel, {bytes.data(), bytes.size()}, message.utime);
   }
+
+  /// Whether the network could be reached when it was last looked at, which handle() and publish() do four times a
+  /// second. May be called from any thread, as may the next two.
+  bool is_reachable() const;
+
+  /// Messages that were not sent because the network could not be reached.
+  std::int64_t unsent() const;
+
+  /// Describes the last outage that has ended; empty before the first one.
+  std::string last_outage() const;
 
   /// Ends the output log, if there is one. Throws InputError where it could not be written to the end, or where nothing
   /// was published, naming the channels of the input log: what was in the output's place then stays.
@@ -61,7 +84,14 @@ class LcmBus {
 
  private:
   struct State;
+  void open_network();
+  void wait_until_reachable();
+  void subscribe_to_network();
   void refuse_others();
+  void look_at_network();
+  void reconnect();
+  void look_for_frames();
+  bool send(const std::string& channel, ByteView bytes);
 
   std::unique_ptr<State> state_;
 };

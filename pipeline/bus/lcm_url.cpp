@@ -1,7 +1,9 @@
 #include "pipeline/bus/lcm_url.hpp"
 
 #include <arpa/inet.h>
+#include <netdb.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -60,6 +62,64 @@ void check_group(const std::string& url) {
   require(is_number(port, 65535) && port != "0", "LCM URL {}: port '{}', expected 1 to 65535", url, port);
 }
 
+/// Closes a socket at the end of its scope.
+struct Probe {
+  explicit Probe(int descriptor) : number(descriptor) {}
+  ~Probe() {
+    if (number >= 0) close(number);
+  }
+  Probe(const Probe&) = delete;
+  Probe& operator=(const Probe&) = delete;
+  int number;
+};
+
+/// With ttl=0 a route through lo is as good as any; with more the messages are meant for other hosts.
+std::string route_remedy(const std::string& url) {
+  for (const auto& [name, value] : url_options(url)) {
+    if (name == "ttl" && value != "0") return "connect the network, or: sudo ip route add 224.0.0.0/4 dev INTERFACE";
+  }
+  return multicast_route_remedy();
+}
+
+std::string no_route_reason(const std::string& url, const BusPlace& group) {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(std::atoi(group.port.c_str())));
+  const Probe probe(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const bool has_route = probe.number >= 0 && inet_pton(AF_INET, group.address.c_str(), &to.sin_addr) == 1 &&
+                         connect(probe.number, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
+  const std::string fault = std::strerror(errno);
+  if (has_route) return "";
+  return fmt::format("no multicast route to {} ({}); mend it with: {}", group.address, fault, route_remedy(url));
+}
+
+/// Why no connection comes about at this address within a quarter of a second; "" where one does.
+std::string connection_fault(const addrinfo& address) {
+  constexpr int kPatienceMs = 250;
+  const Probe probe(socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (probe.number < 0) return std::strerror(errno);
+  if (connect(probe.number, address.ai_addr, address.ai_addrlen) == 0) return "";
+  if (errno != EINPROGRESS) return std::strerror(errno);
+  pollfd waiting{probe.number, POLLOUT, 0};
+  if (poll(&waiting, 1, kPatienceMs) <= 0) return "it does not answer";
+  int fault = 0;
+  socklen_t size = sizeof fault;
+  if (getsockopt(probe.number, SOL_SOCKET, SO_ERROR, &fault, &size) != 0) fault = errno;
+  return fault == 0 ? "" : std::strerror(fault);
+}
+
+std::string no_server_reason(const BusPlace& server) {
+  addrinfo wanted{};
+  wanted.ai_family = AF_INET;  // as LCM connects
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int unknown = getaddrinfo(server.address.c_str(), server.port.c_str(), &wanted, &found);
+  const std::string fault = unknown != 0 ? gai_strerror(unknown) : connection_fault(*found);
+  if (unknown == 0) freeaddrinfo(found);
+  if (fault.empty()) return "";
+  return fmt::format("not connected to the server at {}:{} ({})", server.address, server.port, fault);
+}
+
 }  // namespace
 
 std::optional<BusPlace> multicast_group(const std::string& url) {
@@ -111,20 +171,10 @@ std::string unknown_options_advice(const std::string& url) {
   return "";
 }
 
-void require_multicast_route(const std::string& url) {
-  const std::optional<BusPlace> group = multicast_group(url);
-  if (!group) return;
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(static_cast<std::uint16_t>(std::atoi(group->port.c_str())));
-  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return;  // LCM will fare no better, and fail
-  const bool has_route = inet_pton(AF_INET, group->address.c_str(), &to.sin_addr) == 1 &&
-                         connect(probe, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
-  const int error = errno;
-  close(probe);
-  require(has_route, "{}: no multicast route to {} ({}); mend it with: {}", url, group->address, std::strerror(error),
-          multicast_route_remedy());
+std::string unreachable_reason(const std::string& url) {
+  if (const std::optional<BusPlace> group = multicast_group(url)) return no_route_reason(url, *group);
+  if (const std::optional<BusPlace> server = tcp_server(url)) return no_server_reason(*server);
+  return "";
 }
 
 std::string multicast_route_remedy() {

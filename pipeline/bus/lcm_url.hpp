@@ -29,9 +29,10 @@ void check_lcm_url(const std::string& url);
 /// One line about options of a network's URL that LCM does not know; "" where there are none.
 std::string unknown_options_advice(const std::string& url);
 
-/// Throws InputError, with the command that mends it, where this machine has no route to the group of a udpm URL. LCM
-/// asks the same, and says it in fifteen lines with an address of chance.
-void require_multicast_route(const std::string& url);
+/// Returns why this machine cannot send to the group of a udpm URL, or to the server of a tcpq URL, and what mends it;
+/// "" where it can, and for other URLs. LCM asks the same of multicast, and says it in fifteen lines with an address of
+/// chance. A server that does not answer is waited for a quarter of a second.
+std::string unreachable_reason(const std::string& url);
 
 /// The command that makes a route for multicast within this machine, until its next start.
 std::string multicast_route_remedy();

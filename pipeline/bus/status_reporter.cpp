@@ -109,8 +109,20 @@ status_t StatusReporter::message() const {
   return status;
 }
 
+void StatusReporter::note_outage(const LcmBus& bus) {
+  const std::string outage = bus.last_outage();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (outage == outage_) return;
+  outage_ = outage;
+  last_error_ = outage;
+}
+
 void StatusReporter::publish(LcmBus& bus) {
-  if (!objects_) return bus.publish(channel::kStatus, message());
+  note_outage(bus);
+  if (!objects_) {
+    bus.publish(channel::kStatus, message());
+    return;
+  }
   const KnownObjects known = objects_();
   if (!known.problem.empty()) remember_error(known.problem);
   const status_t status = message();

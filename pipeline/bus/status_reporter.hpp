@@ -47,8 +47,8 @@ class StatusReporter {
 
   status_t message() const;
 
-  /// Publishes the status, and the objects that are known where it was told of any. Throws InputError where the bus
-  /// does not take it.
+  /// Publishes the status, and the objects that are known where it was told of any. An outage of the bus that has ended
+  /// is remembered as the last error. Throws InputError where the bus does not take it.
   void publish(LcmBus& bus);
   /// The same when a second has passed since the last time; whether it has.
   bool publish_if_due(LcmBus& bus);
@@ -60,6 +60,7 @@ class StatusReporter {
 
  private:
   void complain(const std::string& kind, const std::string& reason);
+  void note_outage(const LcmBus& bus);
 
   struct Finished {
     Clock::time_point time;
@@ -76,6 +77,7 @@ class StatusReporter {
   std::int64_t duplicates_ = 0;
   std::map<std::string, SequenceCount> sequences_;  // by source
   std::string last_error_;
+  std::string outage_;  // the last one of the bus that was remembered as an error
   std::function<KnownObjects()> objects_;
   std::deque<Finished> recent_;  // of the last few seconds
   Clock::time_point last_published_ = Clock::now();

@@ -84,7 +84,7 @@ void run_detect_process(LcmBus& bus, const DetectProcessOptions& options,
   NewestOfEach<WaitingFrame> newest;
   Reception reception(bus, status, newest, options.looks_per_second);
   catch_stop_signals();
-  bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
+  bus.subscribe_to_frames(options.frame_channels, [&](const Arrival& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
     if (options.keep_frames) bus.publish(arrival.channel, arrival.bytes, arrival.event_us);
     reception.receive_frame(arrival);

@@ -53,7 +53,7 @@ class PoseProcess {
   void run() {
     status_.tell_objects(options_.objects);
     catch_stop_signals();
-    bus_.subscribe(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
+    bus_.subscribe_to_frames(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
     bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
     log_info("ready: frames from {}, detections from {} at {}", options_.frame_channels, channel::kDetections,
              bus_.url());

@@ -91,7 +91,9 @@ void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work)
 
 void end_process(LcmBus& bus, StatusReporter& status) {
   if (!bus.is_log()) status.publish(bus);
-  log_info("ends: {}", status.summary());
+  const std::string unsent =
+      bus.unsent() > 0 ? fmt::format("; {} messages not sent: the bus could not be reached", bus.unsent()) : "";
+  log_info("ends: {}{}", status.summary(), unsent);
   bus.close();
 }
 

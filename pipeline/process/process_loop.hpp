@@ -14,8 +14,8 @@ using WorkStep = std::function<bool(std::chrono::milliseconds)>;
 /// Runs a process until SIGINT or SIGTERM, or to the end of a log. On a network one thread receives, so that
 /// nothing waits in LCM, and reports the status once a second, while the calling thread works; where that hangs for
 /// longer than Heartbeat::kPatience, the reports end. A log is read by the calling thread, and every event is worked on
-/// before the next is read. Throws InputError where the log is damaged or was not read to its end, or the network
-/// fails.
+/// before the next is read. A network that cannot be reached is waited for (LcmBus). Throws InputError where the log is
+/// damaged or was not read to its end.
 void run_process_loop(LcmBus& bus, StatusReporter& status, const WorkStep& work);
 
 /// Says the last word: publishes the final status for whoever adds up, logs the account, and ends the output log.

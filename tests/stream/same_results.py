@@ -99,11 +99,11 @@ class Results:
         yield "rendered views", lambda: self.render("views", "training", "--azimuths", 12, "--pitches", 2)
         yield "rendered background", lambda: self.render("background", "background", "--count", 30)
         yield "rendered scene", lambda: self.render("scene", "scene", "table_small_1", "--frames", FRAMES)
-        yield "rendered take", lambda: self.render("takes", "takes", "--development", "--objects", "drill_1", "--take", 1, "--frames", 120)
+        yield "rendered take", lambda: self.render("takes", "takes", "--development", "--objects", "tea_box", "--take", 1, "--frames", 120)
         yield "forest gall", lambda: self.forest("gall", "hs-study-train", "--profile", "gall")
         yield "forest paper", lambda: self.forest("paper", "hs-train", "--profile", "paper")
         yield "forest realtime", lambda: self.forest("realtime", "hs-train", "--profile", "realtime")
-        yield "forest surface", lambda: self.forest("surface", "hs-study-train", "--profile", "realtime", "--features", "intensity+depth+point_histograms")
+        yield "forest surface", lambda: self.forest("surface", "hs-study-train", "--profile", "realtime", "--features", "intensity,depth_derivatives,honv")
         yield "store from a mesh", self.mesh_store
         yield "store from a take", self.take_store
         yield "detections", self.detections
@@ -129,11 +129,11 @@ class Results:
 
     def teach(self, *words, store):
         out = self.fresh(store)
-        self.call("hs-teach", *words, "--practice-rooms", 6, "--seed", SEED, "--threads", THREADS, "--cache", self.work / "cache", "--out", out)
+        self.call("hs-teach", *words, "--seed", SEED, "--threads", THREADS, "--cache", self.work / "cache", "--out", out)
         return digest_folder(out, self.work)
 
     def mesh_store(self):
-        return self.teach("mesh", sorted((self.work / "views/models").glob("*.ply"))[0], "--attitudes", "upright", store="mesh.store")
+        return self.teach("mesh", sorted((self.work / "views/models").glob("*.ply"))[0], "--attitudes", "upright", "--practice-rooms", 6, store="mesh.store")
 
     def take_store(self):
         scene = sorted((self.work / "takes/test").iterdir())[0]
@@ -198,7 +198,10 @@ def main():
     for name, make in Results(options.programs, options.work).parts():
         if options.only not in name:
             continue
-        digests[name] = make()
+        try:
+            digests[name] = make()
+        except subprocess.CalledProcessError as error:
+            sys.exit(f"{name}: {pathlib.Path(error.cmd[0]).name} ended with status {error.returncode}; its words are in {options.work}/same_results.log")
         same = not options.compare or digests[name] == before.get(name)
         print(f"{digests[name][:16]} {'' if same else 'DIFFERS '}{name}", flush=True)
         if not same:

@@ -184,7 +184,10 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
     add_run(message, run);
     const std::vector<std::uint8_t> bytes = encode_message(message);
     if (!feed.is_live() && !pace.wait()) break;
-    bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->id.utime);
+    if (!bus.publish(settings.channel, {bytes.data(), bytes.size()}, frame->id.utime)) {
+      status.count_skipped(1);
+      continue;
+    }
     status.count_processed(Clock::now() - read);
     ++result.frames;
     result.bytes += static_cast<std::int64_t>(bytes.size());

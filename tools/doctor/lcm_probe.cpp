@@ -29,7 +29,7 @@ void handle_until(LcmBus& bus, milliseconds time, const Done& done) {
 std::size_t heard_bytes(const std::string& url, const std::string& channel) {
   std::size_t largest = 0;
   try {
-    LcmBus bus(url);
+    LcmBus bus(url, "", AtStart::kFail);
     bus.subscribe(channel, [&](const Arrival& arrival) { largest = std::max(largest, arrival.bytes.size); });
     handle_until(bus, milliseconds(1000), [] { return false; });
   } catch (const std::exception&) {
@@ -38,11 +38,26 @@ std::size_t heard_bytes(const std::string& url, const std::string& channel) {
   return largest;
 }
 
+std::set<std::string> heard_frame_channels(const std::string& url) {
+  constexpr std::size_t kMaxChannels = 64;  // a sender of rubbish may make up names without end
+  std::set<std::string> channels;
+  try {
+    LcmBus bus(url, "", AtStart::kFail);
+    bus.subscribe(".*", [&](const Arrival& arrival) {
+      if (is_frame_message(arrival.bytes) && channels.size() < kMaxChannels) channels.insert(arrival.channel);
+    });
+    handle_until(bus, milliseconds(1500), [] { return false; });
+  } catch (const std::exception&) {
+    return {};  // the self test says what is wrong with the bus
+  }
+  return channels;
+}
+
 std::map<std::string, std::string> heard_errors(const std::string& url) {
   constexpr std::size_t kMostProcesses = 64;  // a sender of rubbish may make up names without end
   std::map<std::string, std::string> errors;
   try {
-    LcmBus bus(url);
+    LcmBus bus(url, "", AtStart::kFail);
     bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
       const auto status = decode_message<status_t>(arrival.bytes);
       const bool is_known = errors.count(status.process) > 0 || errors.size() < kMostProcesses;
@@ -59,7 +74,7 @@ SelfTest self_test(const std::string& url, std::size_t bytes) {
   constexpr int kMessages = 5;
   SelfTest result;
   try {
-    LcmBus bus(url);
+    LcmBus bus(url, "", AtStart::kFail);
     std::vector<std::uint8_t> message(bytes);
     bool came = false;
     // Another doctor may be at work on the same bus.

@@ -9,6 +9,9 @@ namespace houghstream::doctor {
 /// Machine::heard_bytes of this machine.
 std::size_t heard_bytes(const std::string& url, const std::string& channel);
 
+/// Machine::heard_frame_channels of this machine.
+std::set<std::string> heard_frame_channels(const std::string& url);
+
 /// Machine::heard_errors of this machine.
 std::map<std::string, std::string> heard_errors(const std::string& url);
 

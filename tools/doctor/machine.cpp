@@ -79,6 +79,7 @@ Machine this_machine() {
   };
   machine.granted_receive_buffer = granted_receive_buffer;
   machine.heard_bytes = heard_bytes;
+  machine.heard_frame_channels = heard_frame_channels;
   machine.heard_errors = heard_errors;
   machine.self_test = self_test;
   machine.may_use = [](const fs::path& file) { return access(file.c_str(), R_OK | W_OK) == 0; };

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace houghstream::doctor {
@@ -26,6 +27,8 @@ struct Machine {
   std::function<std::int64_t(std::int64_t asked)> granted_receive_buffer;
   /// Size of the largest message heard on the channel within a second; 0 = none.
   std::function<std::size_t(const std::string& url, const std::string& channel)> heard_bytes;
+  /// Channels on which frames are heard within a second and a half.
+  std::function<std::set<std::string>(const std::string& url)> heard_frame_channels;
   /// What processes on the bus say of their last error, by name, within a second and a half; those without one are left
   /// out.
   std::function<std::map<std::string, std::string>(const std::string& url)> heard_errors;

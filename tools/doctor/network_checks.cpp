@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/bus/frame_silence.hpp"
 #include "pipeline/bus/lcm_url.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
@@ -21,6 +22,7 @@ constexpr const char* kRoute = "multicast route";
 constexpr const char* kBuffer = "receive buffer";
 constexpr const char* kJavaBuffer = "Java's buffer";
 constexpr const char* kSenders = "who may send";
+constexpr const char* kFrames = "frames";
 constexpr const char* kSelfTest = "LCM self test";
 constexpr const char* kBus = "the bus";
 
@@ -138,6 +140,15 @@ Findings check_processes(const Machine& machine, const std::string& url) {
   return findings;
 }
 
+/// Whether frames come on another channel than the one that is listened to.
+Findings check_channel(const Machine& machine, const BusSettings& settings) {
+  const std::set<std::string> channels = machine.heard_frame_channels(settings.url);
+  if (channels.empty()) return {};
+  return {note(kFrames, frames_elsewhere(settings.frame_channel, channels),
+               fmt::format("hs-detect -c {0}, and so hs-pose, hs-view, hs-track and hs-stream",
+                           off_the_wire(*channels.begin())))};
+}
+
 /// Interfaces that lead to other hosts.
 bool has_neighbours(const Machine& machine) {
   std::istringstream lines(machine.read("proc/net/route"));
@@ -191,6 +202,9 @@ Findings check_network(const Machine& machine, const BusSettings& settings) {
   findings.push_back(route ? check_self_test(machine, settings.url, frame_bytes)
                            : note(kSelfTest, "not tried: there is no route"));
   if (!route) return findings;
+  if (heard == 0) {
+    for (const Finding& finding : check_channel(machine, settings)) findings.push_back(finding);
+  }
   for (const Finding& finding : check_processes(machine, settings.url)) findings.push_back(finding);
   return findings;
 }

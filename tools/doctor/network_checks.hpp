@@ -15,7 +15,8 @@ struct BusSettings {
 };
 
 /// What is wrong with the URL; or multicast route, receive buffers for the frames in use and for Java, who may send,
-/// messages of that size sent and received, and what processes on the bus complain of.
+/// messages of that size sent and received, on which channels frames come where none comes on the one that is listened
+/// to, and what processes on the bus complain of.
 Findings check_network(const Machine& machine, const BusSettings& settings);
 
 }  // namespace houghstream::doctor

@@ -51,7 +51,7 @@ void observe(const ObserveOptions& options) {
   Clock::time_point last = Clock::now();
   // Only the frame's name is read: the observer must cost the observed next to nothing.
   const ChannelPattern channels(options.frame_channels);
-  bus.subscribe(options.frame_channels, [&](const Arrival& arrival) {
+  bus.subscribe_to_frames(options.frame_channels, [&](const Arrival& arrival) {
     if (!channels.is_name() && !is_frame_message(arrival.bytes)) return;
     times.note_frame({arrival.channel, read_utime(arrival.bytes, arrival.channel)}, arrival.time);
     last = arrival.time;

@@ -73,50 +73,25 @@ Duration from_seconds(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Hears what the processes say of themselves. A bus that goes away, as with its server over tcpq, does not end the
-/// stream: it is opened anew once a second.
+/// Hears what the processes say of themselves. A bus that goes away does not end the stream.
 class StatusEar {
  public:
-  /// Throws InputError where the bus cannot be opened.
-  explicit StatusEar(const std::string& url) : url_(url), bus_(open()) {}
+  /// Waits for the bus. Throws InputError where it cannot be opened.
+  explicit StatusEar(const std::string& url) : bus_(url) {
+    require(!bus_.is_log(), "{}: is a log; the stream runs on a network", bus_.url());
+  }
 
   /// Who is told from here on. Processes that are started before do not inherit the sockets that receive.
-  void hear(LcmBus::Handler handler) {
-    handler_ = std::move(handler);
-    bus_->subscribe(channel::kStatus, handler_);
-  }
+  void hear(LcmBus::Handler handler) { bus_.subscribe(channel::kStatus, std::move(handler)); }
 
   /// Hands on one message, or waits for `timeout`. False while nothing can be heard.
   bool listen(std::chrono::milliseconds timeout) {
-    if (!bus_ && StateBoard::Clock::now() < again_) {
-      std::this_thread::sleep_for(timeout);
-      return false;
-    }
-    try {
-      if (!bus_) {
-        bus_ = open();
-        bus_->subscribe(channel::kStatus, handler_);
-      }
-      return bus_->handle(timeout);
-    } catch (const InputError& error) {
-      log_error("{}; it is tried again each second", error.what());
-      bus_.reset();
-      again_ = StateBoard::Clock::now() + std::chrono::seconds(1);
-      return false;
-    }
+    bus_.handle(timeout);
+    return bus_.is_reachable();
   }
 
  private:
-  std::unique_ptr<LcmBus> open() const {
-    auto bus = std::make_unique<LcmBus>(url_);
-    require(!bus->is_log(), "{}: is a log; the stream runs on a network", bus->url());
-    return bus;
-  }
-
-  std::string url_;
-  std::unique_ptr<LcmBus> bus_;
-  LcmBus::Handler handler_;
-  StateBoard::Clock::time_point again_;
+  LcmBus bus_;
 };
 
 /// Until what the source has sent last has gone through all others, and no longer than they are worth waiting for.

@@ -57,7 +57,7 @@ class TrackProcess {
 
   tracks::ExtrinsicCheck run() {
     status_.tell_objects(options_.objects);
-    bus_.subscribe(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
+    bus_.subscribe_to_frames(options_.frame_channels, [this](const Arrival& arrival) { receive_frame(arrival); });
     bus_.subscribe(channel::kDetections, [this](const Arrival& arrival) { receive_detections(arrival); });
     bus_.subscribe(channel::kPoses, [this](const Arrival& arrival) { receive_poses(arrival); });
     bus_.subscribe(".*_TO_WORLD", [this](const Arrival& arrival) { receive_transform(arrival); });

@@ -47,7 +47,7 @@ void BusWatcher::stop() {
 
 void BusWatcher::subscribe_to_frames(const std::string& frame_channels) {
   const bool is_pattern = !ChannelPattern(frame_channels).is_name();
-  bus_.subscribe(frame_channels, [this, is_pattern](const Arrival& arrival) {
+  bus_.subscribe_to_frames(frame_channels, [this, is_pattern](const Arrival& arrival) {
     if (is_pattern && !is_frame_message(arrival.bytes)) return;
     try {
       take_frame(arrival);

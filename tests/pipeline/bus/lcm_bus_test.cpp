@@ -3,10 +3,16 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
+#include <sched.h>
 #include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -17,6 +23,7 @@
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
+#include "tests/pipeline/test_frame.hpp"
 
 namespace houghstream {
 namespace {
@@ -106,32 +113,40 @@ TEST(LcmBus, AFloodOfBadMessagesIsNotLoggedLineByLine) {
   EXPECT_NE(log.find("49 more messages dropped"), std::string::npos) << log;
 }
 
-/// A server of tcpq that takes one client, and all that it publishes.
+/// A server of tcpq that takes all that its clients publish, and hands on nothing. Nobody can connect before start().
 class TcpServer {
  public:
-  TcpServer() : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+  explicit TcpServer(bool is_started = true) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address;
-    const bool listens = bind(socket_, reinterpret_cast<sockaddr*>(&address), size) == 0 && listen(socket_, 1) == 0 &&
-                         getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-    EXPECT_TRUE(listens);
+    const bool is_bound = bind(socket_, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+                          getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+    EXPECT_TRUE(is_bound);
     url_ = "tcpq://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-    thread_ = std::thread([this] { serve(); });
+    if (is_started) start();
   }
   ~TcpServer() {
-    if (thread_.joinable()) thread_.join();
+    finish();
     close(socket_);
   }
   TcpServer(const TcpServer&) = delete;
   TcpServer& operator=(const TcpServer&) = delete;
 
+  void start() {
+    EXPECT_EQ(listen(socket_, 4), 0);
+    thread_ = std::thread([this] {
+      for (int client = accept(socket_, nullptr, nullptr); client >= 0; client = accept(socket_, nullptr, nullptr))
+        clients_.emplace_back([this, client] { serve(client); });
+    });
+  }
+
   const std::string& url() const { return url_; }
 
-  /// Messages that have come whole on channel X once the client has gone; -1 where parts of two were mixed.
+  /// Messages that have come whole on channel X once the clients have gone; -1 where parts of two were mixed.
   int messages() {
-    thread_.join();
+    finish();
     return messages_;
   }
 
@@ -145,28 +160,37 @@ class TcpServer {
     return take(client, &value, sizeof value) ? ntohl(value) : 0;
   }
 
-  void serve() {
-    const int client = accept(socket_, nullptr, nullptr);
-    number(client);  // magic
-    number(client);  // version
+  /// Takes no further client and waits until those that there are have gone.
+  void finish() {
+    if (!thread_.joinable()) return;
+    shutdown(socket_, SHUT_RDWR);
+    thread_.join();
+    for (std::thread& client : clients_) client.join();
+  }
+
+  void serve(int client) {
+    constexpr std::uint32_t kPublish = 1;
+    constexpr std::uint32_t kUnsubscribe = 3;
+    const bool has_greeted = number(client) != 0 && number(client) != 0;  // magic and version
     const std::uint32_t hello[] = {htonl(0x287617fa), htonl(0x0100)};
-    send(client, hello, sizeof hello, 0);
-    while (const std::uint32_t type = number(client)) {
+    if (has_greeted) send(client, hello, sizeof hello, 0);
+    while (const std::uint32_t type = has_greeted ? number(client) : 0) {
       std::string name(std::min(number(client), 100U), ' ');
       take(client, name.data(), name.size());
+      if (type > kPublish && type <= kUnsubscribe) continue;
       std::string data(std::min(number(client), 100'000U), ' ');
-      const bool whole = take(client, data.data(), data.size()) && type == 1 && name == "X" && !data.empty() &&
+      const bool whole = take(client, data.data(), data.size()) && type == kPublish && name == "X" && !data.empty() &&
                          data.find_first_not_of(data[0]) == std::string::npos;
       messages_ = whole ? messages_ + 1 : -1;
       if (!whole) break;
     }
-    shutdown(socket_, SHUT_RDWR);  // nobody waits for an answer to another greeting
     close(client);
   }
 
   int socket_;
   std::string url_;
-  int messages_ = 0;
+  std::atomic<int> messages_{0};
+  std::vector<std::thread> clients_;
   std::thread thread_;
 };
 
@@ -189,12 +213,105 @@ TEST(LcmBus, WhatSeveralThreadsPublishOverTcpIsNotMixed) {
   EXPECT_EQ(server.messages(), 2 * kEach);
 }
 
-TEST(LcmBus, WithoutAServerReceivingFailsAfterItsTime) {
+TEST(LcmBus, WithoutAServerItWaitsAndCountsWhatIsNotSent) {
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
   LcmBus bus("tcpq://127.0.0.1:1");
   bus.subscribe("X", [](const Arrival&) {});
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_THROW(bus.handle(milliseconds(50)), InputError);
-  EXPECT_GE(std::chrono::steady_clock::now() - start, milliseconds(50));
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_TRUE(bus.handle(milliseconds(50)));
+    EXPECT_FALSE(bus.publish("X", numbered(i)));
+  }
+  EXPECT_GE(std::chrono::steady_clock::now() - start, milliseconds(600));
+  EXPECT_FALSE(bus.is_reachable());
+  EXPECT_EQ(bus.unsent(), 12);
+  const std::string log = testing::internal::GetCapturedStderr();
+  const std::string words = "not connected to the server at 127.0.0.1:1 (Connection refused); waiting";
+  EXPECT_NE(log.find(words), std::string::npos) << log;
+  EXPECT_EQ(log.find(words, log.find(words) + 1), std::string::npos) << log;
+}
+
+TEST(LcmBus, AServerThatComesLaterIsFoundByWhoPublishesNothing) {
+  TcpServer server(false);
+  LcmBus bus(server.url());
+  bus.subscribe("X", [](const Arrival&) {});
+  EXPECT_TRUE(bus.handle(milliseconds(10)));
+  EXPECT_FALSE(bus.is_reachable());
+  server.start();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!bus.is_reachable() && std::chrono::steady_clock::now() < end) bus.handle(milliseconds(10));
+  EXPECT_TRUE(bus.is_reachable());
+  EXPECT_EQ(bus.last_outage().rfind("the bus could not be reached for ", 0), 0U) << bus.last_outage();
+}
+
+TEST(LcmBus, FramesOnAnotherChannelAreNamed) {
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  LcmBus bus("memq://");
+  int frames = 0;
+  bus.subscribe_to_frames("WANTED", [&](const Arrival&) { ++frames; });
+  const images_t frame = to_message(make_test_frame(1), WireFormat{}, 1);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (std::chrono::steady_clock::now() < end) {
+    bus.publish("OTHER", frame);
+    bus.publish("NO_FRAMES", numbered(1));
+    for (int i = 0; i < 4; ++i) bus.handle(milliseconds(10));
+  }
+  bus.publish("WANTED", frame);
+  for (int i = 0; i < 200 && frames == 0; ++i) bus.handle(milliseconds(10));
+  EXPECT_EQ(frames, 1);
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("memq://: no frame on WANTED; frames come on OTHER\n"), std::string::npos) << log;
+}
+
+constexpr int kRefused = 3;
+constexpr int kNoNetworks = 77;
+
+/// A process that opens a bus in a network without any route, and ends with kRefused where that is refused.
+pid_t open_without_route(AtStart at_start) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) _exit(kNoNetworks);
+  try {
+    LcmBus bus("udpm://239.255.76.67:7667?ttl=1", "", at_start);
+  } catch (const InputError&) {
+    _exit(kRefused);
+  }
+  _exit(0);
+}
+
+TEST(LcmBus, WithoutARouteItWaitsAndTellsTheServiceManagerSo) {
+  const std::string place = testing::TempDir() + "lcm_bus_test_notify." + std::to_string(getpid());
+  const int manager = socket(AF_UNIX, SOCK_DGRAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  place.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(bind(manager, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  setenv("NOTIFY_SOCKET", place.c_str(), 1);
+  const pid_t child = open_without_route(AtStart::kWait);
+  unsetenv("NOTIFY_SOCKET");
+  int status = 0;
+  pollfd heard{manager, POLLIN, 0};
+  bool has_ended = false;
+  while (poll(&heard, 1, 20) == 0 && !has_ended) has_ended = waitpid(child, &status, WNOHANG) == child;
+  if (has_ended && WIFEXITED(status) && WEXITSTATUS(status) == kNoNetworks) GTEST_SKIP() << "no network namespaces";
+  ASSERT_FALSE(has_ended) << status;
+  std::string words(100, ' ');
+  words.resize(static_cast<std::size_t>(std::max<ssize_t>(recv(manager, words.data(), words.size(), 0), 0)));
+  EXPECT_EQ(words, "EXTEND_TIMEOUT_USEC=60000000");
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  close(manager);
+  std::filesystem::remove(place);
+}
+
+TEST(LcmBus, WithoutARouteItIsRefusedWhereThatWasAskedFor) {
+  int status = 0;
+  waitpid(open_without_route(AtStart::kFail), &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == kNoNetworks) GTEST_SKIP() << "no network namespaces";
+  EXPECT_EQ(WEXITSTATUS(status), kRefused);
 }
 
 TEST(LcmBus, RefusesWhatItCannotOpen) {

@@ -71,9 +71,12 @@ TEST(LcmUrl, WhatLcmPassesOverIsSaid) {
   EXPECT_NE(unknown_options_advice("tcpq://robot?ttl=1").find("'ttl'"), std::string::npos);
 }
 
-TEST(LcmUrl, ARouteIsAskedForOfMulticastOnly) {
-  EXPECT_NO_THROW(require_multicast_route("tcpq://10.0.0.2"));
-  EXPECT_NO_THROW(require_multicast_route("udpm://127.0.0.1")) << "to this machine there is a way";
+TEST(LcmUrl, ARouteIsAskedForOfMulticastAndAServerOfTcp) {
+  EXPECT_EQ(unreachable_reason("udpm://127.0.0.1"), "") << "to this machine there is a way";
+  EXPECT_EQ(unreachable_reason("memq://"), "");
+  EXPECT_EQ(unreachable_reason("file://my.lcmlog"), "");
+  EXPECT_EQ(unreachable_reason("tcpq://127.0.0.1:1"),
+            "not connected to the server at 127.0.0.1:1 (Connection refused)");
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ TEST(LcmProbe, ABusThatCannotBeUsedIsSaidToBeSoAndIsSilent) {
 
 TEST(LcmProbe, NothingIsHeardWhereNobodySpeaks) {
   EXPECT_EQ(heard_bytes("memq://", "FRAMES"), 0U);
+  EXPECT_TRUE(heard_frame_channels("memq://").empty());
 }
 
 }  // namespace

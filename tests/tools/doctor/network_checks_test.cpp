@@ -85,6 +85,17 @@ TEST(NetworkChecks, BuffersThatAreJustLargeEnoughForTheFramesHeardAreFine) {
   EXPECT_EQ(tested, kHeard);
 }
 
+TEST(NetworkChecks, WhereNoFrameComesTheChannelsThatHaveSomeAreNamed) {
+  HealthyMachine healthy("network_frames");
+  healthy.machine.heard_frame_channels = [](const std::string&) { return std::set<std::string>{"LEFT", "RIGHT"}; };
+  const Finding named = check_network(healthy.machine, kBus).back();
+  EXPECT_EQ(named.level, Level::kNote);
+  EXPECT_EQ(named.what, "no frame on FRAMES; frames come on LEFT, RIGHT");
+  EXPECT_EQ(named.remedy.rfind("hs-detect -c LEFT", 0), 0U) << named.remedy;
+  healthy.machine.heard_bytes = [](const std::string&, const std::string&) { return std::size_t{1'000}; };
+  EXPECT_EQ(check_network(healthy.machine, kBus).size(), 5U) << "frames come where they are looked for";
+}
+
 TEST(NetworkChecks, WhatProcessesComplainOfIsToldCamerasThatContradictAreWrong) {
   HealthyMachine healthy("network_checks_processes");
   healthy.machine.heard_errors = [](const std::string&) {

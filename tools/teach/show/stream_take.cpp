@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/messages/messages.hpp"
@@ -24,7 +25,7 @@ StreamTake::StreamTake(LcmBus& bus, StreamTakeSettings settings) : bus_(bus), se
           bus_.url());
   require(ChannelPattern(settings_.channel).is_name(), "channel '{}', expected the name of one camera's frames",
           settings_.channel);
-  bus_.subscribe(settings_.channel, [this](const Arrival& arrival) { put(arrival); });
+  bus_.subscribe_to_frames(settings_.channel, [this](const Arrival& arrival) { put(arrival); });
   const BlockStopSignals block;
   thread_ = std::thread([this] { receive(); });
 }
@@ -36,7 +37,11 @@ StreamTake::~StreamTake() {
 
 void StreamTake::receive() noexcept {
   try {
-    while (receiving_) bus_.handle(kMoment);
+    while (receiving_) {
+      const Clock::time_point begin = Clock::now();
+      bus_.handle(kMoment);
+      if (!bus_.is_reachable()) note_outage(Clock::now() - begin);
+    }
   } catch (const std::exception& error) {
     const std::lock_guard lock(mutex_);
     failure_ = error.what();
@@ -44,18 +49,38 @@ void StreamTake::receive() noexcept {
   }
 }
 
+// Time in which nothing could come is no silence of the stream, and is no part of the take.
+void StreamTake::note_outage(Clock::duration time) {
+  const std::lock_guard lock(mutex_);
+  begin_ += time;
+  last_ += time;
+  if (first_) *first_ += time;
+}
+
+// What is no frame never waits: it would take the place of frames.
 void StreamTake::put(const Arrival& arrival) {
   const std::lock_guard lock(mutex_);
   if (ended_) return;
-  last_ = arrival.time;
-  if (!first_) first_ = arrival.time;
-  waiting_.emplace_back(arrival.bytes.data, arrival.bytes.data + arrival.bytes.size);
+  try {
+    read_frame_header(arrival.bytes);
+  } catch (const InputError& error) {
+    refuse(error.what());
+    return;
+  }
+  waiting_.push_back({{arrival.bytes.data, arrival.bytes.data + arrival.bytes.size}, arrival.time});
   waiting_bytes_ += arrival.bytes.size;
   while (waiting_.size() > kMostWaiting || (waiting_.size() > 1 && waiting_bytes_ > kMostBytes)) {
-    take_first();
+    drop_first();
     ++passed_over_;
   }
   changed_.notify_all();
+}
+
+void StreamTake::refuse(const std::string& reason) {
+  ++refused_;
+  last_reason_ = reason;
+  const std::string line = fmt::format("message on {} dropped: {}", settings_.channel, reason);
+  if (const auto admitted = lines_.admit("", line, Clock::now())) log_warning("{}", *admitted);
 }
 
 void StreamTake::end() {
@@ -66,14 +91,19 @@ void StreamTake::end() {
 
 void StreamTake::skip_to_newest() {
   const std::lock_guard lock(mutex_);
-  while (waiting_.size() > 1) take_first();
+  while (waiting_.size() > 1) drop_first();
 }
 
-std::vector<std::uint8_t> StreamTake::take_first() {
-  std::vector<std::uint8_t> first = std::move(waiting_.front());
+StreamTake::Waiting StreamTake::take_first() {
+  Waiting first = std::move(waiting_.front());
   waiting_.pop_front();
-  waiting_bytes_ -= first.size();
+  waiting_bytes_ -= first.bytes.size();
   return first;
+}
+
+// A stream whose frames are too many to be taken is not silent.
+void StreamTake::drop_first() {
+  last_ = take_first().arrival;
 }
 
 StreamTake::Clock::time_point StreamTake::deadline() const {
@@ -81,7 +111,14 @@ StreamTake::Clock::time_point StreamTake::deadline() const {
   return std::min(*first_ + settings_.longest, last_ + settings_.silence);
 }
 
-std::optional<std::vector<std::uint8_t>> StreamTake::take() {
+void StreamTake::require_stream() const {
+  const double seconds = std::chrono::duration<double>(settings_.patience).count();
+  require(refused_ == 0, "no frame within {:.0f} s on {} at {}: {} messages were refused, the last: {}", seconds,
+          settings_.channel, bus_.url(), refused_.load(), last_reason_);
+  fail("no frame within {:.0f} s on {} at {}, expected a stream that runs", seconds, settings_.channel, bus_.url());
+}
+
+std::optional<StreamTake::Waiting> StreamTake::take() {
   std::unique_lock lock(mutex_);
   while (waiting_.empty() && !ended_ && failure_.empty()) {
     changed_.wait_for(lock, kMoment);
@@ -89,21 +126,42 @@ std::optional<std::vector<std::uint8_t>> StreamTake::take() {
   }
   ended_ = ended_ || stop_requested() || (first_ && Clock::now() > *first_ + settings_.longest);
   require(failure_.empty(), "{}", failure_);
-  require(first_ || stop_requested(), "no frame within {:.0f} s on {} at {}, expected a stream that runs",
-          std::chrono::duration<double>(settings_.patience).count(), settings_.channel, bus_.url());
-  if (ended_ || waiting_.empty()) return std::nullopt;
+  // A message that came after the deadline would be too late even if it were a frame.
+  ended_ = ended_ || (!waiting_.empty() && waiting_.front().arrival > deadline());
+  if (ended_ && !first_ && !stop_requested()) require_stream();
+  if (ended_) return std::nullopt;
   return take_first();
 }
 
-std::optional<RgbdFrame> StreamTake::next() {
-  const std::optional<std::vector<std::uint8_t>> bytes = take();
-  if (!bytes) return std::nullopt;
-  try {
-    const auto message = decode_message<images_t>({bytes->data(), bytes->size()});
-    return frame_from_message(message, settings_.channel, settings_.camera);
-  } catch (const InputError& error) {
-    fail("{}: {}", settings_.channel, error.what());
+RgbdFrame StreamTake::decode(const std::vector<std::uint8_t>& bytes) const {
+  const auto message = decode_message<images_t>({bytes.data(), bytes.size()});
+  RgbdFrame frame = frame_from_message(message, settings_.channel, settings_.camera);
+  require(size_.empty() || frame.depth.size() == size_, "frame {}: {}x{} pixels, expected {}x{} as of the first frame",
+          to_string(frame.id), frame.depth.cols, frame.depth.rows, size_.width, size_.height);
+  return frame;
+}
+
+void StreamTake::note_frame(const RgbdFrame& frame, Clock::time_point arrival) {
+  const std::lock_guard lock(mutex_);
+  if (!first_) {
+    first_ = arrival;
+    size_ = frame.depth.size();
   }
+  last_ = arrival;
+}
+
+std::optional<RgbdFrame> StreamTake::next() {
+  while (const std::optional<Waiting> message = take()) {
+    try {
+      RgbdFrame frame = decode(message->bytes);
+      note_frame(frame, message->arrival);
+      return frame;
+    } catch (const InputError& error) {
+      const std::lock_guard lock(mutex_);
+      refuse(error.what());
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace houghstream::teach

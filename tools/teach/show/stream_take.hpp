@@ -14,6 +14,7 @@
 
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/text/limited_lines.hpp"
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream::teach {
@@ -24,11 +25,13 @@ struct StreamTakeSettings {
   std::optional<Camera> camera;           ///< of frames that carry none of their own
   std::chrono::milliseconds longest{60'000};
   std::chrono::milliseconds patience{10'000};  ///< with the first frame
-  std::chrono::milliseconds silence{3'000};    ///< after which the stream counts as ended
+  std::chrono::milliseconds silence{3'000};    ///< without a frame, after which the stream counts as ended
 };
 
 /// A take that comes off the bus while the stream goes on. A thread receives, so that none of the frames waits in LCM;
-/// the one who follows the object takes them in order.
+/// the one who follows the object takes them in order. A message that is no frame of the take (rubbish, a damaged
+/// image, no camera, or another image size than the first frame had) is dropped with a count, and one line a second
+/// says so.
 class StreamTake {
  public:
   /// Listens from here on to `bus`, which must outlive it. Throws InputError where it is a log.
@@ -38,8 +41,8 @@ class StreamTake {
   StreamTake& operator=(const StreamTake&) = delete;
 
   /// The next frame; waits for it. Nothing at the take's end: after end() or a stop signal, as soon as `longest` has
-  /// passed since the first frame, or where no frame comes for `silence`. Throws InputError where none comes at all,
-  /// receiving fails, or a frame cannot be understood.
+  /// passed since the first frame, or where no frame comes for `silence`. Throws InputError where none comes within
+  /// `patience`, or receiving fails. Time in which the bus cannot be reached counts for none of these.
   std::optional<RgbdFrame> next();
 
   /// The take is long enough. May be called from any thread.
@@ -51,26 +54,43 @@ class StreamTake {
   /// Frames that came too fast: of those that wait the oldest goes.
   std::int64_t passed_over() const { return passed_over_; }
 
+  /// Messages on the channel that are no frame of the take.
+  std::int64_t refused() const { return refused_; }
+
  private:
   using Clock = std::chrono::steady_clock;
+  struct Waiting {
+    std::vector<std::uint8_t> bytes;  // encoded
+    Clock::time_point arrival;
+  };
   void put(const Arrival& arrival);
+  void refuse(const std::string& reason);
   void receive() noexcept;
-  std::optional<std::vector<std::uint8_t>> take();
-  std::vector<std::uint8_t> take_first();
+  std::optional<Waiting> take();
+  Waiting take_first();
+  void drop_first();
+  void note_outage(Clock::duration time);
+  RgbdFrame decode(const std::vector<std::uint8_t>& bytes) const;
+  void note_frame(const RgbdFrame& frame, Clock::time_point arrival);
   Clock::time_point deadline() const;
+  void require_stream() const;
 
   LcmBus& bus_;
   StreamTakeSettings settings_;
   Clock::time_point begin_ = Clock::now();
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::vector<std::uint8_t>> waiting_;  // encoded
+  std::deque<Waiting> waiting_;
   std::size_t waiting_bytes_ = 0;
-  std::optional<Clock::time_point> first_;  // when it came
-  Clock::time_point last_ = Clock::now();
+  std::optional<Clock::time_point> first_;  // arrival of the first frame
+  Clock::time_point last_;                  // arrival of the last frame that was taken or dropped
+  cv::Size size_;                           // of the first frame
+  std::string last_reason_;                 // why the last message was refused
+  LimitedLines lines_;
   bool ended_ = false;
   std::string failure_;
   std::atomic<std::int64_t> passed_over_{0};
+  std::atomic<std::int64_t> refused_{0};
   std::atomic<bool> receiving_{true};
   std::thread thread_;
 };

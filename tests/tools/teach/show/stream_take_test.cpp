@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <csignal>
+#include <thread>
+#include <vector>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
@@ -14,6 +19,13 @@ namespace houghstream::teach {
 namespace {
 
 using std::chrono::milliseconds;
+
+/// For a machine that may be busy: nothing ends the take but its test.
+StreamTakeSettings patient() {
+  StreamTakeSettings settings;
+  settings.longest = settings.patience = settings.silence = milliseconds(60'000);
+  return settings;
+}
 
 StreamTakeSettings quick() {
   StreamTakeSettings settings;
@@ -108,20 +120,94 @@ TEST(StreamTake, WhatComesTooFastGoesWithACount) {
   EXPECT_GE(take.passed_over(), 1);
 }
 
-TEST(StreamTake, WithoutAStreamOrWithRubbishOneLineSaysSo) {
+void send_rubbish(LcmBus& bus) {
+  const std::vector<std::uint8_t> rubbish(20, 7);
+  bus.publish(channel::kFrame, {rubbish.data(), rubbish.size()}, 0);
+}
+
+TEST(StreamTake, WithoutAStreamOrWithRubbishAloneOneLineSaysSo) {
   LcmBus bus("memq://");
   StreamTake take(bus, quick());
   EXPECT_NE(error_of([&] { take.next(); }).find("no frame within 0 s on OPENNI_FRAME at memq://"), std::string::npos);
-  const std::vector<std::uint8_t> rubbish(20, 7);
-  bus.publish(channel::kFrame, {rubbish.data(), rubbish.size()}, 0);
   LcmBus second("memq://");
   StreamTake other(second, quick());
-  second.publish(channel::kFrame, {rubbish.data(), rubbish.size()}, 0);
-  EXPECT_NE(error_of([&] { other.next(); }).find("OPENNI_FRAME: message of fingerprint"), std::string::npos);
+  send_rubbish(second);
+  send_rubbish(second);
+  EXPECT_NE(error_of([&] { other.next(); }).find("2 messages were refused, the last: message of fingerprint"),
+            std::string::npos);
   StreamTakeSettings several = quick();
   several.channel = "LEFT|RIGHT";
   EXPECT_NE(error_of([&] { StreamTake none(bus, several); }).find("expected the name of one camera's"),
             std::string::npos);
+}
+
+/// Frames with nothing, something or everything wrong, in the order of their numbers.
+void send_amid_rubbish(LcmBus& bus) {
+  send_rubbish(bus);
+  send(bus, 1);
+  images_t damaged = to_message(make_test_frame(2), WireFormat{}, 2);
+  damaged.images.front().data.assign(damaged.images.front().data.size(), 7);
+  bus.publish(channel::kFrame, damaged);
+  images_t blind = to_message(make_test_frame(3), WireFormat{}, 3);
+  for (image_t& image : blind.images) {
+    image.metadata.clear();
+    image.nmetadata = 0;
+  }
+  bus.publish(channel::kFrame, blind);
+  bus.publish(channel::kFrame, to_message(make_test_frame(4, 8, 8), WireFormat{}, 4));
+  send_rubbish(bus);
+  send(bus, 5);
+}
+
+TEST(StreamTake, WhatIsNoFrameIsSaidOnceAndCountedWhileTheTakeGoesOn) {
+  testing::internal::CaptureStderr();
+  start_log("test", LogLevel::kInfo);
+  LcmBus bus("memq://");
+  StreamTake take(bus, patient());
+  send_amid_rubbish(bus);
+  EXPECT_EQ(take.next()->id.utime, 1);
+  EXPECT_EQ(take.next()->id.utime, 5);
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(take.refused(), 5);
+  EXPECT_EQ(take.passed_over(), 0);
+  EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 5) << log;
+  EXPECT_NE(log.find("message on OPENNI_FRAME dropped: message of fingerprint"), std::string::npos) << log;
+}
+
+TEST(StreamTake, RubbishDoesNotKeepATakeWithoutFramesAlive) {
+  LcmBus bus("memq://");
+  StreamTake take(bus, quick());
+  send(bus, 1);
+  EXPECT_TRUE(take.next().has_value());
+  std::atomic<bool> done{false};
+  std::thread sender([&] {
+    images_t damaged = to_message(make_test_frame(2), WireFormat{}, 2);
+    damaged.images.front().data.assign(damaged.images.front().data.size(), 7);
+    while (!done) {
+      send_rubbish(bus);
+      bus.publish(channel::kFrame, damaged);
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(take.next().has_value());
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(4000)) << "silence is 0.3 s, the longest take 5 s";
+  done = true;
+  sender.join();
+}
+
+TEST(StreamTake, RubbishTakesNoFramesPlace) {
+  LcmBus bus("memq://");
+  StreamTake take(bus, patient());
+  send(bus, 1);
+  for (int i = 0; i < 400; ++i) {  // more than may wait
+    send_rubbish(bus);
+    while (i - take.refused() > 50) std::this_thread::sleep_for(milliseconds(1));  // LCM's own queue is short
+  }
+  send(bus, 2);
+  EXPECT_EQ(take.next()->id.utime, 1);
+  EXPECT_EQ(take.next()->id.utime, 2);
+  EXPECT_EQ(take.passed_over(), 0);
 }
 
 TEST(StreamTake, CtrlCEndsTheTake) {

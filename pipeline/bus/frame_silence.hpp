@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+
+namespace houghstream {
+
+/// Notices that no frame comes on the channels that somebody listens to, and says on which channels frames come
+/// instead: a wrong channel is otherwise seen by nothing coming. Listening to all channels costs the receiver what all
+/// others send, so it is done for short times only, while nothing comes. Times are handed in. Not thread-safe.
+class FrameSilence {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  static constexpr std::chrono::milliseconds kListenAfter{2000};  ///< of silence
+  static constexpr std::chrono::milliseconds kListen{1500};       ///< to all channels
+  static constexpr std::chrono::milliseconds kPause{8000};        ///< before it is listened again
+  static constexpr std::chrono::milliseconds kNowhere{10'000};    ///< of silence on all channels before that is said
+
+  FrameSilence(std::string wanted, Clock::time_point now) : wanted_(std::move(wanted)), last_(now), next_(now) {}
+
+  /// A frame has come on a channel that is wanted.
+  void note_wanted(Clock::time_point now) { last_ = now; }
+
+  /// While it is listened to all channels: a frame has come on this one.
+  void note_elsewhere(const std::string& channel);
+
+  /// Whether all channels are to be listened to now.
+  bool wants_to_listen(Clock::time_point now);
+
+  /// What is to be said, once for each different finding.
+  std::optional<std::string> words(Clock::time_point now);
+
+ private:
+  std::string wanted_;
+  Clock::time_point last_;                  // when a wanted frame came, or the beginning
+  Clock::time_point next_;                  // before which it is not listened
+  std::optional<Clock::time_point> since_;  // it is listened
+  std::set<std::string> elsewhere_;
+  bool has_listened_ = false;  // to the end, since words() was asked last
+  std::string told_;
+};
+
+/// "no frame on WANTED; frames come on A, B": for people. `elsewhere` are names off the wire.
+std::string frames_elsewhere(const std::string& wanted, const std::set<std::string>& elsewhere);
+
+}  // namespace houghstream
