@@ -77,6 +77,22 @@ class Help(unittest.TestCase):
         self.assertIn("--scene", help_of("hs-bench-kernels"))
 
 
+class Configuration(unittest.TestCase):
+    def test_what_init_prints_is_read_and_changes_nothing(self):
+        programs = [program for program in sorted(EXECUTABLES.glob("hs-*")) if "init" in jobs_in(help_of(program.name))]
+        self.assertIn("hs-stream", [program.name for program in programs])
+        with tempfile.TemporaryDirectory() as folder:
+            for program in programs:
+                printed = subprocess.run([program, "init"], capture_output=True, text=True, check=True)
+                file = pathlib.Path(folder) / f"{program.name}.toml"
+                file.write_text(printed.stdout)
+                # Without a store or a forest both end with the same line, before anything is started.
+                without, read = (subprocess.run([program, *words], capture_output=True, text=True, check=False, timeout=60)
+                                 for words in ((), ("--config", file)))  # fmt: skip
+                self.assertEqual((read.returncode, read.stderr), (without.returncode, without.stderr), printed.stdout)
+                self.assertIn("expected either --objects STORE or --forest FILE", read.stderr)
+
+
 class Completion(unittest.TestCase):
     def completed(self, *words):
         """What the last of the words may become."""
@@ -125,8 +141,32 @@ class Samples(unittest.TestCase):
             name, words = re.search(r'exec "\$HOUGHSTREAM_BIN/(\S+)" (.*)\'$', text, re.M).groups()
             check_command(self, name, words)
             self.assertIn(unit.name, wanted)
-            for variable in re.findall(r"\$(\w+)", text):
+            for variable in re.findall(r"\$(HOUGHSTREAM_\w+)", text):
                 self.assertRegex(settings, rf"(?m)^{variable}=")
+
+    def test_a_unit_is_never_given_up_and_waits_longer_from_try_to_try(self):
+        steps = []
+        for unit in sorted((SAMPLES / "systemd").glob("*.service")):
+            text = unit.read_text()
+            self.assertIn("\nStartLimitIntervalSec=0\n", text)
+            lines = re.search(r"^ExecStartPre=/bin/sh -c '(.*?)'$", text, re.M | re.S)[1]
+            steps.append(lines.replace("\\\n", "").replace("$$", "$").replace("%%", "%"))
+        self.assertEqual(len(set(steps)), 1)
+        with tempfile.TemporaryDirectory() as folder:
+            def pause(ago=0):
+                """How long the next start would wait, where the last one was `ago` seconds ago."""
+                tries = pathlib.Path(folder) / "tries"
+                if tries.exists():
+                    _, deaths = tries.read_text().split()
+                    tries.write_text(f"{int(time.time()) - ago} {deaths}\n")
+                script = steps[0].replace("sleep ", "echo PAUSE ")
+                said = subprocess.run(["/bin/sh", "-c", script], env={**os.environ, "RUNTIME_DIRECTORY": folder}, check=True,
+                                      capture_output=True, text=True)  # fmt: skip
+                self.assertEqual(said.stderr, "")
+                return int(re.search(r"PAUSE (\d+)", said.stdout)[1])
+
+            self.assertEqual([pause() for _ in range(11)], [0, 0, 1, 2, 4, 8, 16, 32, 64, 64, 64])
+            self.assertEqual(pause(60), 0, "a run of a minute makes up for earlier ones")
 
     @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd here")
     def test_units_are_understood(self):
