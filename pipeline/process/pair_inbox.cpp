@@ -22,7 +22,8 @@ void PairInbox::put_frame(const FrameId& id, SharedBytes bytes) {
     Camera& camera = camera_of(id.channel);
     detectors_.note_frame(id);
     ByteCount::Held held = frame_bytes_.hold(bytes->size());
-    camera.frames.push_back({{id, std::move(bytes)}, ++camera.frames_seen, std::move(held)});
+    ++camera.frames_seen;
+    camera.frames.push_back({{id, std::move(bytes)}, ++frames_, std::move(held)});
     if (camera.frames.size() > kHistory) camera.frames.pop_front();
     keep_within_bytes();
     camera.fresh = newest_first_ && ahead_;
@@ -53,15 +54,25 @@ PairInbox::Camera& PairInbox::camera_of(const std::string& channel) {
   return cameras_[channel];
 }
 
-// The newest frame of each camera stays.
+// There are frames.
+PairInbox::Camera& PairInbox::camera_to_shorten() {
+  Camera* chosen = nullptr;
+  for (auto& [channel, camera] : cameras_) {
+    if (camera.frames.empty()) continue;
+    const bool has_more = chosen == nullptr || camera.frames.size() > chosen->frames.size();
+    const bool is_older = chosen != nullptr && camera.frames.size() == chosen->frames.size() &&
+                          camera.frames.front().number < chosen->frames.front().number;
+    if (has_more || is_older) chosen = &camera;
+  }
+  return *chosen;
+}
+
 void PairInbox::keep_within_bytes() {
   while (frame_bytes_.total() > kHistoryBytes) {
-    Camera* most = nullptr;
-    for (auto& [channel, camera] : cameras_) {
-      if (most == nullptr || camera.frames.size() > most->frames.size()) most = &camera;
-    }
-    if (most->frames.size() < 2) return;
-    most->frames.pop_front();
+    Camera& camera = camera_to_shorten();
+    if (camera.frames.front().number == frames_) return;  // the last one that has come is the only one left
+    camera.frames.pop_front();
+    if (camera.frames.empty()) camera.fresh = false;
   }
 }
 

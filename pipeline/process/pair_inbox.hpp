@@ -32,7 +32,7 @@ struct ArrivedFrame {
 struct PairedMessages {
   FrameId id;
   SharedBytes frame;
-  std::int64_t frame_number = 0;  ///< of the camera's frames in their order of arrival: a name may come again
+  std::int64_t frame_number = 0;  ///< of all frames in their order of arrival: a name may come again
   std::vector<std::uint8_t> detections;
   std::chrono::steady_clock::time_point arrival;  ///< of the detections
 };
@@ -43,7 +43,8 @@ struct PairedMessages {
 class PairInbox {
  public:
   /// Frames of each camera that are kept for detections still to come: 64, and fewer where those of all cameras have
-  /// more bytes than this.
+  /// more bytes than this. First the camera with the most frames gives up its oldest; where each has one left, the one
+  /// that has come first goes. The last frame that has come stays, however large it is.
   static constexpr std::size_t kHistory = 64;
   static constexpr std::size_t kHistoryBytes = std::size_t{192} << 20U;
   /// Detections of each camera that wait, for their frame or their turn; the oldest go. Larger ones (two thousand
@@ -116,6 +117,7 @@ class PairInbox {
   };
 
   Camera& camera_of(const std::string& channel);
+  Camera& camera_to_shorten();
   void keep_within_bytes();
   void keep_waiting_within_bytes();
   Camera* next_camera();
@@ -133,7 +135,8 @@ class PairInbox {
   ByteCount waiting_bytes_;                // of their detections
   std::map<std::string, Camera> cameras_;  // by channel
   DetectorCount detectors_;
-  std::int64_t arrivals_ = 0;
+  std::int64_t arrivals_ = 0;  // of detections
+  std::int64_t frames_ = 0;    // that have arrived
   std::int64_t turns_ = 0;
   bool woken_ = false;
   Dropped dropped_;

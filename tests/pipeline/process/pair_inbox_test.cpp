@@ -223,6 +223,35 @@ TEST(PairInbox, LargeFramesAreKeptWithinABoundInBytes) {
   EXPECT_FALSE(inbox.take(kNow).has_value()) << "the oldest ones are gone";
 }
 
+TEST(PairInbox, LargeFramesOfManyCamerasAreKeptWithinTheBoundToo) {
+  PairInbox inbox(true);
+  const auto large = std::make_shared<const std::vector<std::uint8_t>>(PairInbox::kHistoryBytes / 3);
+  const auto kept = [&] { return static_cast<std::size_t>(large.use_count() - 1) * large->size(); };
+  for (std::size_t i = 0; i < PairInbox::kCameras; ++i) {
+    inbox.put_frame({std::to_string(i), 1}, large);
+    EXPECT_LE(kept(), PairInbox::kHistoryBytes);
+  }
+  EXPECT_EQ(kept(), 3 * large->size());
+  inbox.put_detections({"63", 1}, {});
+  EXPECT_TRUE(inbox.take(kNow).has_value()) << "the newest ones stay";
+  inbox.put_detections({"0", 1}, {});
+  EXPECT_FALSE(inbox.take(kNow).has_value());
+  std::size_t fresh = 0;
+  while (inbox.take_fresh()) ++fresh;
+  EXPECT_EQ(fresh, 2U) << "what is gone is not taken ahead";
+}
+
+TEST(PairInbox, TheLastFrameStaysHoweverLargeItIs) {
+  PairInbox inbox(true);
+  const auto large = std::make_shared<const std::vector<std::uint8_t>>(PairInbox::kHistoryBytes + 1);
+  inbox.put_frame({"LEFT", 1}, arrived_bytes(1));
+  inbox.put_frame({"RIGHT", 1}, large);
+  inbox.put_detections({"RIGHT", 1}, {});
+  EXPECT_TRUE(inbox.take(kNow).has_value());
+  inbox.put_detections({"LEFT", 1}, {});
+  EXPECT_FALSE(inbox.take(kNow).has_value());
+}
+
 TEST(PairInbox, ListensToAFewCamerasOnly) {
   PairInbox inbox(true);
   for (std::size_t i = 0; i < PairInbox::kCameras; ++i) inbox.put_frame({std::to_string(i), 1}, arrived_bytes(1));
