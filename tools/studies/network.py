@@ -24,8 +24,8 @@ class Network:
         ip("link", "add", "switch", "type", "bridge", "mcast_snooping", 0)
         self._plug_in("switch", 1, ())
         try:
-            for number, name in enumerate(self.names, 2):
-                self._add(name, number)
+            for name in self.names:
+                self._add(name)
         except BaseException:
             self.__exit__()
             raise
@@ -49,17 +49,25 @@ class Network:
     def join(self, name):
         ip("link", "set", f"port_{name}", "up")
 
-    def _add(self, name, number):
+    def take_out(self, name):
+        """Takes the host's network device away, as with a WLAN stick."""
+        ip("link", "del", f"port_{name}")
+
+    def put_in(self, name):
+        """Gives the host a network device, on which it is reached under its old address."""
+        ip("link", "add", f"port_{name}", "type", "veth", "peer", "name", f"cable_{name}")
+        ip("link", "set", f"cable_{name}", "netns", self.holders[name].pid)
+        ip("link", "set", f"port_{name}", "master", "switch", "up")
+        self._plug_in(f"cable_{name}", 2 + self.names.index(name), self.enter(name))
+
+    def _add(self, name):
         """A network namespace lives for as long as a process holds it open."""
         self.holders[name] = subprocess.Popen(["unshare", "-n", "sleep", "infinity"])
         own = os.readlink("/proc/self/ns/net")
         while os.readlink(f"/proc/{self.holders[name].pid}/ns/net") == own:
             time.sleep(0.01)
-        ip("link", "add", f"port_{name}", "type", "veth", "peer", "name", f"cable_{name}")
-        ip("link", "set", f"cable_{name}", "netns", self.holders[name].pid)
-        ip("link", "set", f"port_{name}", "master", "switch", "up")
         ip("link", "set", "lo", "up", host=self.enter(name))
-        self._plug_in(f"cable_{name}", number, self.enter(name))
+        self.put_in(name)
 
     @staticmethod
     def _plug_in(device, number, host):

@@ -20,12 +20,14 @@ def tell(name, seen):
 
 def run_faults(options, out):
     """Yields each one's name and what was seen."""
-    from studies.soak.clock_faults import ClockFaults  # needs the messages' package
+    from studies.soak.bus_faults import BusFaults  # needs the messages' package, as the others do
+    from studies.soak.clock_faults import ClockFaults
     from studies.soak.frame_faults import FrameFaults
     from studies.soak.store_faults import StoreFaults
     from studies.soak.stream_faults import StreamFaults
 
-    faults = [fault for kind in (FrameFaults, ClockFaults, StreamFaults, StoreFaults) for fault in kind(options, out).all()]
+    kinds = (FrameFaults, ClockFaults, StreamFaults, StoreFaults, BusFaults)
+    faults = [fault for kind in kinds for fault in kind(options, out).all()]
     for name, fault in faults:
         if options.only not in name:
             continue
