@@ -269,6 +269,30 @@ void require_new_name(const std::string& name, const std::string& where) {
           where, printable(name), kLongest);
 }
 
+std::vector<std::string> find_stores(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.front() != '.' && is_list_of_store(entry->path() / kJsonFile)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool is_store_entry(const fs::path& relative) {
+  static const std::set<std::string> files = {kJsonFile, "forest", "contact_sheet.jpg", "models/models_info.json",
+                                              "models/names.json"};
+  fs::path entry = relative;
+  if (entry.extension() == kPartialEnding) entry.replace_extension();
+  if (entry == "models" || entry == "views" || files.count(entry.string()) > 0) return true;
+  // A mesh, its texture or a picture of its views: obj_000001.ply.
+  const std::string name = entry.stem().string();
+  const bool is_of_object = name.size() > 4 && name.rfind("obj_", 0) == 0 &&
+                            name.find_first_not_of("0123456789", 4) == std::string::npos && entry.has_extension();
+  return is_of_object && (entry.parent_path() == "models" || entry.parent_path() == "views");
+}
+
 bool may_be_replaced(const fs::path& folder) {
   if (!fs::exists(folder)) return true;
   return fs::is_directory(folder) && (fs::is_empty(folder) || is_list_of_store(folder / kJsonFile));

@@ -79,6 +79,13 @@ void require_utf8_name(const std::string& name, const std::string& where);
 /// at most 100 bytes of UTF-8, without commas, slashes, '=' and control characters, and no dot comes first.
 void require_new_name(const std::string& name, const std::string& where);
 
+/// Returns the names of the folders in `folder` that are object stores, torn ones included, sorted.
+std::vector<std::string> find_stores(const std::filesystem::path& folder);
+
+/// Returns whether a path, relative to a store's folder, is one of a store's own entries, whole or being written. All
+/// else in the folder is foreign and is kept (pipeline/base/folder_exchange.hpp).
+bool is_store_entry(const std::filesystem::path& relative);
+
 /// Whether the folder is empty or holds a store or what is left of one, which may be replaced; nothing else may. A
 /// store.json of anybody else makes no store.
 bool may_be_replaced(const std::filesystem::path& folder);

@@ -1,9 +1,7 @@
 #include "drivers/store/store_build.hpp"
 
 #include <fcntl.h>
-#include <linux/fs.h>
 #include <sys/file.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,6 +11,7 @@
 #include "drivers/store/object_store.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/folder_exchange.hpp"
 
 namespace houghstream::store {
 namespace {
@@ -69,7 +68,8 @@ std::string partial_prefix(const fs::path& store) {
   return "." + store.filename().string() + ".partial-";
 }
 
-/// What earlier teachings left. Throws InputError where one of them is still at work.
+/// What earlier teachings left; somebody's files in it go back to the store. Throws InputError where one of them is
+/// still at work.
 void remove_leftovers(const fs::path& store) {
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(store.parent_path())) {
@@ -78,49 +78,30 @@ void remove_leftovers(const fs::path& store) {
   for (const fs::path& folder : left) {
     const int lock = try_lock(folder);
     require(lock >= 0, "{}: another teaching works on {}, expected one at a time", folder.string(), store.string());
-    std::error_code error;
-    fs::remove_all(folder, error);
+    try {
+      remove_replaced(folder, store, is_store_entry);
+    } catch (const InputError&) {
+      close(lock);
+      throw;
+    }
     close(lock);
-    require(!error, "{}: left by an interrupted teaching and cannot be removed: {}", folder.string(), error.message());
   }
-}
-
-/// Where the old store waits for a moment on a file system that cannot exchange folders.
-fs::path place_of_old(const fs::path& store) {
-  return store.parent_path() / ("." + store.filename().string() + ".before");
-}
-
-/// After a teaching that was interrupted in that moment.
-void bring_back_old(const fs::path& store) {
-  std::error_code error;
-  if (!fs::exists(place_of_old(store))) return;
-  if (fs::exists(store)) {
-    fs::remove_all(place_of_old(store), error);
-  } else {
-    fs::rename(place_of_old(store), store, error);
-  }
-  require(!error, "{}: left by an interrupted teaching and cannot be moved: {}", place_of_old(store).string(),
-          error.message());
 }
 
 void require_replaceable(const fs::path& store) {
   require(may_be_replaced(store),
           "{}: holds no store.json of an object store, expected one, or nothing yet: not replaced", store.string());
-}
-
-/// Both folders change places at once (Linux 3.15); false where the file system cannot.
-bool exchange(const fs::path& one, const fs::path& other) {
-  return syscall(SYS_renameat2, AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
+  require_exchangeable(store, is_store_entry);
 }
 
 }  // namespace
 
 void bring_back_store(const fs::path& store) {
   const fs::path place = place_of_store(store);
-  if (fs::exists(place) || !fs::exists(place_of_old(place))) return;
+  if (fs::exists(place) || !has_replaced(place)) return;
   const Turn turn(place.parent_path());
   remove_leftovers(place);
-  bring_back_old(place);
+  restore_replaced(place, is_store_entry);
 }
 
 void require_place_for_store(const fs::path& store) {
@@ -136,7 +117,7 @@ StoreBuild::StoreBuild(const fs::path& store) : store_(place_of_store(store)) {
   require(!error, "{}: cannot make this folder: {}", store_.parent_path().string(), error.message());
   const Turn turn(store_.parent_path());
   remove_leftovers(store_);
-  bring_back_old(store_);
+  restore_replaced(store_, is_store_entry);
   partial_ = store_.parent_path() / (partial_prefix(store_) + std::to_string(getpid()));
   fs::create_directory(partial_, error);
   require(!error, "{}: cannot make this folder: {}", partial_.string(), error.message());
@@ -146,25 +127,13 @@ StoreBuild::StoreBuild(const fs::path& store) : store_(place_of_store(store)) {
 
 StoreBuild::~StoreBuild() {
   std::error_code error;
-  fs::remove_all(partial_, error);  // after publish(), what the store was before
+  if (!is_published_) fs::remove_all(partial_, error);
   if (lock_ >= 0) close(lock_);
 }
 
 void StoreBuild::publish() {
-  std::error_code error;
-  if (!fs::exists(store_)) {
-    fs::rename(partial_, store_, error);
-    require(!error, "{}: cannot be put into its place: {}", store_.string(), error.message());
-    return;
-  }
-  if (exchange(partial_, store_)) return;
-  const fs::path old = place_of_old(store_);
-  fs::rename(store_, old, error);
-  require(!error, "{}: cannot be replaced: {}", store_.string(), error.message());
-  fs::rename(partial_, store_, error);
-  if (error) fs::rename(old, store_);
-  require(!error, "{}: cannot be put into its place: {}", store_.string(), error.message());
-  fs::remove_all(old, error);
+  exchange_folder(partial_, store_, is_store_entry);
+  is_published_ = true;
 }
 
 }  // namespace houghstream::store

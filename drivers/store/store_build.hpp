@@ -6,11 +6,12 @@ namespace houghstream::store {
 
 /// A store that is being made, in the folder `.STORE.partial-PID` beside STORE; STORE stays whole until publish(),
 /// which puts the new one into its place in one step. Where STORE is a symbolic link, all this is where it leads. What
-/// an interrupted teaching left is removed when the next begins. One at a time works on a store, of all processes.
+/// an interrupted teaching left is removed when the next begins. One at a time works on a store, of all processes. What
+/// lies in STORE and is no part of a store (is_store_entry()) is somebody's, and is there afterwards as it was before.
 class StoreBuild {
  public:
-  /// Throws InputError where STORE is a folder of something else or a link to nothing, another teaching works on it, or
-  /// the folder beside it cannot be made.
+  /// Throws InputError where STORE is a folder of something else or a link to nothing, another teaching works on it,
+  /// the folder beside it cannot be made, or somebody's folder in it could not be carried over.
   explicit StoreBuild(const std::filesystem::path& store);
   ~StoreBuild();  ///< removes what was not published
   StoreBuild(const StoreBuild&) = delete;
@@ -26,10 +27,12 @@ class StoreBuild {
   std::filesystem::path store_;
   std::filesystem::path partial_;
   int lock_ = -1;
+  bool is_published_ = false;
 };
 
 /// Throws InputError where no store could be put: a folder of something else, a link to nothing, a place that takes no
-/// files. Asked before the work whose result is to go there; makes nothing, whoever works on the store.
+/// files, one with somebody's folder that could not be carried over. Asked before the work whose result is to go there;
+/// makes nothing, whoever works on the store.
 void require_place_for_store(const std::filesystem::path& store);
 
 /// On a file system that cannot exchange folders, a teaching that is interrupted in the wrong moment leaves no STORE,

@@ -70,6 +70,15 @@ int open_locked(const fs::path& partial, const fs::path& file) {
   }
 }
 
+/// Of some network and FUSE file systems, and of some special files.
+bool knows_no_sync(int error) {
+  return error == EINVAL || error == ENOSYS || error == ENOTSUP || error == EROFS;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
 }  // namespace
 
 void require_regular_file(const fs::path& file, const char* expected) {
@@ -125,6 +134,15 @@ void require_writable_folder(const fs::path& folder) {
   require(takes_files, "{}: cannot be written: {}", folder.string(), std::strerror(errno));
 }
 
+void sync_to_disk(const fs::path& path) {
+  const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (opened < 0 && errno == EACCES) return;  // a folder that may be written and not read
+  const bool is_synced = opened >= 0 && (fsync(opened) == 0 || knows_no_sync(errno));
+  const int error = errno;
+  if (opened >= 0) close(opened);
+  require(is_synced, "{}: may not be on the disk: {}", path.string(), std::strerror(error));
+}
+
 WholeFile::WholeFile(const fs::path& file, const std::string& ending) : file_(followed(file)), partial_(file_) {
   std::error_code error;
   require(!fs::is_directory(file_, error), "{}: is a folder, expected a file to write", file_.string());
@@ -148,17 +166,26 @@ void WholeFile::release() {
 
 void WholeFile::publish() {
   if (lock_ < 0) return;
+  const bool has_replaced = put_into_place();
+  if (!has_replaced) sync_to_disk(file_);
+  sync_to_disk(folder_of(file_));
+}
+
+/// Returns whether FILE was there before; then the new one is on the disk, but for its name.
+bool WholeFile::put_into_place() {
   struct stat before {};
   // A library may have put another file into the place; what counts is what lies there.
   const int written = open(partial_.c_str(), O_RDONLY | O_CLOEXEC);
   require(written >= 0, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
+  const bool replaces = stat(file_.c_str(), &before) == 0;
   bool good = true;
-  if (stat(file_.c_str(), &before) == 0) good = fchmod(written, before.st_mode) == 0 && fsync(written) == 0;
+  if (replaces) good = fchmod(written, before.st_mode) == 0 && (fsync(written) == 0 || knows_no_sync(errno));
   good = good && std::rename(partial_.c_str(), file_.c_str()) == 0;
   const int error = errno;
   close(written);
   require(good, "{}: cannot be written: {}", file_.string(), std::strerror(error));
   release();
+  return replaces;
 }
 
 void WholeFile::keep() {
@@ -177,7 +204,7 @@ void write_whole_file(const fs::path& file, std::string_view bytes) {
   const int error = errno;
   good = (out < 0 || close(out) == 0) && good;
   require(good, "{}: cannot be written: {}", file.string(), std::strerror(error));
-  whole.publish();
+  if (whole.lock_ >= 0 && whole.put_into_place()) sync_to_disk(folder_of(whole.file_));
 }
 
 void check_json_nesting(std::string_view text, const std::string& source) {

@@ -35,6 +35,10 @@ void require_writable(const std::filesystem::path& file);
 /// The same for a folder, which may be missing with those above it. Makes none.
 void require_writable_folder(const std::filesystem::path& folder);
 
+/// Returns when what was written to the file, or the names in the folder, are on the disk, so that a power cut leaves
+/// them. Throws InputError where the disk fails; a file system that knows no such thing is taken as it is.
+void sync_to_disk(const std::filesystem::path& path);
+
 /// An output that is there as a whole or not at all: it is written as FILE.partial beside FILE and takes FILE's place
 /// in one step. Until then, and for good where it fails, FILE is what it was. A FILE.partial that a killed program left
 /// is removed by the next one that writes FILE. Where FILE is a device or a pipe, it is written as it is. Not
@@ -54,13 +58,18 @@ class WholeFile {
   /// Where to write: an empty file.
   const std::filesystem::path& partial() const { return partial_; }
 
-  /// What was written, and has been closed by who wrote it, becomes FILE. An older FILE goes only once the new one is
-  /// on the disk. Throws InputError; what was written can then still be kept.
+  /// What was written, and has been closed by who wrote it, becomes FILE, and is on the disk when this returns. An
+  /// older FILE goes only once the new one is on the disk. Where there is none, FILE has its name first: who is killed
+  /// while a slow disk takes a long recording leaves it whole. Throws InputError; what was written can then still be
+  /// kept.
   void publish();
   /// What was written stays as FILE.partial: what cannot be had again, like a recording on a full disk.
   void keep();
 
  private:
+  friend void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
+
+  bool put_into_place();
   void release();
 
   std::filesystem::path file_;     // with symbolic links followed
@@ -68,7 +77,9 @@ class WholeFile {
   int lock_ = -1;                  // the open file, locked; ends with the process, however that ends
 };
 
-/// Writes a whole file in this way. Throws InputError.
+/// Writes a whole file in this way. One that replaces nothing is not waited for: pictures are written by the thousand,
+/// and who puts them into a folder that replaces another one waits for all at once (folder_exchange.hpp). Throws
+/// InputError.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace houghstream

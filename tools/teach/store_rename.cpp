@@ -20,13 +20,19 @@ namespace fs = std::filesystem;
 using store::ObjectStore;
 using store::StoredObject;
 
-/// All but the list, which comes last: what has none is no store.
+/// The meshes, what is known of them, and the pictures of views. What else lies there is somebody's, which StoreBuild
+/// carries over.
 void copy_files(const ObjectStore& from, const fs::path& to) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(from.folder)) {
-    if (entry.path() == from.json_file() || entry.path() == from.forest_file()) continue;
+  for (const char* folder : {"models", "views"}) {
     std::error_code error;
-    fs::copy(entry.path(), to / entry.path().filename(), fs::copy_options::recursive, error);
-    require(!error, "{}: cannot be copied to {}: {}", entry.path().string(), to.string(), error.message());
+    fs::create_directory(to / folder, error);
+    for (fs::directory_iterator entry(from.folder / folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+      const fs::path name = fs::path(folder) / entry->path().filename();
+      if (store::is_store_entry(name)) fs::copy_file(entry->path(), to / name, error);
+      if (error) break;
+    }
+    require(!error, "{}: cannot be copied to {}: {}", (from.folder / folder).string(), to.string(), error.message());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "pipeline/base/cache_folder.hpp"
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/folder_exchange.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "tools/render/render_jobs.hpp"
 #include "tools/train/training_sources.hpp"
@@ -50,6 +51,7 @@ fs::path rendered_rooms(const RoomSettings& settings) {
   options.threads = settings.threads;
   options.replace = true;  // what an interrupted process of this number has left
   render::render_background(options, settings.count);
+  sync_folder_to_disk(partial);  // a power cut must not leave half of it for every later teaching
   fs::rename(partial, rooms, error);
   if (error) {  // another teaching was faster
     require(fs::exists(rooms / "scene_gt_info.json"), "{}: cannot be written: {}", rooms.string(), error.message());

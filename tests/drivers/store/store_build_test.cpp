@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <vector>
 
 #include "tests/drivers/store/small_store.hpp"
@@ -150,6 +152,146 @@ TEST(StoreBuild, WhoReadsBeforeItsChangesBringsTheOldOneBack) {
   fs::rename(folder, aside);
   expect_says(error_of([&] { bring_back_store(folder); }), {folder.string(), "another teaching"});
   EXPECT_TRUE(fs::exists(aside)) << "he puts his own there in a moment";
+}
+
+/// Somebody's own files in a store's folder: beside the store's, among them, in folders, and links.
+void put_foreign_files(const fs::path& store) {
+  fs::create_directories(store / "recordings" / "monday" / "empty");
+  write_text(store / "NOTES.txt", "the handle faces left");
+  write_text(store / "recordings" / "monday" / "take.lcmlog", "events");
+  write_text(store / "recordings" / "store.json", "of a recording");
+  write_text(store / "models" / "mug.blend", "source of the mesh");
+  write_text(store / ".hidden", "of a tool");
+  fs::create_symlink("recordings/monday/take.lcmlog", store / "newest");
+  fs::create_directory_symlink("/usr", store / "elsewhere");
+  ASSERT_EQ(mkfifo((store / "pipe").c_str(), 0600), 0);
+  chmod((store / "recordings").c_str(), 0750);
+}
+
+void expect_foreign_files(const fs::path& store) {
+  EXPECT_EQ(read_text(store / "NOTES.txt"), "the handle faces left");
+  EXPECT_EQ(read_text(store / "recordings" / "monday" / "take.lcmlog"), "events");
+  EXPECT_EQ(read_text(store / "recordings" / "store.json"), "of a recording");
+  EXPECT_EQ(read_text(store / "models" / "mug.blend"), "source of the mesh");
+  EXPECT_EQ(read_text(store / ".hidden"), "of a tool");
+  EXPECT_TRUE(fs::is_directory(store / "recordings" / "monday" / "empty"));
+  EXPECT_TRUE(fs::is_symlink(store / "newest"));
+  EXPECT_EQ(read_text(store / "newest"), "events") << "a relative link leads to where it led";
+  EXPECT_EQ(fs::read_symlink(store / "elsewhere"), "/usr");
+  EXPECT_TRUE(fs::is_fifo(store / "pipe"));
+  EXPECT_EQ(fs::status(store / "recordings").permissions(), fs::perms(0750));
+}
+
+TEST(StoreBuild, SomebodysFilesInAStoreStay) {
+  const fs::path folder = whole_store("store_foreign");
+  put_foreign_files(folder);
+  for (const char* second : {"bowl", "plate", "dish"}) {
+    exchange(folder, second);
+    EXPECT_EQ(read_store(folder).objects[1].name, second);
+    expect_foreign_files(folder);
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
+}
+
+TEST(StoreBuild, WhatIsWrittenIntoAStoreWhileANewOneIsMadeStays) {
+  const fs::path folder = whole_store("store_foreign_late");
+  fs::create_directories(folder / "recordings");
+  std::ofstream growing(folder / "recordings" / "take.partial");
+  StoreBuild build(folder);
+  fill_store(build.folder(), "bowl");
+  growing << "first " << std::flush;
+  write_text(folder / "recordings" / "second", "late");
+  build.publish();
+  growing << "last" << std::flush;
+  EXPECT_EQ(read_text(folder / "recordings" / "take.partial"), "first last") << "who writes it goes on";
+  EXPECT_EQ(read_text(folder / "recordings" / "second"), "late");
+}
+
+TEST(StoreBuild, PartsOfTheOldStoreDoNotStay) {
+  const fs::path folder = whole_store("store_own_parts");
+  write_text(folder / "models" / "obj_000009.ply", "of an object that was removed");
+  write_text(folder / "models" / "obj_000009.png", "its texture");
+  fs::create_directories(folder / "views");
+  write_text(folder / "views" / "obj_000009.png", "its views");
+  write_text(folder / "forest.partial", "of a killed writer");
+  exchange(folder, "bowl");
+  for (const char* file : {"models/obj_000009.ply", "models/obj_000009.png", "views/obj_000009.png", "forest.partial"})
+    EXPECT_FALSE(fs::exists(folder / file)) << file;
+}
+
+TEST(StoreBuild, SomebodysFilesInWhatAnInterruptedTeachingLeftComeBack) {
+  const fs::path folder = whole_store("store_foreign_left");
+  const fs::path left = folder.parent_path() / ".store.partial-99999999";
+  for (const fs::path& old : {left, folder.parent_path() / ".store.before"}) {
+    fs::create_directories(old);
+    fill_store(old, "bowl");
+    write_text(old / "NOTES.txt", "the handle faces left");
+    fs::create_directories(old / "recordings");
+    write_text(old / "recordings" / (old.filename().string() + ".lcmlog"), "events");
+  }
+  write_text(left / "forest.partial", "half");
+  { const StoreBuild build(folder); }
+  EXPECT_EQ(read_store(folder).objects[1].name, "brick");
+  EXPECT_EQ(read_text(folder / "NOTES.txt"), "the handle faces left");
+  EXPECT_EQ(read_text(folder / "recordings" / ".store.partial-99999999.lcmlog"), "events");
+  EXPECT_EQ(read_text(folder / "recordings" / ".store.before.lcmlog"), "events");
+  EXPECT_FALSE(fs::exists(folder / "forest.partial"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
+}
+
+/// What a StoreBuild says of a store with a folder that takes no files, to a user who is not root.
+std::string said_of_shut_folder() {
+  const fs::path folder = whole_store("store_foreign_shut");
+  fs::create_directories(folder / "recordings");
+  fs::permissions(folder / "recordings", fs::perms(0500));
+  const std::string said = error_of([&] { const StoreBuild build(folder); });
+  fs::permissions(folder / "recordings", fs::perms(0700));
+  const std::string later = error_of([&] { const StoreBuild build(folder); });
+  return said + "\n" + later;
+}
+
+TEST(StoreBuild, WhatCannotBeTakenAlongIsRefusedBeforeTheWork) {
+  constexpr uid_t kNobody = 65534;
+  fs::remove_all(fresh_folder("store_foreign_shut"));
+  int told[2];
+  ASSERT_EQ(pipe(told), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (geteuid() == 0 && setresuid(kNobody, kNobody, kNobody) != 0) _exit(2);  // root may do everything
+    const std::string said = said_of_shut_folder();
+    _exit(write(told[1], said.data(), said.size()) == static_cast<ssize_t>(said.size()) ? 0 : 3);
+  }
+  close(told[1]);
+  std::string said(4096, '\0');
+  said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(told[0], said.data(), said.size()))));
+  close(told[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  const std::size_t end = said.find('\n');
+  expect_says(said.substr(0, end), {"store/recordings", "Permission denied", "expected"});
+  EXPECT_EQ(said.substr(std::min(end, said.size())), "\n") << "and then it is not";
+}
+
+TEST(StoreBuild, WhoeverIsKilledAtAnyMomentLeavesSomebodysFiles) {
+  const fs::path folder = whole_store("store_foreign_killed");
+  put_foreign_files(folder);
+  for (int i = 0; i < 60; ++i) {
+    const std::string second = "thing_" + std::to_string(i);
+    const pid_t child = fork();
+    if (child == 0) {
+      exchange(folder, second);
+      _exit(0);
+    }
+    usleep(static_cast<useconds_t>(i * 60));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    expect_foreign_files(folder);
+    if (HasFailure()) return;
+  }
+  exchange(folder, "last");
+  expect_foreign_files(folder);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.parent_path()), {}), 1) << "nothing is left beside it";
 }
 
 /// The name of the second object; throws where any part of the store is missing or of another one.

@@ -51,14 +51,28 @@ std::vector<std::string> forest_names(const fs::path& store) {
   return names;
 }
 
+/// Somebody's own files in a store.
+void put_notes(const fs::path& store) {
+  write_text(store / "NOTES.txt", "the handle faces left");
+  fs::create_directories(store / "models" / "sources");
+  write_text(store / "models" / "sources" / "bracket.step", "of a CAD program");
+}
+
+void expect_notes(const fs::path& store, const std::string& after) {
+  EXPECT_EQ(read_text(store / "NOTES.txt"), "the handle faces left") << after;
+  EXPECT_EQ(read_text(store / "models" / "sources" / "bracket.step"), "of a CAD program") << after;
+}
+
 TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   const fs::path folder = folder_of_meshes("teach_whole");
   TeachOptions options = quick_options(folder, "bracket.ply");
   options.dump_views = folder / "views";
   fs::create_directory(options.out);  // in the place of another store
   store::fill_store(options.out, "brick");
+  put_notes(options.out);
   options.replace = true;
   teach_meshes(options);
+  expect_notes(options.out, "mesh --replace");
   const store::ObjectStore first = store::read_store(options.out);
   ASSERT_EQ(first.objects.size(), 1U);
   EXPECT_EQ(first.objects[0].name, "bracket");
@@ -77,6 +91,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   start_log("teach_tests", LogLevel::kInfo);
   testing::internal::CaptureStderr();
   teach_meshes(more);
+  expect_notes(options.out, "mesh --add");
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("'bracket' and 'grey' can hardly be told apart"), std::string::npos) << said;
   const store::ObjectStore both = store::read_store(options.out);
@@ -90,6 +105,7 @@ TEST(TeachJobs, ObjectsAreTaughtAddedAndRemoved) {
   EXPECT_EQ(error_of([&] { teach_meshes(more); }).find((folder / "grey.ply").string()), 0U) << "known already";
 
   remove_from_store(options.out, "bracket");
+  expect_notes(options.out, "remove");
   EXPECT_EQ(forest_names(options.out), std::vector<std::string>{"grey"});
   EXPECT_EQ(store::load_store_meshes(store::read_store(options.out)).count("grey"), 1U);
   EXPECT_NE(error_of([&] { remove_from_store(options.out, "bracket"); }), "");
@@ -128,7 +144,9 @@ TEST(TeachJobs, ARenamedObjectIsTheSame) {
   const store::ObjectStore before = store::read_store(options.out);
   const std::string forest = read_text(before.forest_file());
   const cv::Mat views = read_colour_image(before.view_picture(1));
+  put_notes(options.out);
   rename_in_store(options.out, "bracket", "shelf_support");
+  expect_notes(options.out, "rename");
   expect_named(options.out, "shelf_support");
   const store::ObjectStore after = store::read_store(options.out);
   EXPECT_EQ(after.objects[0].id, before.objects[0].id);
@@ -209,7 +227,9 @@ TEST(TeachJobs, PractisingAnewKeepsTheObjects) {
   const store::ObjectStore before = store::read_store(options.out);
   PracticeSettings other = options.practice;
   other.seed = 7;
+  put_notes(options.out);
   practise_store(options.out, other);
+  expect_notes(options.out, "practise");
   const store::ObjectStore after = store::read_store(options.out);
   ASSERT_EQ(after.objects.size(), 1U);
   EXPECT_EQ(after.objects[0].name, "bracket");

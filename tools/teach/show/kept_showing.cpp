@@ -9,12 +9,15 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
+#include <string>
 
 #include "drivers/datasets/bop_writer.hpp"
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/folder_exchange.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 #include "tools/fuse/model_picture.hpp"
 #include "tools/teach/contact_sheet.hpp"
@@ -157,6 +160,20 @@ fs::path kept_folder(const fs::path& folder) {
   return fs::absolute(folder / "").lexically_normal().parent_path();
 }
 
+/// Returns whether the path, relative to a kept folder, is one that a showing writes. All else is somebody's.
+bool is_kept_entry(const fs::path& relative) {
+  static const std::set<std::string> names = {"model.ply",   "model.png",    "views",    "contact_sheet.jpg",
+                                              "chosen.png",  "chosen_2.png", "outlines", "camera_poses.csv",
+                                              "report.json", "report.html"};
+  const std::string first = relative.begin()->string();
+  if (names.count(first) == 0) return false;
+  const auto second = std::next(relative.begin());
+  if (second == relative.end()) return true;
+  if (first == "outlines")
+    return second->extension() == ".png" && second->string().find_first_not_of("0123456789.png") == std::string::npos;
+  return *second == "000001" || *second == "models";
+}
+
 void write_page(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
   std::ofstream out(folder / "report.html");
   out << fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
@@ -185,6 +202,7 @@ void require_keepable(const fs::path& folder) {
   require(!fs::exists(whole) || (fs::is_directory(whole) && (fs::is_empty(whole) || is_earlier)),
           "{}: holds something else, expected a new folder or one of an earlier showing", folder.string());
   require_writable_folder(whole.parent_path());
+  require_exchangeable(whole, is_kept_entry);
 }
 
 void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
@@ -200,10 +218,8 @@ void keep_shown(const Shown& shown, const Verdict& verdict, const fs::path& fold
     write_poses(shown, partial / "camera_poses.csv");
     write_json(report_json(shown, verdict), partial / "report.json");
     write_page(shown, verdict, partial);
-    const fs::path before = whole.parent_path() / fmt::format(".{}.before-{}", whole.filename().string(), getpid());
-    if (fs::exists(whole)) fs::rename(whole, before);
-    fs::rename(partial, whole);
-    fs::remove_all(before);
+    restore_replaced(whole, is_kept_entry);
+    exchange_folder(partial, whole, is_kept_entry);
   } catch (const std::exception& error) {
     std::error_code ignored;
     fs::remove_all(partial, ignored);

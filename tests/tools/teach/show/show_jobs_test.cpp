@@ -67,10 +67,15 @@ TEST(ShowJobs, NamesAQuarterTurnPoorAndKeepsItsReport) {
   EXPECT_NE(text.find("too short"), std::string::npos);
   options.go_on = true;
   options.keep = folder / "";  // as a shell completes it
-  std::ofstream(folder / "earlier.txt") << "goes with the folder";
+  std::ofstream(folder / "NOTES.txt") << "of somebody";
+  std::ofstream(folder / "views" / "000001" / "earlier.png") << "of the earlier showing";
+  fs::create_directories(folder / "views" / "000002");
+  std::ofstream(folder / "views" / "000002" / "own.png") << "of somebody";
+  std::ofstream(folder / "chosen_2.png") << "of the earlier showing";
   EXPECT_EQ(show_object(options, take_of(40, 90.0), {}, nullptr), 0);
   EXPECT_TRUE(fs::exists(folder / "report.json")) << "replaced";
-  EXPECT_FALSE(fs::exists(folder / "earlier.txt"));
+  for (const char* file : {"NOTES.txt", "views/000002/own.png"}) EXPECT_TRUE(fs::exists(folder / file)) << file;
+  for (const char* file : {"chosen_2.png", "views/000001/earlier.png"}) EXPECT_FALSE(fs::exists(folder / file)) << file;
   fs::remove_all(folder);
 }
 
