@@ -28,6 +28,7 @@ struct TrackModel {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();       ///< of the bounding box, object frame, metres
   double radius_m = 0.0;                                  ///< of the sphere about it that holds the mesh
   Eigen::Vector3d vote_centre = Eigen::Vector3d::Zero();  ///< where its detections' centres are, object frame, metres
+  int object_id = 0;                                      ///< of the object in its store, from 1; 0: it has no store
 };
 using TrackModels = std::map<std::string, TrackModel>;
 

@@ -8,6 +8,7 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/log_odds.hpp"
+#include "pose/tracks/class_names.hpp"
 #include "pose/tracks/looked_for.hpp"
 #include "pose/tracks/world_clock.hpp"
 
@@ -19,14 +20,18 @@ struct Tracker::State {
   std::vector<Track> tracks;  // by when they were begun; numbers follow in the order of confirmation
   WorldClock clock;
   LookedFor looked_for;
+  ClassNames names;
   std::map<std::string, int> most_together;  // by class: instances that were seen in one frame
   std::int64_t next_id = 1;
   int world_number = 1;
   std::size_t refused = 0;  // poses of the last frame, for which there was no room
 
   void begin_world();
+  void rename_tracks(const std::map<std::string, std::string>& renamed);
+  void drop_doubles(std::size_t renamed_index);
+  void retire_tracks(const std::set<std::string>& removed);
+  WorldObjects update(const FrameSeen& seen, CameraClock& camera);
   CameraClock* begin_frame(const FrameSeen& seen);
-  WorldObjects note(const FrameSeen& seen, CameraClock& camera);
   std::vector<SeenPose> new_poses(const FrameSeen& seen, CameraClock& camera) const;
   std::vector<SeenPose> associate(const std::vector<SeenPose>& poses, const std::string& class_name, double seconds);
   void take(Track& track, const SeenPose& pose, double seconds);
@@ -47,7 +52,62 @@ Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;
 
 void Tracker::set_models(TrackModels models) {
+  const ModelChange change = find_model_change(state_->models, models);
   state_->models = std::move(models);
+  state_->names.update(change, state_->models);
+  state_->retire_tracks(change.removed);
+  state_->rename_tracks(change.renamed);
+}
+
+void Tracker::State::retire_tracks(const std::set<std::string>& removed) {
+  const auto is_removed = [&](const Track& track) { return removed.count(track.class_name) > 0; };
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
+                              [&](const Track& track) { return track.id == 0 && is_removed(track); }),
+               tracks.end());
+  for (Track& track : tracks) {
+    if (!track.there() || !is_removed(track)) continue;
+    track.gone_utime = track.pose.filter().utime();
+    track.log_odds = std::min(track.log_odds, settings.existence.gone);
+    track.state = TrackState::kGone;
+    track.reason = "its class has left the object store";
+    log_info("{} #{} is gone: {}", track.class_name, track.id, track.reason);
+  }
+}
+
+void Tracker::State::rename_tracks(const std::map<std::string, std::string>& renamed) {
+  std::vector<std::size_t> changed;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    Track& track = tracks[i];
+    const auto found = renamed.find(track.class_name);
+    if (found == renamed.end()) continue;
+    if (track.id != 0 && track.there()) log_info("{} #{} is called {} now", track.class_name, track.id, found->second);
+    track.class_name = found->second;
+    changed.push_back(i);
+  }
+  for (const std::size_t i : changed) drop_doubles(i);
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), [](const Track& track) { return track.id < 0; }),
+               tracks.end());
+  std::map<std::string, int> counts;
+  for (const auto& [name, count] : most_together) {
+    const auto found = renamed.find(name);
+    int& most = counts[found == renamed.end() ? name : found->second];
+    most = std::max(most, count);
+  }
+  most_together = std::move(counts);
+}
+
+/// Marks what was begun in the place of a renamed object while only its new name came, for being forgotten.
+void Tracker::State::drop_doubles(std::size_t renamed_index) {
+  const Track& kept = tracks[renamed_index];
+  if (kept.id <= 0 || !kept.there()) return;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    Track& other = tracks[i];
+    if (i == renamed_index || other.class_name != kept.class_name || (other.id > 0 && other.id < kept.id)) continue;
+    const double apart_m =
+        kept.pose.distance({kept.pose.filter().utime(), other.pose.filter().T_world_object(), Covariance6::Identity()},
+                           symmetries_of(models, kept.class_name), centre_of(models, kept.class_name));
+    if (apart_m < 0.5 * radius_of(models, kept.class_name)) other.id = -1;
+  }
 }
 
 void Tracker::begin_world() {
@@ -64,11 +124,15 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   CameraClock* camera = state.begin_frame(seen);
   if (camera == nullptr) return std::nullopt;
   const std::int64_t ahead_us = state.clock.ahead_us();
-  if (ahead_us == 0) return state.note(seen, *camera);
-  ObjectPoses poses = seen.poses;
-  poses.frame.utime = camera->utime;
-  WorldObjects world = state.note({poses, seen.detections, seen.T_world_camera, seen.image}, *camera);
+  const std::int64_t utime = ahead_us == 0 ? seen.poses.frame.utime : camera->utime;
+  for (Track& track : state.tracks) track.pose.predict(utime);
+  ObjectPoses poses = state.names.resolve(seen, state.models, state.tracks, state.settings.pose.same_rotation_rad);
+  poses.frame.utime = utime;
+  const Detections detections = seen.detections != nullptr ? state.names.resolve(*seen.detections) : Detections();
+  WorldObjects world = state.update(
+      {poses, seen.detections != nullptr ? &detections : nullptr, seen.T_world_camera, seen.image}, *camera);
   world.frame = seen.poses.frame;
+  if (ahead_us == 0) return world;
   for (TrackedObject& object : world.objects) {
     object.first_utime = microseconds_between(ahead_us, object.first_utime);
     object.last_seen.utime = microseconds_between(ahead_us, object.last_seen.utime);
@@ -76,14 +140,11 @@ std::optional<WorldObjects> Tracker::update(const FrameSeen& seen) {
   return world;
 }
 
-/// The world after a frame, whose time is on the world's clock.
-WorldObjects Tracker::State::note(const FrameSeen& seen, CameraClock& camera) {
+/// The world after a frame whose time is on the world's clock, and whose classes are called as they are today.
+WorldObjects Tracker::State::update(const FrameSeen& seen, CameraClock& camera) {
   const FrameId& frame = seen.poses.frame;
   const std::vector<SeenPose> poses = new_poses(seen, camera);
-  for (Track& track : tracks) {
-    track.pose.predict(frame.utime);
-    track.seen_now = track.last_seen == frame;  // by another result of the same frame
-  }
+  for (Track& track : tracks) track.seen_now = track.last_seen == frame;  // by another result of the same frame
   std::set<std::string> classes;
   for (const SeenPose& pose : poses) classes.insert(pose.class_name);
   std::vector<SeenPose> unknown;

@@ -44,7 +44,8 @@ class Tracker {
   /// Forgets all objects: they were in another coordinate frame.
   void begin_world();
 
-  /// Other models from here on; the objects stay.
+  /// Other models from here on. Objects of a class that is renamed (find_model_change()) keep their number and pose
+  /// under the new name, objects of a class that is removed are gone, all others stay.
   void set_models(TrackModels models);
 
  private:

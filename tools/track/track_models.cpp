@@ -17,7 +17,11 @@ tracks::TrackModels stored_track_models(const store::ObjectStore& store) {
   std::map<std::string, Symmetries> symmetries;
   for (const store::StoredObject& object : store.objects) symmetries[object.name] = store.symmetries.at(object.id);
   tracks::TrackModels models = tracks::make_track_models(store::load_store_meshes(store), symmetries);
-  for (const auto& [name, centre] : store.vote_centres()) models.at(name).vote_centre = centre.cast<double>();
+  for (const store::StoredObject& object : store.objects) {
+    tracks::TrackModel& model = models.at(object.name);
+    model.vote_centre = object.vote_centre.cast<double>();
+    model.object_id = object.id;
+  }
   return models;
 }
 

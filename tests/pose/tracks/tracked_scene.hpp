@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -83,6 +85,7 @@ class TrackedScene {
   Eigen::Isometry3d T_world_camera = camera_in_front();
   Camera camera = kSmall;
   std::string channel = "CAMERA";
+  std::map<std::string, int> class_ids = {{"can", 1}};  ///< of other classes it is 2
   double noise_m = 0.0;
   double quality = 0.9;
   std::int64_t utime = 1000000000;
@@ -120,7 +123,7 @@ class TrackedScene {
     poses_.frame = {channel, utime};
     for (const auto& [name, T_world_object] : posed) {
       ObjectPose pose;
-      pose.class_id = name == "can" ? 1 : 2;
+      pose.class_id = class_ids.count(name) > 0 ? class_ids.at(name) : 2;
       pose.class_name = name;
       pose.status = PoseStatus::kValid;
       pose.quality = static_cast<float>(quality);

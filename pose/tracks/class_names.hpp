@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "pose/tracks/track.hpp"
+
+namespace houghstream::tracks {
+
+/// Difference between two states of an object store, as a tracker sees it.
+struct ModelChange {
+  std::map<std::string, std::string> renamed;  ///< new name by the former one
+  std::set<std::string> removed;               ///< names of classes that have no successor
+};
+
+/// Compares the models before and after a change. A class is renamed where the object of its number in the store has
+/// the same mesh under another name; one without a number is never renamed, only removed.
+ModelChange find_model_change(const TrackModels& before, const TrackModels& after);
+
+/// Names of classes across changes of the object store. Detector and pose estimator take a change over a moment before
+/// or after the tracker does, so that results still name a class as it was called, or already as it will be. Not
+/// thread-safe.
+class ClassNames {
+ public:
+  /// Notes a change that has led to these models.
+  void update(const ModelChange& change, const TrackModels& models);
+
+  /// Returns the poses by the names of today, without those of classes that have left the store. A valid pose of a name
+  /// that the store does not hold, which is where an object with the same number in the store stands, is of that
+  /// object: its new name is about to be taken over.
+  ObjectPoses resolve(const FrameSeen& seen, const TrackModels& models, const std::vector<Track>& tracks,
+                      double same_rotation_rad) const;
+
+  /// Returns the detections by the names of today.
+  Detections resolve(const Detections& detections) const;
+
+ private:
+  std::map<std::string, std::string> renamed_;  // today's names by former ones
+  std::set<std::string> removed_;
+};
+
+}  // namespace houghstream::tracks
