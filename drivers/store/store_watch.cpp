@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "drivers/store/store_state.hpp"
@@ -18,6 +19,11 @@ namespace houghstream::store {
 namespace {
 
 namespace fs = std::filesystem;
+
+// In periods of looking.
+constexpr int kFirstRetry = 5;
+constexpr int kLastRetry = 300;
+constexpr int kReportMissing = 50;
 
 /// Differs whenever a file that is loaded has been written or exchanged, without reading any.
 std::string state_of_store(const ObjectStore& store) {
@@ -53,14 +59,30 @@ std::string changed(const char* what, const std::vector<KnownObject>& objects, c
   return names.empty() ? "" : fmt::format("; {} {}", what, fmt::join(names, ", "));
 }
 
+fs::path folder_above(const fs::path& folder) {
+  return fs::absolute(folder / "").lexically_normal().parent_path().parent_path();
+}
+
+/// What else may have been meant by the folder, in words.
+std::string describe_neighbours(const fs::path& folder) {
+  constexpr std::size_t kMost = 5;
+  const fs::path above = folder_above(folder);
+  std::vector<std::string> names = find_stores(above);
+  if (names.empty()) return fmt::format("no object store lies in {}", above.string());
+  if (names.size() > kMost) {
+    names.resize(kMost);
+    names.emplace_back("others");
+  }
+  return fmt::format("in {} lies {}", above.string(), fmt::join(names, ", "));
+}
+
 }  // namespace
 
 StoreFollower::StoreFollower(fs::path folder, Load load) : folder_(std::move(folder)), load_(std::move(load)) {
   known_.store = folder_.string();
   taken_ = state_of_store(folder_);  // what changes while it is read is noticed when it is followed
   if (!fs::exists(folder_)) {
-    const fs::path beside = fs::absolute(folder_ / "").lexically_normal().parent_path().parent_path();
-    require(fs::is_directory(beside),
+    require(fs::is_directory(folder_above(folder_)),
             "{}: no such folder, expected an object store of hs-teach, or where it can make one", folder_.string());
     refused_ = std::exchange(taken_, "");
     set_problem(fmt::format("{}: not there yet, nothing is known until hs-teach makes it", folder_.string()));
@@ -107,7 +129,11 @@ void StoreFollower::live(std::chrono::milliseconds period) {
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, period, [this] { return ending_; })) {
     lock.unlock();
-    look();
+    try {
+      look();
+    } catch (const std::bad_alloc&) {
+      pending_.clear();  // it is looked at again
+    }
     lock.lock();
   }
 }
@@ -119,13 +145,22 @@ void StoreFollower::look() {
   const std::string state = state_of_store(folder_);
   const bool lasts = state == pending_;
   pending_ = state;
+  report_missing_store();
   if (state == taken_) return set_problem("");
-  if (!lasts || state == refused_) return;
+  if (!lasts || (state == refused_ && (looks_until_retry_ == 0 || ++looks_since_refusal_ < looks_until_retry_))) return;
   load(state);
 }
 
+/// Once, where nothing has ever been there: the name may be a wrong one.
+void StoreFollower::report_missing_store() {
+  std::error_code error;
+  if (current() != nullptr || looks_without_folder_ > kReportMissing || fs::exists(folder_, error)) return;
+  if (++looks_without_folder_ <= kReportMissing) return;
+  set_problem(fmt::format("{}: still not there, nothing is known until hs-teach makes it; {}", folder_.string(),
+                          describe_neighbours(folder_)));
+}
+
 void StoreFollower::load(const std::string& state) {
-  std::string problem;
   try {
     const ObjectStore store = read_store(folder_);
     std::shared_ptr<const void> loaded = load_(store);
@@ -134,11 +169,21 @@ void StoreFollower::load(const std::string& state) {
     taken_ = state;
   } catch (const WorkGivenUp&) {
     return;
+  } catch (const std::bad_alloc&) {
+    refuse(state, fmt::format("{}: not enough memory to load it, expected more soon", folder_.string()));
+    return;
   } catch (const std::exception& error) {
-    if (state_of_store(folder_) != state) return;
-    problem = error.what();
-    refused_ = state;
+    if (state_of_store(folder_) == state) refuse(state, error.what());
+    return;
   }
+  set_problem("");
+}
+
+/// A state that stays the same is loaded again only after a while.
+void StoreFollower::refuse(const std::string& state, const std::string& problem) {
+  looks_until_retry_ = state == refused_ ? std::min(2 * looks_until_retry_, kLastRetry) : kFirstRetry;
+  looks_since_refusal_ = 0;
+  refused_ = state;
   set_problem(problem);
 }
 

@@ -17,14 +17,16 @@ namespace houghstream::store {
 
 /// Follows an object store that changes while a program runs: what the program needs of it is loaded in a thread of low
 /// priority, and is there as a whole once it is. A store that is torn or bad leaves what was there before; one line of
-/// the log says why, and known(). Every function may be called from any thread.
+/// the log says why, and known(). It is tried again after five periods, then after twice as many each time, up to 300:
+/// what was missing may have been memory or file descriptors. Every function may be called from any thread.
 class StoreFollower {
  public:
   using Load = std::function<std::shared_ptr<const void>(const ObjectStore&)>;
 
   /// Loads the store at once. `load` throws where its parts are bad; it may be called again later, from another thread.
   /// Where there is no folder of this name yet, but one that it could be made in, nothing is known so far, and the log
-  /// says so. Throws InputError as read_store() and `load` do.
+  /// says so, and 50 periods later once more, with the stores that lie beside it. Throws InputError as read_store() and
+  /// `load` do.
   StoreFollower(std::filesystem::path folder, Load load);
   ~StoreFollower();  ///< waits for a load that is under way
   StoreFollower(const StoreFollower&) = delete;
@@ -46,6 +48,8 @@ class StoreFollower {
   void live(std::chrono::milliseconds period);
   void look();
   void load(const std::string& state);
+  void refuse(const std::string& state, const std::string& problem);
+  void report_missing_store();
   void take_over(const ObjectStore& store, std::shared_ptr<const void> loaded);
   void set_problem(const std::string& problem);
 
@@ -53,6 +57,9 @@ class StoreFollower {
   Load load_;
   std::string taken_;                                 // the files' state when they were loaded
   std::string refused_;                               // or when they could not be
+  int looks_since_refusal_ = 0;                       // of the same state
+  int looks_until_retry_ = 0;                         // after the refusal
+  int looks_without_folder_ = 0;                      // since the start, while nothing is known
   std::string pending_;                               // seen last: one that may not last
   std::vector<std::shared_ptr<const void>> retired_;  // given up here, where their end keeps no frame waiting
   mutable std::mutex mutex_;

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <houghstream/status_t.hpp>
+#include <new>
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/parallel.hpp"
@@ -37,6 +38,13 @@ std::vector<std::string> names_of(const KnownObjects& known) {
   std::vector<std::string> names;
   for (const KnownObject& object : known.objects) names.push_back(object.name);
   return names;
+}
+
+/// How often the words stand in the text.
+int count_of(const std::string& text, const std::string& words) {
+  int count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++count;
+  return count;
 }
 
 TEST(StoreWatch, WhatIsAddedRenamedAndRemovedIsThere) {
@@ -133,14 +141,9 @@ TEST(StoreWatch, ABadOneKeepsTheOldAndIsSaidOnce) {
     EXPECT_TRUE(comes_true([&] { return watch.known().problem.empty(); }));
   }
   const std::string said = testing::internal::GetCapturedStderr();
-  const auto lines_with = [&](const std::string& words) {
-    int count = 0;
-    for (std::size_t at = said.find(words); at != std::string::npos; at = said.find(words, at + 1)) ++count;
-    return count;
-  };
-  EXPECT_EQ(lines_with("what was known stays"), 3) << said;
-  EXPECT_EQ(lines_with("obj_000005.ply"), 1) << said;
-  EXPECT_EQ(lines_with("2 objects from here on; new: bowl; gone: brick"), 1) << said;
+  EXPECT_EQ(count_of(said, "what was known stays"), 3) << said;
+  EXPECT_EQ(count_of(said, "obj_000005.ply"), 1) << said;
+  EXPECT_EQ(count_of(said, "2 objects from here on; new: bowl; gone: brick"), 1) << said;
 }
 
 TEST(StoreWatch, OneThatIsNotThereYetIsAwaited) {
@@ -156,6 +159,55 @@ TEST(StoreWatch, OneThatIsNotThereYetIsAwaited) {
   ASSERT_TRUE(comes_true([&] { return watch.known().problem.empty(); }));
   EXPECT_EQ(names_of(watch.known()), (std::vector<std::string>{"mug", "bowl"}));
   EXPECT_NE(error_of([&] { const Second none(folder / "no" / "such", load_second); }), "") << "nor could it be made";
+}
+
+TEST(StoreWatch, WhatCannotBeLoadedForAMomentIsTriedAgain) {
+  const fs::path folder = whole_store("watch_transient");
+  start_log("drivers_tests", LogLevel::kInfo);
+  testing::internal::CaptureStderr();
+  {
+    std::atomic<int> failures{0};
+    Second watch(folder, [&](const ObjectStore& store) {
+      if (store.objects.at(1).name == "bowl" && failures++ < 3) {
+        if (failures == 1) throw std::bad_alloc();
+        fail("{}: Too many open files", store.forest_file().string());
+      }
+      return load_second(store);
+    });
+    watch.follow(kPeriod);
+    exchange(folder, "bowl");
+    ASSERT_TRUE(comes_true([&] { return failures >= 3; }));
+    EXPECT_EQ(*watch.current(), "brick");
+    EXPECT_TRUE(comes_true([&] { return *watch.current() == "bowl"; })) << "nothing has changed but the memory";
+    EXPECT_TRUE(comes_true([&] { return watch.known().problem.empty(); }));
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(count_of(said, "not enough memory"), 1) << said;
+  EXPECT_EQ(count_of(said, "Too many open files"), 1) << "the second time is not said: " << said;
+}
+
+TEST(StoreWatch, OneThatIsMissingIsSaidToBeMissingOnceMoreWithWhatLiesNear) {
+  const fs::path folder = whole_store("watch_near");
+  fs::rename(folder, folder.parent_path() / "my_store");
+  fs::copy(folder.parent_path() / "my_store", folder.parent_path() / "old.store", fs::copy_options::recursive);
+  fs::create_directories(folder.parent_path() / "recordings");
+  fs::create_directories(folder.parent_path() / ".my_store.partial-1");
+  write_text(folder.parent_path() / "store.json", "{}");
+  start_log("drivers_tests", LogLevel::kInfo);
+  testing::internal::CaptureStderr();
+  {
+    Second watch(folder, load_second);
+    watch.follow(milliseconds(1));
+    EXPECT_TRUE(comes_true([&] { return watch.known().problem.find("my_store, old.store") != std::string::npos; }));
+    std::this_thread::sleep_for(milliseconds(100));
+    fs::rename(folder.parent_path() / "my_store", folder);
+    EXPECT_TRUE(comes_true([&] { return watch.current() != nullptr; }));
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(count_of(said, "not there yet"), 1) << said;
+  EXPECT_EQ(count_of(said, "still not there"), 1) << said;
+  EXPECT_NE(said.find("in " + folder.parent_path().string() + " lies my_store, old.store\n"), std::string::npos)
+      << said;
 }
 
 TEST(StoreWatch, OfTwoStoresAtOnceNothingIsTaken) {
