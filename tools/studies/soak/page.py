@@ -8,8 +8,8 @@ from studies.measured import about, commit_name, read_json_if_any, write_atomica
 
 PARTS = ("faults", "long")
 COUNTS = ("received", "processed", "skipped", "passed_over", "lost", "missing", "refused")
-COSTS = ("cores", "memory_mb", "growth_most", "growth_end", "descriptors", "threads")
-SHARES = ("passed_over", "growth_most", "growth_end")
+COSTS = ("cores", "memory_mb", "growth_per_hour", "growth_surely", "rise", "swing", "descriptors", "threads")
+SHARES = ("passed_over", "growth_per_hour", "growth_surely", "rise", "swing")
 NOT_TOLD = ("good", "load", "reported", "back_after_s", "about")
 
 
@@ -76,7 +76,7 @@ def fault_lines(faults):
 
 
 def cell(one, key):
-    if key not in one:
+    if one.get(key) is None:
         return "–"
     return f"{one[key]:.2%}" if key in SHARES else words_of(one[key])
 
@@ -92,7 +92,8 @@ def long_lines(rate, seen):
     for result, latency in seen["latency_ms"].items():
         yield f"From a frame to its {result}: p50 {latency['p50']} ms, p99 {latency['p99']} ms of {latency['frames']}."
     yield from ("", "| process | received | processed | passed over | share | lost | missing | refused "
-                "| cores | memory at minute 2, MB | above it at most | in the end | descriptors | threads |", "|" + "---|" * 14)  # fmt: skip
+                "| cores | memory at minute 2, MB | it grows an hour by | surely by | has risen by | swings by | descriptors | threads |",
+                "|" + "---|" * 16)  # fmt: skip
     for name, one in seen["processes"].items():
         yield f"| hs-{name} | " + " | ".join(cell(one, key) for key in (*COUNTS, *COSTS)) + " |"
     for title, key in (("What is wrong:", "wrong"), ("What was reported:", "reported")):
@@ -107,7 +108,8 @@ def page(summary):
     if summary["long"]:
         lines += [*([""] if lines else []), "# Long runs", "",
                   "Lost: frames that never came, by their numbers. Missing: what the process before it sent and it did not get. "
-                  "Memory: the median of each minute, beside that of minute 2."]  # fmt: skip
+                  "Memory: the slope of the minutes' medians from minute 2 on (Theil and Sen), what it exceeds with 99 %, the rise from "
+                  "all of the first quarter to all of the last, and from the least to the most."]  # fmt: skip
     for rate, seen in summary["long"].items():
         lines += long_lines(rate, seen)
     return "\n".join(lines) + "\n"
