@@ -45,7 +45,7 @@ std::shared_ptr<const ClassModels> load_models(const ShowSettings& settings) {
 FrameShow::FrameShow(const ShowSettings& settings, const std::string& lcm_url)
     : window_(settings.headless() ? nullptr : std::make_unique<ViewWindow>()),
       models_(load_models(settings)),
-      page_(settings.http.empty() ? nullptr : std::make_unique<LivePage>(settings.http)),
+      page_(settings.http.empty() ? nullptr : std::make_unique<LivePage>(settings.http, settings.http_hosts)),
       page_alone_(page_ && !settings.writes()),
       outputs_(settings.outputs),
       camera_(settings.camera),
@@ -105,8 +105,12 @@ void FrameShow::serve_page(BusWatcher& watcher) {
   picture_settings_.min_score = orders.min_score.value_or(picture_settings_.min_score);
   if (orders.empty() && !page_->is_due()) return;
   look_at_stream(watcher);
-  if (orders.min_score && viewed_) page_->show({*viewed_, *models(), picture_settings_, stream_});
-  page_->catch_up(viewed_, *models(), picture_settings_, stream_);
+  try {
+    if (orders.min_score && viewed_) page_->show({*viewed_, *models(), picture_settings_, stream_});
+    page_->catch_up(viewed_, *models(), picture_settings_, stream_);
+  } catch (const std::exception& error) {  // OpenCV's too: no frame may end the program
+    watcher.note_trouble(error.what());
+  }
 }
 
 std::shared_ptr<const ClassModels> FrameShow::models() const {

@@ -21,8 +21,9 @@ struct ShowSettings {
   double model_unit_m = 1e-3;    ///< unit of the models' coordinates
   std::string objects;           ///< object store with the models, instead; followed while it changes; "" = none
   FrameViewSettings picture;
-  bool preview = false;  ///< send each picture on the preview channel
-  std::string http;      ///< where to serve a page for browsers, [ADDRESS:]PORT; "" = nowhere
+  bool preview = false;                 ///< send each picture on the preview channel
+  std::string http;                     ///< where to serve a page for browsers, [ADDRESS:]PORT; "" = nowhere
+  std::vector<std::string> http_hosts;  ///< names, beside its own, that the page answers to
   OutputSettings outputs;
 
   /// Files or the preview are asked for.

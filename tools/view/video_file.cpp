@@ -26,6 +26,18 @@ bool is_video_name(const std::filesystem::path& file) {
   return ending == ".mp4" || ending == ".m4v" || ending == ".mov" || ending == ".mkv" || ending == ".avi";
 }
 
+// H.264 wants even sides, and its encoders refuse very long ones. The first picture may be of a single row or column of
+// pixels; those after it must be legible all the same.
+cv::Size video_size(const cv::Size& picture) {
+  constexpr int kMaxSide = 8192;  // pixels
+  constexpr int kMaxAspect = 8;
+  const int longer = std::max(picture.width, picture.height);
+  const double scale = std::min(1.0, 1.0 * kMaxSide / longer);
+  const int shortest = static_cast<int>(scale * longer) / kMaxAspect;
+  const auto side = [&](int side_px) { return std::max({static_cast<int>(scale * side_px), shortest, 2}) / 2 * 2; };
+  return {side(picture.width), side(picture.height)};
+}
+
 }  // namespace
 
 VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::move(file)), rate_hz_(rate_hz) {
@@ -36,7 +48,7 @@ VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::mo
 void VideoFile::open(const cv::Mat& picture) {
   whole_.emplace(file_, ".partial" + file_.extension().string());
   const int codec = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
-  size_ = {std::max(picture.cols / 2 * 2, 2), std::max(picture.rows / 2 * 2, 2)};
+  size_ = video_size(picture.size());
   const bool opened = writer_.open(whole_->partial().string(), cv::CAP_FFMPEG, codec, rate_hz_, size_);
   require(opened, "{}: cannot be written as H.264 video (OpenCV without FFmpeg, or FFmpeg without H.264)",
           file_.string());

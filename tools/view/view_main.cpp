@@ -1,4 +1,7 @@
+#include <fmt/ranges.h>
+
 #include "drivers/files/camera_info.hpp"
+#include "pipeline/base/checks.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/view/viewer.hpp"
 
@@ -22,6 +25,10 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
                "send pictures as JPEG below 100 kB on HOUGHSTREAM_PREVIEW, for lcm-spy and others with small buffers");
   app.add_option("--http", show.http,
                  "serve a page for browsers at [ADDRESS:]PORT; without an address for this machine only");
+  app.add_option(
+      "--http-host", show.http_hosts,
+      "a name by which the page may be asked for, beside this machine's own name and addresses: of a proxy, or "
+      "in somebody's DNS; may be given again");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
       .capture_default_str()
       .range(0.1, 100.0);
@@ -53,6 +60,9 @@ int main(int argc, char** argv) {
   app.add_example("hs-view --objects my.store");
   app.add_example("hs-view --models out/demo/data/training/models --snapshot seen.png --after 30");
   return houghstream::run_tool(app, argc, argv, [&] {
+    houghstream::require(settings.show.http_hosts.empty() || !settings.show.http.empty(),
+                         "--http-host {}: no page is served, expected --http too",
+                         fmt::join(settings.show.http_hosts, ", "));
     if (!camera.empty()) settings.show.camera = houghstream::camera_of_option(camera);
     houghstream::view::run_viewer(settings);
   });

@@ -6,9 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <opencv2/highgui.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "pipeline/base/checks.hpp"
@@ -20,6 +22,8 @@ namespace houghstream::view {
 namespace {
 
 const std::string kTitle = "Houghstream";
+// Pixels. X11 ends a program whose window is to have more than 32767.
+constexpr int kMaxSide = 16'384;
 
 bool is_set(const char* variable) {
   const char* value = std::getenv(variable);
@@ -60,16 +64,23 @@ ViewWindow::ViewWindow() {
 
 void ViewWindow::on_mouse(int event, int x, int y, int /*flags*/, void* window) {
   auto& self = *static_cast<ViewWindow*>(window);
-  if (event == cv::EVENT_LBUTTONDOWN) self.pressed_ = cv::Point(x, y);
+  const cv::Point place(cvRound(x / self.scale_), cvRound(y / self.scale_));
+  if (event == cv::EVENT_LBUTTONDOWN) self.pressed_ = place;
   if (self.pressed_ && (event == cv::EVENT_MOUSEMOVE || event == cv::EVENT_LBUTTONUP))
-    self.dragged_ = cv::Rect(*self.pressed_, cv::Point(x, y));
+    self.dragged_ = cv::Rect(*self.pressed_, place);
   if (event == cv::EVENT_LBUTTONUP) self.pressed_.reset();
 }
 
 void ViewWindow::show(const cv::Mat& picture, const FrameId& id) {
   shown_ = picture;
   id_ = id;
-  cv::imshow(kTitle, picture);
+  scale_ = std::min(1.0, 1.0 * kMaxSide / std::max(picture.cols, picture.rows));
+  if (scale_ >= 1.0) return cv::imshow(kTitle, picture);
+  cv::Mat smaller;
+  cv::resize(picture, smaller,
+             {std::max(cvRound(scale_ * picture.cols), 1), std::max(cvRound(scale_ * picture.rows), 1)}, 0.0, 0.0,
+             cv::INTER_AREA);
+  cv::imshow(kTitle, smaller);
 }
 
 KeyAction ViewWindow::handle_keys(FrameViewSettings& settings) {

@@ -25,6 +25,7 @@ class ViewWindow {
 
   cv::Mat shown_;
   FrameId id_;
+  double scale_ = 1.0;                // of what the window shows; below 1 for a picture that no window holds
   std::optional<cv::Point> pressed_;  // where the mouse's button went down
   std::optional<cv::Rect> dragged_;   // from there to where it is or went up; not yet handed on
 };

@@ -52,6 +52,7 @@ REFUSED = (
     (TRAIN, "--threads", ("0", "-5")),
     (("hs-view",), "--after", ("0",)),
     (("hs-view",), "--duration", ("nan", "-1")),
+    (("hs-view",), "--http-host", ("robot:80", "")),
     (("hs-view",), "--min-score", ("nan", "7")),
 )  # fmt: skip
 

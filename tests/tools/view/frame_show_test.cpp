@@ -76,6 +76,32 @@ TEST(FrameShow, ASnapshotAloneIsSoonComplete) {
   EXPECT_TRUE(frame_show.complete());
 }
 
+TEST(FrameShow, ARowOrAColumnOfPixelsIsDrawnEverywhereAndEndsNothing) {
+  for (const cv::Size size : {cv::Size(16384, 1), cv::Size(1, 16384)}) {
+    for (const bool show_3d : {false, true}) {
+      WatchedBus watched;
+      ShowSettings settings = to_pictures("long");
+      settings.outputs.snapshot = settings.outputs.pictures / "shot.jpg";
+      settings.outputs.video = settings.outputs.pictures / "video.mp4";
+      settings.preview = true;
+      settings.picture.show_3d = show_3d;
+      settings.picture.show_world = !show_3d;
+      FrameShow frame_show(settings);
+      MatchedFrame odd = matched_frame(5);
+      odd.frame_bytes = encode_message(to_message(make_test_frame(5, size.width, size.height), WireFormat{}, 0));
+      odd.slot = 0;
+      frame_show.show(odd, watched.watcher);
+      MatchedFrame usual = matched_frame(6);
+      usual.slot = 1;
+      frame_show.show(usual, watched.watcher);
+      frame_show.finish();
+      for (const char* file : {"shot.jpg", "video.mp4", "5.jpg", "6.jpg"})
+        EXPECT_TRUE(std::filesystem::exists(settings.outputs.pictures / file)) << file << size;
+      EXPECT_EQ(watched.last_words().frames_processed, 2) << size;
+    }
+  }
+}
+
 /// The share of the picture in which two files differ.
 double difference(const ShowSettings& settings, int one, int other) {
   const auto read = [&](int utime) {

@@ -53,6 +53,22 @@ TEST(VideoFile, FitsInWhatHasAnotherSize) {
   std::filesystem::remove(file);
 }
 
+TEST(VideoFile, ALongFirstPictureLeavesTheNextOnesLegible) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "video_file_test_long.mp4";
+  for (const cv::Size size : {cv::Size(32768, 140), cv::Size(2, 16936), cv::Size(1, 1)}) {
+    VideoFile video(file, 10.0);
+    video.add(cv::Mat(size, CV_8UC3, cv::Scalar::all(200)), 0);
+    video.add(cv::Mat(cv::Size(640, 480), CV_8UC3, cv::Scalar::all(200)), 1);
+    video.finish();
+    cv::VideoCapture written(file.string());
+    cv::Mat picture;
+    ASSERT_TRUE(written.read(picture) && written.read(picture)) << size;
+    EXPECT_LE(std::max(picture.cols, picture.rows), 8192) << size;
+    EXPECT_GE(std::min(picture.cols, picture.rows), size.area() > 1 ? 1024 : 2) << size;
+  }
+  std::filesystem::remove(file);
+}
+
 /// No file grows beyond so many bytes while it lives: as on a full disk.
 class SmallFiles {
  public:

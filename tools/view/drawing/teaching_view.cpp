@@ -33,6 +33,7 @@ bool is_of(const Teaching& teaching, const FrameId& frame) {
 /// A part of the picture, made darker for what is written on it.
 cv::Mat darkened(cv::Mat& picture, const cv::Rect& area) {
   cv::Mat part = picture(area & cv::Rect({}, picture.size()));
+  if (part.empty()) return part;  // a picture of a single row or column of pixels
   cv::Mat ground(part.size(), part.type(), kPanelGround);
   cv::addWeighted(part, 0.25, ground, 0.75, 0.0, part);
   return part;
@@ -82,7 +83,7 @@ void draw_words(cv::Mat& picture, const Teaching& teaching) {
   draw_text(part, teaching.message, {kMargin_px, 2 * kLine_px - 4}, kPanelText);
   if (!teaching.progress) return;
   const int length = static_cast<int>(std::lround(*teaching.progress * static_cast<float>(part.cols)));
-  part(cv::Rect(0, part.rows - kBar_px, length, kBar_px)).setTo(colour);
+  part(cv::Rect(0, part.rows - kBar_px, length, kBar_px) & cv::Rect({}, part.size())).setTo(colour);
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include "tools/view/http/http_address.hpp"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <netdb.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -20,6 +22,33 @@ bool all_digits(const std::string& text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
+std::string to_lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool is_name(const std::string& text) {
+  constexpr std::size_t kMaxLength = 253;
+  return !text.empty() && text.size() <= kMaxLength && text != "." &&
+         std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_'; });
+}
+
+bool is_port(const std::string& text) {
+  return all_digits(text) && text.size() <= 5;
+}
+
+bool is_ipv4(const std::string& host) {
+  in_addr parsed{};
+  return inet_pton(AF_INET, host.c_str(), &parsed) == 1;
+}
+
+bool is_ipv6(const std::string& host) {
+  in6_addr parsed{};
+  return inet_pton(AF_INET6, host.c_str(), &parsed) == 1;
+}
+
 }  // namespace
 
 HttpAddress parse_http_address(const std::string& text) {
@@ -28,7 +57,7 @@ HttpAddress parse_http_address(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
   if (colon != std::string::npos) address.host = text.substr(0, colon);
-  require(all_digits(port) && port.size() <= 5, "--http {}: '{}' is no port, {}", text, port, expected);
+  require(is_port(port), "--http {}: '{}' is no port, {}", text, port, expected);
   address.port = std::stoi(port);
   require(address.port <= 65535, "--http {}: port {}, expected at most 65535", text, port);
   const bool in_brackets = address.host.size() > 2 && address.host.front() == '[' && address.host.back() == ']';
@@ -46,9 +75,41 @@ bool is_local(const std::string& host) {
   return loopback || host == "localhost" || host == "::1";
 }
 
-bool names_this_machine(const std::string& host_header) {
-  if (host_header.rfind("[::1]", 0) == 0) return true;
-  return is_local(host_header.substr(0, host_header.find(':')));
+std::string parse_host_name(const std::string& text) {
+  require(is_name(text), "--http-host {}: expected a name without scheme and port, for instance robot.example", text);
+  return to_lower(text);
+}
+
+std::optional<std::string> parse_host_header(const std::string& header) {
+  const bool bracketed = !header.empty() && header.front() == '[';
+  const std::size_t end = std::min(bracketed ? header.find(']') : header.find(':'), header.size());
+  const std::string rest = header.substr(bracketed ? std::min(end + 1, header.size()) : end);
+  if (!rest.empty() && (rest.front() != ':' || !is_port(rest.substr(1)))) return std::nullopt;
+  if (bracketed) {
+    const std::string host = to_lower(header.substr(1, end - 1));
+    const bool whole = end < header.size() && is_ipv6(host);
+    return whole ? std::optional(host) : std::nullopt;
+  }
+  std::string host = to_lower(header.substr(0, end));
+  if (!is_name(host)) return std::nullopt;
+  if (host.back() == '.') host.pop_back();
+  return host;
+}
+
+bool answers_to(const HttpAddress& address, const std::string& host_header) {
+  const std::optional<std::string> host = parse_host_header(host_header);
+  if (!host) return false;
+  const auto& names = address.names;
+  if (std::find(names.begin(), names.end(), *host) != names.end()) return true;
+  if (*host == "localhost" || (is_local(*host) && (is_ipv4(*host) || is_ipv6(*host)))) return true;
+  if (is_local(address.host)) return false;
+  const std::string machine = to_lower(machine_name());
+  return is_ipv4(*host) || is_ipv6(*host) || *host == to_lower(address.host) || (!machine.empty() && *host == machine);
+}
+
+std::string machine_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 std::string listening_problem(const HttpAddress& address) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/messages/codecs.hpp"
@@ -18,16 +19,21 @@ constexpr std::chrono::seconds kTellEvery(1);
 // Depth stands small beside the colour image: of a large picture every second or third pixel is drawn, and encoded.
 cv::Mat small_depth(const cv::Mat& depth, const FrameViewSettings& settings) {
   constexpr int kWidth = 320;  // pixels, about
-  const double scale = 1.0 / std::max(depth.cols / kWidth, 1);
+  const int step = std::max(depth.cols / kWidth, 1);
   cv::Mat small;
-  cv::resize(depth, small, {}, scale, scale, cv::INTER_NEAREST);
+  cv::resize(depth, small, {std::max(depth.cols / step, 1), std::max(depth.rows / step, 1)}, 0.0, 0.0,
+             cv::INTER_NEAREST);
   return colour_depth(small, settings.depth_near, settings.depth_far);
 }
 
-// Of the shape of the frame. Smaller than one: it stands small beside the colour image, and its words are to be read.
+// Of about the shape of the frame. Smaller than one: it stands small beside the colour image, and its words are to be
+// read. A frame may be a single row or column of pixels.
 cv::Mat world_from_above(const std::optional<WorldState>& world, const cv::Size& frame) {
-  constexpr int kWidth = 440;  // pixels
-  return draw_world_from_above(world.value_or(WorldState{}), {kWidth, kWidth * frame.height / frame.width});
+  constexpr int kWidth = 440;      // pixels
+  constexpr int kMinHeight = 110;  // pixels
+  constexpr int kMaxHeight = 880;  // pixels
+  const int height = std::clamp(kWidth * frame.height / frame.width, kMinHeight, kMaxHeight);
+  return draw_world_from_above(world.value_or(WorldState{}), {kWidth, height});
 }
 
 cv::Mat drawn(PageView view, const PageContent& content) {
@@ -41,14 +47,30 @@ cv::Mat drawn(PageView view, const PageContent& content) {
   return draw_over_colour(viewed, content.models, content.settings, content.stream);
 }
 
+HttpAddress address_of(const std::string& text, const std::vector<std::string>& names) {
+  HttpAddress address = parse_http_address(text);
+  for (const std::string& name : names) address.names.push_back(parse_host_name(name));
+  return address;
+}
+
 }  // namespace
 
-LivePage::LivePage(const std::string& address) : server_(parse_http_address(address), board_) {
+LivePage::LivePage(const std::string& address, const std::vector<std::string>& names)
+    : server_(address_of(address, names), board_) {
   log_info("page: {}", server_.url());
 }
 
 void LivePage::draw(const std::vector<PageView>& views, const PageContent& content) {
-  for (const PageView view : views) board_.put_picture(view, encode_jpeg(drawn(view, content), kJpegQuality));
+  for (const PageView view : views) {
+    std::vector<std::uint8_t> jpeg;
+    try {
+      jpeg = encode_jpeg(drawn(view, content), kJpegQuality);
+    } catch (const std::exception&) {  // OpenCV's too
+      board_.put_picture(view, {});
+      throw;
+    }
+    board_.put_picture(view, std::move(jpeg));
+  }
 }
 
 void LivePage::show(const PageContent& content) {
@@ -68,10 +90,10 @@ bool LivePage::is_due() const {
 
 void LivePage::catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models,
                         const FrameViewSettings& settings, const StreamView& stream) {
-  if (const auto missing = board_.missing(); viewed && !missing.empty())
-    draw(missing, {without_weak(*viewed, settings.min_score), models, settings, stream});
   told_ = PageBoard::Clock::now();
   board_.put_stream(stream_json(stream, settings));
+  if (const auto missing = board_.missing(); viewed && !missing.empty())
+    draw(missing, {without_weak(*viewed, settings.min_score), models, settings, stream});
 }
 
 }  // namespace houghstream::view

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tools/view/drawing/frame_view.hpp"
@@ -21,8 +22,8 @@ struct PageContent {
 /// nothing.
 class LivePage {
  public:
-  /// Serves at "[ADDRESS:]PORT", and logs where. Throws InputError.
-  explicit LivePage(const std::string& address);
+  /// Serves at "[ADDRESS:]PORT", which may be asked for by these names too, and logs where. Throws InputError.
+  explicit LivePage(const std::string& address, const std::vector<std::string>& names = {});
 
   bool is_looked_at() const { return board_.is_looked_at(); }
   PageOrders take_orders() { return board_.take_orders(); }
@@ -31,7 +32,7 @@ class LivePage {
   void show(const PageContent& content);
   /// Whether somebody waits for a picture of the frame that was shown last, or the stream was not told of for a second.
   bool is_due() const;
-  /// Draws that picture, and tells of the stream.
+  /// Draws that picture, and tells of the stream. Throws where a picture cannot be drawn; nobody waits for it then.
   void catch_up(const std::optional<ViewedFrame>& viewed, const ClassModels& models, const FrameViewSettings& settings,
                 const StreamView& stream);
 

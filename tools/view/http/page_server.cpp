@@ -1,11 +1,9 @@
 #include "tools/view/http/page_server.hpp"
 
 #include <fmt/format.h>
-#include <httplib.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -15,6 +13,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "tools/view/http/client_server.hpp"
 #include "tools/view/http/page.hpp"
 
 namespace houghstream::view {
@@ -120,6 +119,8 @@ struct PageServer::State {
   }
 
   void set_limits();
+  /// Returns the words of the refusal of a Host header that somebody else may have chosen; "" where it is none.
+  std::string refusal_of_host(const httplib::Request& request) const;
   void add_pages();
   void serve_picture(const httplib::Request& request, httplib::Response& response);
   void serve_events(httplib::Response& response);
@@ -128,14 +129,11 @@ struct PageServer::State {
   HttpAddress address;
   PageBoard& board;
   std::string token;
-  httplib::Server server;
+  ClientServer server{kThreads};
   std::thread thread;
 };
 
 void PageServer::State::set_limits() {
-  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  server.set_keep_alive_max_count(1'000'000);
-  server.set_keep_alive_timeout(1);  // seconds; the program's end waits for it
   server.set_payload_max_length(kLongestOrder);
   server.set_tcp_nodelay(true);
   // The library's own choice lets two programs share a port, each with half of the viewers.
@@ -148,14 +146,24 @@ void PageServer::State::set_limits() {
                               {"Referrer-Policy", "no-referrer"},
                               {"Cache-Control", "no-store"}});
   server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-    const bool may_ask = !token.empty() || names_this_machine(request.get_header_value("Host"));
-    const int status = may_ask ? status_of_content(request) : 403;
+    const std::string refusal = refusal_of_host(request);
+    const int status = refusal.empty() ? status_of_content(request) : 403;
     if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
     refuse_unread(response, status,
-                  may_ask ? fmt::format("expected content of a stated length, at most {} bytes", kLongestOrder)
-                          : "this page is for this machine only: localhost or 127.0.0.1");
+                  refusal.empty() ? fmt::format("expected content of a stated length, at most {} bytes", kLongestOrder)
+                                  : refusal);
     return httplib::Server::HandlerResponse::Handled;
   });
+}
+
+std::string PageServer::State::refusal_of_host(const httplib::Request& request) const {
+  if (request.get_header_value_count("Host") == 1 && answers_to(address, request.get_header_value("Host"))) return "";
+  if (is_local(address.host) && address.names.empty())
+    return "this page is for this machine only: localhost or 127.0.0.1; for another name start hs-view with "
+           "--http-host NAME";
+  return "this page is not served for that name: expected this machine's address, or a name that hs-view was started "
+         "with: "
+         "--http-host NAME";
 }
 
 void PageServer::State::add_pages() {
@@ -175,6 +183,7 @@ void PageServer::State::serve_picture(const httplib::Request& request, httplib::
       {"colour", PageView::kColour}, {"depth", PageView::kDepth}, {"3d", PageView::k3d}, {"world", PageView::kWorld}};
   const Jpeg jpeg = board.picture(views.at(request.matches[1]), kPicturePatience);
   if (!jpeg) return answer(response, 503, "no frame has come yet");
+  if (jpeg->empty()) return answer(response, 503, "this view of the frame cannot be drawn");
   response.set_content(reinterpret_cast<const char*>(jpeg->data()), jpeg->size(), "image/jpeg");
 }
 
@@ -221,6 +230,7 @@ PageServer::PageServer(const HttpAddress& address, PageBoard& board) : state_(st
 
 PageServer::~PageServer() {
   state_->board.close();
+  state_->server.end_clients();
   state_->server.stop();
   state_->thread.join();
 }
@@ -235,9 +245,11 @@ const std::string& PageServer::token() const {
 
 std::string PageServer::url() const {
   std::string host = state_->address.host;
-  if (host == "0.0.0.0" || host == "::") {
-    std::array<char, 256> name{};
-    host = gethostname(name.data(), name.size() - 1) == 0 ? name.data() : host;
+  if (!state_->address.names.empty()) {
+    host = state_->address.names.front();
+  } else if (host == "0.0.0.0" || host == "::") {
+    const std::string machine = machine_name();
+    if (!machine.empty()) host = machine;
   }
   if (host.find(':') != std::string::npos) host = fmt::format("[{}]", host);
   const std::string page = fmt::format("http://{}:{}/", host, port());

@@ -14,7 +14,7 @@ namespace houghstream::view {
 ///   GET /picture/VIEW.jpg VIEW: colour, depth, 3d, world; of the frame that is shown
 ///   POST /orders          {"paused": bool, "min_score": 0..1, "next_camera": true}, each optional
 /// Orders need the header X-Houghstream-Token, which a page from elsewhere cannot send unasked; its value, which is not
-/// empty, counts where the address is not local. A local address answers to names of this machine only.
+/// empty, counts where the address is not local. It answers to the Host headers of answers_to() only.
 class PageServer {
  public:
   /// Listens. `board` must outlive it. Throws InputError where that address cannot be listened at.

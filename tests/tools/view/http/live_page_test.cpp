@@ -14,9 +14,9 @@
 namespace houghstream::view {
 namespace {
 
-ViewedFrame viewed_frame(std::int64_t utime) {
+ViewedFrame viewed_frame(std::int64_t utime, int width = 64, int height = 48) {
   ViewedFrame viewed;
-  viewed.frame = make_test_frame(utime);
+  viewed.frame = make_test_frame(utime, width, height);
   viewed.detections.frame = viewed.frame.id;
   return viewed;
 }
@@ -79,6 +79,48 @@ TEST(LivePage, ShowsEachViewThatIsAskedFor) {
   }
 }
 
+TEST(LivePage, ARowOrAColumnOfPixelsIsAPictureOfModestSizeInEachView) {
+  for (const cv::Size size : {cv::Size(16384, 1), cv::Size(1, 16384), cv::Size(1, 1)}) {
+    Looked looked;
+    looked.stream.state.teaching.emplace().progress = 0.5F;
+    looked.stream.state.teaching->directions.resize(2);
+    const ViewedFrame viewed = viewed_frame(5, size.width, size.height);
+    looked.show(viewed);
+    for (const char* view : {"colour", "depth", "3d", "world"}) {
+      const cv::Mat picture = looked.fetched(view, viewed);
+      EXPECT_GE(picture.total(), 1U) << view << size;
+      EXPECT_LE(picture.total(), 1'000'000U) << view << size;
+    }
+  }
+}
+
+TEST(LivePage, AViewThatCannotBeDrawnIsSaidToBeSoAndTheOthersAreDrawn) {
+  Looked looked;
+  ViewedFrame viewed = viewed_frame(5);
+  looked.show(viewed);
+  ViewedFrame wrong = viewed;
+  wrong.detections.frame.utime = 6;  // of another frame
+  std::optional<httplib::Result> answer;
+  std::atomic<bool> answered{false};
+  std::thread browser([&] {
+    answer = looked.client.Get("/picture/colour.jpg");
+    answered = true;
+  });
+  int refused = 0;
+  while (!answered) {
+    try {
+      if (looked.page.is_due()) looked.page.catch_up(wrong, looked.models, looked.settings, looked.stream);
+    } catch (const InputError&) {
+      ++refused;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  browser.join();
+  EXPECT_EQ(refused, 1);
+  EXPECT_EQ((*answer)->status, 503);
+  EXPECT_EQ(looked.fetched("depth", viewed).size(), viewed.frame.colour.size());
+}
+
 TEST(LivePage, WithoutViewersNothingIsDue) {
   Looked looked;
   looked.show(viewed_frame(5));
@@ -106,6 +148,9 @@ TEST(LivePage, TakesThePlaceOfAWindowAndABadAddressIsNamed) {
   EXPECT_TRUE(settings.headless());
   EXPECT_FALSE(settings.writes());
   settings.http = "eighty";
+  EXPECT_THROW(FrameShow{settings}, InputError);
+  settings.http = "127.0.0.1:0";
+  settings.http_hosts = {"robot:80"};
   EXPECT_THROW(FrameShow{settings}, InputError);
 }
 

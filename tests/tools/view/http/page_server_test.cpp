@@ -7,13 +7,17 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <memory>
+#include <thread>
+#include <vector>
 
 namespace houghstream::view {
 namespace {
 
 struct Served {
   explicit Served(const std::string& host = "127.0.0.1")
-      : server({host, 0}, board), client("127.0.0.1", server.port()) {}
+      : server({host, 0, {}}, board), client("127.0.0.1", server.port()) {}
 
   int order(const std::string& body, const httplib::Headers& headers) {
     const httplib::Result answer = client.Post("/orders", headers, body, "application/json");
@@ -25,25 +29,66 @@ struct Served {
   httplib::Client client;
 };
 
-/// What comes back until the server ends the connection.
-std::string answer_to(int port, const std::string& request) {
-  const int opened = socket(AF_INET, SOCK_STREAM, 0);
-  const timeval patience{5, 0};
-  setsockopt(opened, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  std::string heard;
-  if (connect(opened, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 &&
-      send(opened, request.data(), request.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(request.size())) {
-    std::array<char, 1024> part{};
-    ssize_t size = 0;
-    while ((size = recv(opened, part.data(), part.size(), 0)) > 0)
-      heard.append(part.data(), static_cast<std::size_t>(size));
+/// A client that sends what it is told to, and reads only when it is told to.
+class RawClient {
+ public:
+  explicit RawClient(int port) : opened_(socket(AF_INET, SOCK_STREAM, 0)) {
+    const timeval patience{20, 0};
+    setsockopt(opened_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    connected_ = connect(opened_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
   }
-  close(opened);
-  return heard;
+  ~RawClient() { close(opened_); }
+  RawClient(const RawClient&) = delete;
+  RawClient& operator=(const RawClient&) = delete;
+
+  bool say(const std::string& words) const {
+    return connected_ && send(opened_, words.data(), words.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(words.size());
+  }
+
+  /// What comes until the server ends the connection.
+  std::string heard() const {
+    std::string all;
+    std::array<char, 4096> part{};
+    ssize_t size = 0;
+    while ((size = recv(opened_, part.data(), part.size(), 0)) > 0)
+      all.append(part.data(), static_cast<std::size_t>(size));
+    return all;
+  }
+
+ private:
+  int opened_;
+  bool connected_ = false;
+};
+
+std::string answer_to(int port, const std::string& request) {
+  const RawClient client(port);
+  return client.say(request) ? client.heard() : "";
+}
+
+using RawClients = std::vector<std::unique_ptr<RawClient>>;
+
+/// More of them than there are threads, each of which has said this.
+RawClients crowd(int port, const std::string& words) {
+  RawClients clients;
+  for (int i = 0; i < 40; ++i) {
+    clients.push_back(std::make_unique<RawClient>(port));
+    clients.back()->say(words);
+  }
+  return clients;
+}
+
+constexpr std::chrono::seconds kSoon(10);  // even on a busy machine; a client that says nothing is waited for longer
+
+bool answers_soon(int port, const std::string& path) {
+  httplib::Client client("127.0.0.1", port);
+  client.set_read_timeout(kSoon);
+  client.set_connection_timeout(kSoon);
+  const httplib::Result answer = client.Get(path);
+  return answer && answer->status == 200;
 }
 
 const httplib::Headers kNoToken = {{"X-Houghstream-Token", "none"}};
@@ -119,8 +164,22 @@ TEST(PageServer, OrdersThatAreNoneAreRefused) {
 }
 
 TEST(PageServer, ANameThatSomebodyMadeUpForThisMachineIsRefused) {
-  Served served;
-  EXPECT_EQ(served.client.Get("/", {{"Host", "evil.example:80"}})->status, 403);
+  for (const char* host : {"127.0.0.1", "0.0.0.0"}) {
+    Served served(host);
+    served.board.put_frame("{}");
+    served.board.put_picture(PageView::kColour, {'j', 'p', 'g'});
+    for (const char* path : {"/", "/picture/colour.jpg", "/events"}) {
+      for (const char* name : {"evil.example:80", "[::1].evil.example", "127.0.0.1.evil.example"}) {
+        const httplib::Result refused = served.client.Get(path, {{"Host", name}});
+        ASSERT_TRUE(refused);
+        EXPECT_EQ(refused->status, 403) << host << path << name;
+        EXPECT_NE(refused->body.find("--http-host NAME"), std::string::npos) << refused->body;
+      }
+    }
+  }
+  const std::string twice =
+      answer_to(Served().server.port(), "GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil.example\r\n\r\n");
+  EXPECT_EQ(twice.rfind("HTTP/1.1 403 ", 0), 0U) << twice.substr(0, 100);
 }
 
 TEST(PageServer, ContentOfNoStatedOrTooLargeALengthIsRefusedUnread) {
@@ -156,6 +215,95 @@ TEST(PageServer, EndsWhileSomebodyListens) {
   while (!served->board.is_looked_at()) std::this_thread::yield();
   served.reset();
   viewer.join();
+}
+
+TEST(PageServer, RangesAreIgnored) {
+  Served served;
+  served.board.put_frame("{}");
+  served.board.put_picture(PageView::kColour, std::vector<std::uint8_t>(30'000, 'x'));
+  std::string ranges = "bytes=0-";
+  while (ranges.size() < 8'000) ranges += ",0-";
+  for (const std::string& range : {std::string("bytes=0-9"), ranges}) {
+    const httplib::Result picture = served.client.Get("/picture/colour.jpg", {{"Range", range}});
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->status, 200);
+    EXPECT_EQ(picture->body.size(), 30'000U);
+    EXPECT_FALSE(picture->has_header("Content-Range"));
+  }
+  const std::string refused =
+      answer_to(served.server.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\nRange: " + ranges + "\r\n\r\n");
+  EXPECT_EQ(refused.rfind("HTTP/1.1 403 ", 0), 0U) << refused.substr(0, 200);
+  EXPECT_LT(refused.size(), 1'000U);
+}
+
+TEST(PageServer, ARequestWithoutAnEndIsCutOff) {
+  Served served;
+  const RawClient client(served.server.port());
+  const std::string line = "X-Long: " + std::string(1'000, 'x') + "\r\n";
+  client.say("GET / HTTP/1.1\r\nHost: localhost\r\n");
+  int lines = 0;
+  while (lines < 100'000 && client.say(line)) ++lines;
+  EXPECT_LT(lines, 100'000);
+  EXPECT_TRUE(answers_soon(served.server.port(), "/"));
+}
+
+TEST(PageServer, ACrowdThatSaysNothingLeavesItReachable) {
+  Served served;
+  const int port = served.server.port();
+  const RawClients silent = crowd(port, "");
+  EXPECT_TRUE(answers_soon(port, "/"));
+  const RawClients slow = crowd(port, "GET / HTTP/1.1\r\nHost: local");
+  for (const auto& client : slow) client->say("h");
+  EXPECT_TRUE(answers_soon(port, "/"));
+  const RawClients without_content = crowd(
+      port, "POST /orders HTTP/1.1\r\nHost: localhost\r\nX-Houghstream-Token: none\r\nContent-Length: 100\r\n\r\n{");
+  EXPECT_TRUE(answers_soon(port, "/"));
+}
+
+TEST(PageServer, ACrowdThatReadsNothingLeavesItReachable) {
+  Served served;
+  const int port = served.server.port();
+  served.board.put_frame("{}");
+  served.board.put_picture(PageView::kColour, std::vector<std::uint8_t>(3'000'000, 'x'));
+  served.board.put_picture(PageView::kDepth, {'j', 'p', 'g'});
+  const RawClients greedy = crowd(port, "GET /picture/colour.jpg HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_TRUE(answers_soon(port, "/"));
+  EXPECT_TRUE(answers_soon(port, "/picture/depth.jpg"));
+}
+
+TEST(PageServer, ViewersThatReadNothingLoseTheirPlaces) {
+  Served served;
+  const int port = served.server.port();
+  const RawClients deaf = crowd(port, "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const std::string news = "\"" + std::string(1'000'000, 'x') + "\"";
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  bool heard = false;
+  while (!heard && std::chrono::steady_clock::now() < end) {
+    served.board.put_stream(news);
+    httplib::Client viewer("127.0.0.1", port);
+    viewer.Get(
+        "/events",
+        [&](const char* /*data*/, std::size_t /*size*/) {
+          heard = true;
+          return false;
+        },
+        [](std::uint64_t /*done*/, std::uint64_t /*all*/) { return true; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  EXPECT_TRUE(heard);
+}
+
+TEST(PageServer, EndsAtOnceWhateverItsClientsDo) {
+  auto served = std::make_unique<Served>();
+  const int port = served->server.port();
+  served->board.put_frame("{}");
+  served->board.put_picture(PageView::kColour, std::vector<std::uint8_t>(3'000'000, 'x'));
+  const RawClients silent = crowd(port, "GET / HTTP/1.1\r\nHo");
+  const RawClients greedy = crowd(port, "GET /picture/colour.jpg HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_TRUE(answers_soon(port, "/"));
+  const auto start = std::chrono::steady_clock::now();
+  served.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(4));
 }
 
 }  // namespace

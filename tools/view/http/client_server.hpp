@@ -1,0 +1,73 @@
+#pragma once
+
+#include <httplib.h>
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace houghstream::view {
+
+/// The connections of a server, and which of them wait for their client: for the bytes of a request, or until it takes
+/// what it is sent. Where others are in want of a thread, those that have waited longest yield theirs. So a client that
+/// says nothing, or reads nothing, costs nobody the server. Any function may be called from any thread.
+class ClientTable {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kGrace{100};  ///< nobody yields before he has waited for so long
+
+  /// So many connections may be open.
+  explicit ClientTable(std::size_t max_clients) : max_clients_(max_clients) {}
+
+  /// Adds a connection, which is in want of a thread until begin(). Closes it and returns false where too many are
+  /// open, or after close().
+  bool admit(socket_t socket);
+  void begin(socket_t socket);
+  /// Notes that the connection waits for its client from now on, unless it does so already.
+  void note_waiting(socket_t socket);
+  void note_working(socket_t socket);
+  bool must_yield(socket_t socket);
+  /// Closes the connection.
+  void remove(socket_t socket);
+  /// Ends all connections, and those that come later.
+  void close();
+
+ private:
+  struct Client {
+    bool begun = false;
+    std::optional<Clock::time_point> waiting_since;
+  };
+
+  std::size_t max_clients_;
+  std::mutex mutex_;
+  std::map<socket_t, Client> clients_;
+  bool closed_ = false;
+};
+
+/// cpp-httplib's server with limits of its own: a request must be there within kRequestTimeout and have at most
+/// kMaxRequestBytes, what is sent must be taken at kMinBytesPerS, a crowd is handled as ClientTable does, and ranges
+/// are ignored, which HTTP allows: the library would build each of thousands that one header can ask for.
+class ClientServer final : public httplib::Server {
+ public:
+  static constexpr std::chrono::seconds kRequestTimeout{5};  ///< also how long a connection may idle between requests
+  static constexpr std::chrono::seconds kWriteTimeout{5};    ///< and as long as kMinBytesPerS takes
+  static constexpr std::size_t kMinBytesPerS = 32'768;
+  static constexpr std::size_t kMaxRequestBytes = 65'536;
+
+  explicit ClientServer(std::size_t threads);
+
+  /// Ends all connections, so that stop() waits for none.
+  void end_clients() { clients_.close(); }
+
+ private:
+  bool process_and_close_socket(socket_t socket) override;
+  void serve(socket_t socket);
+
+  ClientTable clients_;
+  std::unique_ptr<httplib::ThreadPool> pool_;
+};
+
+}  // namespace houghstream::view
