@@ -41,7 +41,8 @@ struct CameraOptions {
   /// registered anyhow.
   bool assume_registered = false;
   std::optional<Camera> camera;  ///< intrinsics; default: from the colour sensor's field of view
-  std::string record;            ///< record to this .oni file; after an absence, to FILE_2.oni and so on
+  std::string record;            ///< record to this .oni file, or where it is there, to FILE_2.oni and so on
+  bool replace_record = false;   ///< a file that is there is replaced instead, but not one of the same run
   bool record_jpeg = false;      ///< colour as JPEG in it: a fifth of the size, but no longer bit by bit what was seen
 };
 

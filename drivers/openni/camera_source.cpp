@@ -1,7 +1,6 @@
 #include "drivers/openni/camera_source.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <thread>
 #include <utility>
 
@@ -72,13 +71,9 @@ class CameraSource : public FrameSource {
   void open() {
     uri_ = find_uri();
     CameraOptions options = options_;
-    if (recordings_ > 0 && !options.record.empty()) {
-      const std::filesystem::path file(options.record);
-      const std::string name = fmt::format("{}_{}{}", file.stem().string(), recordings_ + 1, file.extension().string());
-      options.record = (file.parent_path() / name).string();
-    }
+    options.replace_record = options.replace_record && !has_recorded_;
     device_ = OpenniDevice::open_camera(uri_, options, listener_.stop_requested);
-    ++recordings_;
+    has_recorded_ = true;
     camera_ = device_->camera(options_);
     pairing_.clear();
     clock_.restart();
@@ -131,7 +126,7 @@ class CameraSource : public FrameSource {
   std::string uri_;
   std::unique_ptr<OpenniDevice> device_;
   Camera camera_;
-  int recordings_ = 0;
+  bool has_recorded_ = false;
   bool told_distance_ = false;
   Clock::time_point last_frame_;
   std::optional<Clock::time_point> gone_since_;

@@ -191,7 +191,7 @@ std::unique_ptr<OpenniDevice> OpenniDevice::open_camera(const std::string& uri, 
   require(at_once || state->registered(),
           "{}: cannot register depth to colour; give --assume-registered if its depth comes registered anyhow", uri);
   if (!options.record.empty()) {
-    state->recording.emplace(options.record, options.record_jpeg, state->depth, state->colour);
+    state->recording.emplace(options, state->depth, state->colour);
   }
   state->await_modes();
   return std::unique_ptr<OpenniDevice>(new OpenniDevice(std::move(state)));

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/recording_names.hpp"
 
 namespace houghstream {
 namespace {
@@ -143,16 +144,25 @@ void sync_to_disk(const fs::path& path) {
   require(is_synced, "{}: may not be on the disk: {}", path.string(), std::strerror(error));
 }
 
-WholeFile::WholeFile(const fs::path& file, const std::string& ending) : file_(followed(file)), partial_(file_) {
+WholeFile::WholeFile(const fs::path& file, const std::string& ending, Existing existing)
+    : wanted_(followed(file)), file_(wanted_), partial_(file_), existing_(existing) {
   std::error_code error;
   require(!fs::is_directory(file_, error), "{}: is a folder, expected a file to write", file_.string());
   if (is_device(file_)) return;
+  if (existing_ == Existing::kRecordingKept) file_ = next_recording_name(wanted_);
+  if (existing_ != Existing::kReplaced) interrupted_ = keep_interrupted(file_, ending);
+  partial_ = file_;
   partial_ += ending;
   lock_ = open_locked(partial_, file_);
 }
 
 WholeFile::WholeFile(WholeFile&& other) noexcept
-    : file_(std::move(other.file_)), partial_(std::move(other.partial_)), lock_(std::exchange(other.lock_, -1)) {}
+    : wanted_(std::move(other.wanted_)),
+      file_(std::move(other.file_)),
+      partial_(std::move(other.partial_)),
+      existing_(other.existing_),
+      interrupted_(std::move(other.interrupted_)),
+      lock_(std::exchange(other.lock_, -1)) {}
 
 WholeFile::~WholeFile() {
   if (lock_ < 0) return;
@@ -162,6 +172,15 @@ WholeFile::~WholeFile() {
 
 void WholeFile::release() {
   close(std::exchange(lock_, -1));
+}
+
+bool WholeFile::rename_into_place() {
+  if (existing_ != Existing::kRecordingKept) return std::rename(partial_.c_str(), file_.c_str()) == 0;
+  while (!rename_to_free_name(partial_, file_)) {
+    if (errno != EEXIST) return false;
+    file_ = next_recording_name(wanted_);
+  }
+  return true;
 }
 
 void WholeFile::publish() {
@@ -180,7 +199,7 @@ bool WholeFile::put_into_place() {
   const bool replaces = stat(file_.c_str(), &before) == 0;
   bool good = true;
   if (replaces) good = fchmod(written, before.st_mode) == 0 && (fsync(written) == 0 || knows_no_sync(errno));
-  good = good && std::rename(partial_.c_str(), file_.c_str()) == 0;
+  good = good && rename_into_place();
   const int error = errno;
   close(written);
   require(good, "{}: cannot be written: {}", file_.string(), std::strerror(error));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -39,22 +40,40 @@ void require_writable_folder(const std::filesystem::path& folder);
 /// them. Throws InputError where the disk fails; a file system that knows no such thing is taken as it is.
 void sync_to_disk(const std::filesystem::path& path);
 
+/// What becomes of what is there already: of a FILE, and of the FILE.partial that a killed program left.
+enum class Existing {
+  kReplaced,           ///< both go: what is written can be had again
+  kRecordingReplaced,  ///< FILE is replaced; what a killed program recorded stays, as FILE.interrupted-N
+  kRecordingKept       ///< both stay: the new recording takes the next number, FILE_2, FILE_3, ...
+};
+
+/// Of a recording, as the option --replace says.
+constexpr Existing existing_of_recording(bool replace) {
+  return replace ? Existing::kRecordingReplaced : Existing::kRecordingKept;
+}
+
 /// An output that is there as a whole or not at all: it is written as FILE.partial beside FILE and takes FILE's place
 /// in one step. Until then, and for good where it fails, FILE is what it was. A FILE.partial that a killed program left
-/// is removed by the next one that writes FILE. Where FILE is a device or a pipe, it is written as it is. Not
-/// thread-safe.
+/// is removed by the next one that writes FILE, or, of a recording, renamed (recording_names.hpp). Where FILE is a
+/// device or a pipe, it is written as it is. Not thread-safe.
 class WholeFile {
  public:
   /// `ending` of the file that is written, for libraries that go by it. Throws InputError where it cannot be made, or
   /// another program is writing FILE.
-  explicit WholeFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding);
+  explicit WholeFile(const std::filesystem::path& file, const std::string& ending = kPartialEnding,
+                     Existing existing = Existing::kReplaced);
   WholeFile(WholeFile&& other) noexcept;
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
   WholeFile& operator=(WholeFile&&) = delete;
   ~WholeFile();  ///< removes what was neither published nor kept
 
+  /// FILE, with symbolic links followed.
+  const std::filesystem::path& wanted() const { return wanted_; }
+  /// Where it will be: FILE, or the next number of a recording.
   const std::filesystem::path& file() const { return file_; }
+  /// The name that was given to what a killed program had recorded.
+  const std::optional<std::filesystem::path>& interrupted() const { return interrupted_; }
   /// Where to write: an empty file.
   const std::filesystem::path& partial() const { return partial_; }
 
@@ -71,10 +90,14 @@ class WholeFile {
 
   bool put_into_place();
   void release();
+  bool rename_into_place();
 
-  std::filesystem::path file_;     // with symbolic links followed
+  std::filesystem::path wanted_;   // with symbolic links followed
+  std::filesystem::path file_;     // = wanted_, or its next number
   std::filesystem::path partial_;  // = file_ for a device
-  int lock_ = -1;                  // the open file, locked; ends with the process, however that ends
+  Existing existing_ = Existing::kReplaced;
+  std::optional<std::filesystem::path> interrupted_;
+  int lock_ = -1;  // the open file, locked; ends with the process, however that ends
 };
 
 /// Writes a whole file in this way. One that replaces nothing is not waited for: pictures are written by the thousand,

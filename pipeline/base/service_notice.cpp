@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "pipeline/base/stop_signal.hpp"
+
 namespace houghstream {
 
 void notify_service(const std::string& words) {
@@ -22,6 +24,29 @@ void notify_service(const std::string& words) {
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + std::strlen(name));
   sendto(to, words.data(), words.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&address), length);
   close(to);
+}
+
+StillFinishing::StillFinishing() {
+  const BlockStopSignals block;
+  thread_ = std::thread([this] {
+    const std::string words =
+        "EXTEND_TIMEOUT_USEC=" + std::to_string(std::chrono::microseconds(kExtension).count()) + "\nSTOPPING=1";
+    const auto end = std::chrono::steady_clock::now() + kLongest;
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!has_ended_ && std::chrono::steady_clock::now() < end) {
+      notify_service(words);
+      ends_.wait_for(lock, std::chrono::seconds(1));
+    }
+  });
+}
+
+StillFinishing::~StillFinishing() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    has_ended_ = true;
+  }
+  ends_.notify_one();
+  thread_.join();
 }
 
 }  // namespace houghstream

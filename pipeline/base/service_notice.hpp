@@ -2,14 +2,37 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace houghstream {
 
 /// Sends words of the sd_notify(3) protocol to the service manager that $NOTIFY_SOCKET names: "READY=1" when a program
 /// has started, "WATCHDOG=1" while it works. Without a manager nothing happens. May be called from any thread.
 void notify_service(const std::string& words);
+
+/// While it lives, the service manager (systemd, hs-stream) is told once a second that this program is ending and needs
+/// more time: a video or a recording is still being written. After ten minutes it is not told any more.
+class StillFinishing {
+ public:
+  /// So much more time is asked for each time.
+  static constexpr std::chrono::seconds kExtension{5};
+  static constexpr std::chrono::minutes kLongest{10};
+
+  StillFinishing();
+  ~StillFinishing();
+  StillFinishing(const StillFinishing&) = delete;
+  StillFinishing& operator=(const StillFinishing&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable ends_;
+  bool has_ended_ = false;
+  std::thread thread_;
+};
 
 /// Whether the thread that does a program's work still does it: it beats, others ask. What stands still for longer than
 /// any step of work takes hangs; a program that hangs says nothing more of itself, and is started again by who listens

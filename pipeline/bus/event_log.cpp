@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/recording_log.hpp"
 #include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/log_seal.hpp"
 #include "pipeline/text/printable.hpp"
@@ -24,9 +25,12 @@ void LogWriter::Closer::operator()(lcm_eventlog_t* log) const {
   lcm_eventlog_destroy(log);
 }
 
-LogWriter::LogWriter(const std::filesystem::path& file)
-    : whole_(file), file_(file.string()), log_(lcm_eventlog_create(whole_.partial().c_str(), "w")) {
+LogWriter::LogWriter(const std::filesystem::path& file, Existing existing)
+    : whole_(file, kPartialEnding, existing),
+      file_(whole_.file().string()),
+      log_(lcm_eventlog_create(whole_.partial().c_str(), "w")) {
   require(log_ != nullptr, "{}: cannot be written: {}", file_, std::strerror(errno));
+  log_recording_names(whole_);
 }
 
 void LogWriter::write(std::int64_t timestamp, const std::string& channel, ByteView data) {

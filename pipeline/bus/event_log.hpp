@@ -29,7 +29,10 @@ struct LogEvent {
 class LogWriter {
  public:
   /// Throws InputError when the file cannot be made.
-  explicit LogWriter(const std::filesystem::path& file);
+  explicit LogWriter(const std::filesystem::path& file, Existing existing = Existing::kReplaced);
+  /// Where the log will be, and where it is written until then.
+  const std::filesystem::path& file() const { return whole_.file(); }
+  const std::filesystem::path& partial() const { return whole_.partial(); }
   /// Throws InputError when the disk refuses, or no reader would take a channel of this name.
   void write(std::int64_t timestamp, const std::string& channel, ByteView data);
   /// Pushes everything to the file, checks that it arrived there, and ends the log. Throws InputError.

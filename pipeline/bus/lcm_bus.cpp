@@ -169,7 +169,7 @@ struct LcmBus::State {
   std::unique_ptr<lcm_t, LcmCloser> lcm;
 };
 
-LcmBus::LcmBus(const std::string& url, const std::string& output_log, AtStart at_start)
+LcmBus::LcmBus(const std::string& url, const std::string& output_log, Existing existing, AtStart at_start)
     : state_(std::make_unique<State>(complete_url(url), at_start)) {
   if (is_log_url(state_->url)) {
     const std::string path = state_->url.substr(kFileScheme.size());
@@ -177,8 +177,8 @@ LcmBus::LcmBus(const std::string& url, const std::string& output_log, AtStart at
     state_->input_log.emplace(input);
     if (!output_log.empty()) {
       require_other_file(output_log, input);
-      state_->output_log.emplace(output_log);
-      state_->output_file = output_log;
+      state_->output_log.emplace(output_log, existing);
+      state_->output_file = state_->output_log->file().string();
     }
     return;
   }

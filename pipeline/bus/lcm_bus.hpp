@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "pipeline/base/files.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "pipeline/messages/wire_reader.hpp"
 
@@ -36,9 +37,11 @@ class LcmBus {
   /// network may send, and nobody is asked who he is. `url` as LCM takes it; "" is $LCM_DEFAULT_URL, else udpm with
   /// ttl=0. A udpm URL that does not state it gets a recv_buf_size. Logs what is missing where the kernel grants less
   /// than needed, and options that LCM does not know. `output_log` is for file:// only, and may be empty: then nothing
-  /// can be published. Waits for a route to the group of a udpm URL, and tells a service manager that this takes time.
-  /// Throws InputError, also where a stop signal ends the waiting, or `at_start` is kFail and there is no route.
-  explicit LcmBus(const std::string& url, const std::string& output_log = "", AtStart at_start = AtStart::kWait);
+  /// can be published; `existing` says what becomes of one that is there. Waits for a route to the group of a udpm URL,
+  /// and tells a service manager that this takes time. Throws InputError, also where a stop signal ends the waiting, or
+  /// `at_start` is kFail and there is no route.
+  explicit LcmBus(const std::string& url, const std::string& output_log = "", Existing existing = Existing::kReplaced,
+                  AtStart at_start = AtStart::kWait);
   ~LcmBus();
 
   /// Calls `handler` for every message of the channels (a ChannelPattern), from within handle(). What the handler

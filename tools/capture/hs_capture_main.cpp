@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   add_source_options(app, source);
   app.add_flag("--list-devices", list, "print the cameras that OpenNI2 finds, and end");
   app.add_option("--log", log, "write this LCM log instead of publishing");
+  add_replace_option(app, settings.replace, "--log or --record");
   app.add_option("--rate", settings.rate_hz, "frames per second; default: the source's; a camera keeps its own")
       .range(1e-3, 1e3);
   app.add_option("--frames", settings.frames, "end after this many frames").positive();
@@ -43,13 +44,14 @@ int main(int argc, char** argv) {
     settings.format.jpeg = !raw_colour;
     settings.format.zip_depth = !raw_depth;
     require(log.empty() || !settings.loop || settings.frames, "--loop into a log never ends; give --frames");
+    source.live.replace_record = settings.replace;
     catch_stop_signals();
     const OpenSource open = [&](const openni::CameraListener& listener) { return open_source(source, listener); };
     const CaptureResult result =
         log.empty() ? capture_to_network(open, settings, url) : capture_to_log(open, settings, log);
     log_info("{} frames of {:.1f} kB to {}, {:.1f} s, {:.1f} Hz", result.frames,
              static_cast<double>(result.bytes) / static_cast<double>(std::max<std::int64_t>(result.frames, 1)) / 1e3,
-             log.empty() ? settings.channel : log, result.seconds,
+             log.empty() ? settings.channel : result.written, result.seconds,
              static_cast<double>(result.frames) / std::max(result.seconds, 1e-9));
   });
 }

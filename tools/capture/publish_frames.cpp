@@ -200,15 +200,17 @@ CaptureResult capture_to_network(const OpenSource& open, const CaptureSettings& 
 CaptureResult capture_to_log(const OpenSource& open, const CaptureSettings& settings, const std::string& file) {
   channel::require_name(settings.channel);
   FrameFeed feed(open, settings, {stop_requested, {}, {}});
-  LogWriter log(file);
+  LogWriter log(file, existing_of_recording(settings.replace));
   try {
-    const CaptureResult result = write_frames(feed, settings, log);
+    CaptureResult result = write_frames(feed, settings, log);
     log.close();
+    result.written = log.file().string();
     return result;
   } catch (const std::exception& error) {
     if (!feed.is_live()) throw;
     log.keep();  // what a camera has seen cannot be had again
-    fail("{}; what was recorded until then is in {}.partial (hs-log filter makes a log of it)", error.what(), file);
+    fail("{}; what was recorded until then is in {} (hs-log filter makes a log of it)", error.what(),
+         log.partial().string());
   }
 }
 

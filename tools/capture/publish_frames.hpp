@@ -18,6 +18,7 @@ struct CaptureSettings {
   std::optional<double> rate_hz;       ///< default: the source's own rate
   std::optional<std::int64_t> frames;  ///< end after this many
   bool loop = false;                   ///< start again at the source's end; utimes go on rising
+  bool replace = false;                ///< a log that is there, instead of taking the next number
 };
 
 /// What became of the frames.
@@ -25,6 +26,7 @@ struct CaptureResult {
   std::int64_t frames = 0;
   std::int64_t bytes = 0;
   double seconds = 0.0;
+  std::string written;  ///< the log's name, which may have got a number
 };
 
 /// Opens the source; called again at its end where the settings say so. A camera tells the listener how it is.

@@ -14,6 +14,10 @@ int run_tool(CommandLine& line, int argc, char** argv, const std::function<void(
 /// The option -l, --lcm-url, the same for every process.
 void add_lcm_url_option(CommandLine& line, std::string& url);
 
+/// The option --replace of every program that records; `recordings` names the options that it is about. Without it a
+/// recording whose name is taken gets the next number.
+void add_replace_option(CommandLine& line, bool& replace, const std::string& recordings);
+
 /// The option -c, --channel of every tool that takes frames off the bus or out of a log: a ChannelPattern.
 CommandOption add_frame_channels_option(CommandLine& line, std::string& channels);
 

@@ -46,6 +46,7 @@ struct DetectOptions {
   std::string forest_file;
   std::string url;
   std::string output_log;
+  bool replace = false;  // an output log that is there
   SearchOptions search;
   DetectProcessOptions process;
 };
@@ -61,7 +62,7 @@ void give_way() {
 void run_with_forest(const DetectOptions& options) {
   const std::shared_future<RgbdFrame> made_up = begin_to_warm_up();
   const ReadyDetector ready(make_detector(load_forest(options.forest_file), options.search), made_up.get());
-  LcmBus bus(options.url, options.output_log);
+  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run_detect_process(bus, options.process,
                      [&](const RgbdFrame& frame) { return ready.detector.detect(frame, ready.workspace); });
 }
@@ -73,7 +74,7 @@ void run_with_store(DetectOptions options) {
     return load_detector(store, options.search, made_up.get());
   });
   options.process.objects = [&] { return watch.known(); };
-  LcmBus bus(options.url, options.output_log);
+  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.hold() : watch.follow();
   run_detect_process(bus, options.process, [&](const RgbdFrame& frame) {
     const std::shared_ptr<const ReadyDetector> ready = watch.current();
@@ -107,6 +108,7 @@ int main(int argc, char** argv) {
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the results to this log");
   app.add_flag("--keep-frames", options.process.keep_frames,
                "with --output-log: write the frames too, each before its result, so that hs-pose can work on that log");
+  add_replace_option(app, options.replace, "--output-log");
   add_lcm_url_option(app, options.url);
   app.add_example("hs-detect --objects my.store");
   app.add_example("hs-detect --forest out/demo/data/forest -l file://IN.lcmlog --output-log OUT.lcmlog");

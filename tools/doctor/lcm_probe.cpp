@@ -29,7 +29,7 @@ void handle_until(LcmBus& bus, milliseconds time, const Done& done) {
 std::size_t heard_bytes(const std::string& url, const std::string& channel) {
   std::size_t largest = 0;
   try {
-    LcmBus bus(url, "", AtStart::kFail);
+    LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
     bus.subscribe(channel, [&](const Arrival& arrival) { largest = std::max(largest, arrival.bytes.size); });
     handle_until(bus, milliseconds(1000), [] { return false; });
   } catch (const std::exception&) {
@@ -42,7 +42,7 @@ std::set<std::string> heard_frame_channels(const std::string& url) {
   constexpr std::size_t kMaxChannels = 64;  // a sender of rubbish may make up names without end
   std::set<std::string> channels;
   try {
-    LcmBus bus(url, "", AtStart::kFail);
+    LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
     bus.subscribe(".*", [&](const Arrival& arrival) {
       if (is_frame_message(arrival.bytes) && channels.size() < kMaxChannels) channels.insert(arrival.channel);
     });
@@ -57,7 +57,7 @@ std::map<std::string, std::string> heard_errors(const std::string& url) {
   constexpr std::size_t kMostProcesses = 64;  // a sender of rubbish may make up names without end
   std::map<std::string, std::string> errors;
   try {
-    LcmBus bus(url, "", AtStart::kFail);
+    LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
     bus.subscribe(channel::kStatus, [&](const Arrival& arrival) {
       const auto status = decode_message<status_t>(arrival.bytes);
       const bool is_known = errors.count(status.process) > 0 || errors.size() < kMostProcesses;
@@ -74,7 +74,7 @@ SelfTest self_test(const std::string& url, std::size_t bytes) {
   constexpr int kMessages = 5;
   SelfTest result;
   try {
-    LcmBus bus(url, "", AtStart::kFail);
+    LcmBus bus(url, "", Existing::kReplaced, AtStart::kFail);
     std::vector<std::uint8_t> message(bytes);
     bool came = false;
     // Another doctor may be at work on the same bus.

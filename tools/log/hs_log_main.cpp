@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "drivers/files/camera_info.hpp"
+#include "drivers/openni/recording/oni_repair.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/log_seal.hpp"
@@ -61,6 +62,14 @@ CommandLine add_seal(CommandLine& app, Options& options) {
   return seal;
 }
 
+CommandLine add_repair(CommandLine& app, Options& options) {
+  CommandLine repair = app.add_subcommand("repair", "copies an .oni recording whose recorder was killed, with its end");
+  repair.add_option("recording", options.in, "FILE.oni, or FILE.oni.partial.oni").required();
+  repair.add_option("out", options.out, ".oni file to write").required();
+  repair.add_example("hs-log repair take.oni.partial.oni take.oni");
+  return repair;
+}
+
 CommandLine add_import(CommandLine& app, Options& options) {
   CommandLine import = app.add_subcommand("import", "makes a log of images_t of other recordings");
   import.add_option("source", options.in, kSources).required();
@@ -109,6 +118,7 @@ int main(int argc, char** argv) {
   const CommandLine info = add_info(app, options);
   const CommandLine filter = add_filter(app, options);
   const CommandLine seal = add_seal(app, options);
+  const CommandLine repair = add_repair(app, options);
   const CommandLine import = add_import(app, options);
   CommandLine exporter = app.add_subcommand("export", "writes frames or results to files");
   exporter.require_subcommand();
@@ -133,6 +143,9 @@ int main(int argc, char** argv) {
     if (!options.camera.empty()) options.recording.camera = camera_of_option(options.camera);
     if (info.given()) {
       fmt::print("{}", to_text(read_log_info(options.in, losses)));
+    } else if (repair.given()) {
+      fmt::print("{} images in {}; colour may lie an image beside its depth\n",
+                 openni::copy_repaired_oni(options.in, options.out), options.out);
     } else {
       const std::int64_t count = filter.given()   ? filter_log(options.in, options.filter, options.out, losses)
                                  : seal.given()   ? seal_with_progress(options)

@@ -27,6 +27,7 @@ struct PoseOptions {
   double model_unit_m = 1e-3;
   std::string url;
   std::string output_log;
+  bool replace = false;  // an output log that is there
   PoseSettings settings;
   std::optional<float> min_quality;
   bool follow = false;
@@ -88,7 +89,7 @@ void run_with_models(PoseOptions options) {
   if (options.min_quality) publish_from(*options.min_quality, options.settings);
   for (const auto& [name, mesh] : meshes) options.process.models.insert(name);
   auto estimator = warmed_up(PoseEstimator(std::move(meshes), options.settings, threads), made_up.get());
-  LcmBus bus(options.url, options.output_log);
+  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run(bus, options, [&] { return estimator; });
 }
 
@@ -126,7 +127,7 @@ void run_with_store(PoseOptions options) {
   store::StoreWatch<PoseEstimator> watch(options.objects, load);
   const auto without_models = std::make_shared<const PoseEstimator>(std::map<std::string, Mesh>(), options.settings);
   options.process.objects = [&] { return watch.known(); };
-  LcmBus bus(options.url, options.output_log);
+  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.hold() : watch.follow();
   run(bus, options, [&] {
     std::shared_ptr<const PoseEstimator> estimator = watch.current();
@@ -164,6 +165,7 @@ int main(int argc, char** argv) {
   app.add_flag(
       "--keep-frames", options.process.keep_frames,
       "with --output-log: write frames and detections too, each before its poses, for hs-track and hs-log export");
+  add_replace_option(app, options.replace, "--output-log");
   add_lcm_url_option(app, options.url);
   app.add_example("hs-pose --objects my.store");
   app.add_example("hs-pose --models out/demo/data/training/models");

@@ -21,6 +21,7 @@ struct TrackOptions {
   double model_unit_m = 1e-3;
   std::string url;
   std::string output_log;
+  bool replace = false;  // an output log that is there
   std::string cameras_file;
   std::vector<std::string> camera_poses;
   bool drake_viewer = false;
@@ -52,7 +53,7 @@ void run_with_models(const TrackOptions& options) {
   auto models = std::make_shared<const tracks::TrackModels>(
       options.models.empty() ? tracks::TrackModels() : track::load_track_models(options.models, options.model_unit_m));
   if (models->empty()) log_warning("neither --objects nor --models: what is hidden or gone cannot be told");
-  LcmBus bus(options.url, options.output_log);
+  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   run(bus, options, [&] { return models; });
 }
 
@@ -63,7 +64,7 @@ void run_with_store(TrackOptions options) {
   });
   const auto none = std::make_shared<const tracks::TrackModels>();
   options.process.objects = [&] { return watch.known(); };
-  LcmBus bus(options.url, options.output_log);
+  LcmBus bus(options.url, options.output_log, existing_of_recording(options.replace));
   bus.is_log() ? watch.hold() : watch.follow();
   run(bus, options, [&] {
     std::shared_ptr<const tracks::TrackModels> models = watch.current();
@@ -95,6 +96,7 @@ void add_options(CommandLine& app, TrackOptions& options, std::string& camera) {
                "publish each object's pose on <OBJECT>_<NUMBER>_POSE too, as bot_core's pose_t");
   add_frame_channels_option(app, options.process.frame_channels);
   app.add_option("--output-log", options.output_log, "with -l file://LOG: write the objects to this log");
+  add_replace_option(app, options.replace, "--output-log");
   add_lcm_url_option(app, options.url);
 }
 

@@ -5,10 +5,13 @@
 
 #include "drivers/openni/openni_device.hpp"
 #include "drivers/openni/openni_parts.hpp"
+#include "drivers/openni/recording/oni_repair.hpp"
 #include "drivers/openni/recording/oni_times.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/recording_log.hpp"
+#include "pipeline/base/service_notice.hpp"
 
 namespace houghstream::openni {
 namespace {
@@ -27,11 +30,26 @@ FirstImages first_recorded(const std::string& file) {
   return first;
 }
 
+/// What cannot be mended stays as it is.
+void end_interrupted(const std::filesystem::path& file) {
+  try {
+    const std::size_t images = repair_oni(file);
+    log_info("{}: is ended and can be played, {} images; colour may lie an image beside its depth", file.string(),
+             images);
+  } catch (const InputError& error) {
+    log_warning("{}", error.what());
+  }
+}
+
 }  // namespace
 
-OpenniRecording::OpenniRecording(const std::string& file, bool jpeg, ::openni::VideoStream& depth,
+OpenniRecording::OpenniRecording(const CameraOptions& options, ::openni::VideoStream& depth,
                                  ::openni::VideoStream& colour)
-    : whole_(file, ".partial.oni"), file_(whole_.partial().string()), jpeg_(jpeg) {
+    : whole_(options.record, ".partial.oni", existing_of_recording(options.replace_record)),
+      file_(whole_.partial().string()),
+      jpeg_(options.record_jpeg) {
+  log_recording_names(whole_);
+  if (whole_.interrupted()) end_interrupted(*whole_.interrupted());
   check_openni(recorder_.create(file_.c_str()), file_ + ": cannot be recorded to");
   check_openni(recorder_.attach(depth, false), file_ + ": depth");
   check_openni(recorder_.attach(colour, jpeg_), file_ + ": colour");
@@ -58,6 +76,7 @@ void OpenniRecording::mend_times(const FirstImages& recorded) {
 }
 
 void OpenniRecording::finish() noexcept {
+  const StillFinishing finishing;  // a long recording is read from its disk
   FirstImages recorded;
   try {
     check_oni(file_);

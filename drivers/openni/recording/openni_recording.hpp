@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/openni/camera_options.hpp"
 #include "drivers/openni/recording/recorded_start.hpp"
 #include "drivers/openni/timestamp_pairing.hpp"
 #include "pipeline/base/files.hpp"
@@ -18,8 +19,9 @@ namespace houghstream::openni {
 /// in the file are mended once it is finished.
 class OpenniRecording {
  public:
-  /// Throws InputError where the file cannot be written.
-  OpenniRecording(const std::string& file, bool jpeg, ::openni::VideoStream& depth, ::openni::VideoStream& colour);
+  /// Records to the file that the options name, or to its next number. What a killed program has recorded under that
+  /// name is ended, so that it can be played. Throws InputError where the file cannot be written.
+  OpenniRecording(const CameraOptions& options, ::openni::VideoStream& depth, ::openni::VideoStream& colour);
 
   bool started() const { return started_us_ > 0; }
   void start();

@@ -11,14 +11,20 @@
 namespace houghstream {
 namespace {
 
-TEST(ServiceNotice, GoesToTheSocketThatTheManagerNames) {
-  const std::string path = testing::TempDir() + "/service_notice_" + std::to_string(getpid());
+/// A service manager's socket.
+int open_manager(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::strncpy(address.sun_path, path.c_str(), sizeof(address.sun_path) - 1);
   const int manager = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
-  ASSERT_EQ(bind(manager, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(bind(manager, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  return manager;
+}
+
+TEST(ServiceNotice, GoesToTheSocketThatTheManagerNames) {
+  const std::string path = testing::TempDir() + "/service_notice_" + std::to_string(getpid());
+  const int manager = open_manager(path);
   notify_service("READY=1");
   char heard[64] = {};
   EXPECT_EQ(recv(manager, heard, sizeof heard, 0), 7);
@@ -28,6 +34,24 @@ TEST(ServiceNotice, GoesToTheSocketThatTheManagerNames) {
   EXPECT_LT(recv(manager, heard, sizeof heard, 0), 0) << "without a manager nothing is sent";
   setenv("NOTIFY_SOCKET", "/no/such/socket", 1);
   notify_service("READY=1");
+  unsetenv("NOTIFY_SOCKET");
+  close(manager);
+  unlink(path.c_str());
+}
+
+TEST(StillFinishing, AsksForTimeWhileItLives) {
+  const std::string path = testing::TempDir() + "/still_finishing_" + std::to_string(getpid());
+  const int manager = open_manager(path);
+  char heard[64] = {};
+  {
+    const StillFinishing finishing;
+    for (int i = 0; i < 1000 && recv(manager, heard, sizeof heard, 0) < 0; ++i) usleep(10'000);
+    EXPECT_STREQ(heard, "EXTEND_TIMEOUT_USEC=5000000\nSTOPPING=1");
+  }
+  while (recv(manager, heard, sizeof heard, 0) >= 0) {
+  }
+  usleep(1'200'000);
+  EXPECT_LT(recv(manager, heard, sizeof heard, 0), 0) << "it has ended";
   unsetenv("NOTIFY_SOCKET");
   close(manager);
   unlink(path.c_str());
