@@ -26,16 +26,34 @@ Ending describe(int status) {
   return {code == 0, false, fmt::format("ended with status {}", code)};
 }
 
+/// This process' environment, but for the service manager of the process that it is for.
+std::vector<std::string> environment_for(const std::string& notify_socket) {
+  const std::string key = "NOTIFY_SOCKET=";
+  std::vector<std::string> words;
+  for (char** word = environ; *word != nullptr; ++word)
+    if (std::strncmp(*word, key.c_str(), key.size()) != 0) words.emplace_back(*word);
+  if (!notify_socket.empty()) words.push_back(key + notify_socket);
+  return words;
+}
+
+/// As exec takes them; they are those of `words`.
+std::vector<char*> pointers_to(const std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
+  for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
 }  // namespace
 
 Child::Child(const std::vector<std::string>& command, bool hears_words) {
   const std::string& program = command.at(0);
   require(access(program.c_str(), X_OK) == 0, "{}: cannot be started: {}", program, std::strerror(errno));
   // Between fork and exec only what is safe in a process with threads: memory is asked for before.
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<std::string> environment = environment_for(notices_.name());
+  const std::vector<char*> arguments = pointers_to(command);
+  const std::vector<char*> variables = pointers_to(environment);
   // Neither end waits: where this process stands still, lines are lost and the child goes on.
   std::array<int, 2> pipe = {-1, -1};
   require(!hears_words || pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) == 0, "{}: cannot be heard: {}", program,
@@ -51,7 +69,7 @@ Child::Child(const std::vector<std::string>& command, bool hears_words) {
     if (hears_words) dup2(pipe[1], STDERR_FILENO);
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(1);  // the parent died before it could be watched
-    execv(arguments[0], arguments.data());
+    execve(arguments[0], arguments.data(), variables.data());
     _exit(127);
   }
   setpgid(pid_, pid_);  // whichever of the two comes first
@@ -92,6 +110,12 @@ std::optional<Ending> Child::ending() {
     signal(SIGKILL);  // what it has started and left behind
   }
   return ending_;
+}
+
+bool Child::needs_time() {
+  const auto now = std::chrono::steady_clock::now();
+  if (const auto extension = notices_.extension()) needs_time_until_ = now + *extension;
+  return now < needs_time_until_;
 }
 
 void Child::signal(int number) const {

@@ -2,9 +2,12 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "tools/stream/notice_socket.hpp"
 
 namespace houghstream::stream {
 
@@ -32,6 +35,8 @@ class Child {
   std::optional<Ending> ending();
   /// The last line of its stderr, for people; "" where it has written none, or is not heard.
   const std::string& last_words() const { return last_words_; }
+  /// Whether it has said of late that it is ending and needs more time ($NOTIFY_SOCKET, EXTEND_TIMEOUT_USEC).
+  bool needs_time();
   /// Sends a signal to it and to what it has started.
   void signal(int number) const;
   pid_t pid() const { return pid_; }
@@ -39,6 +44,8 @@ class Child {
  private:
   void pass_on_words();
 
+  NoticeSocket notices_;
+  std::chrono::steady_clock::time_point needs_time_until_;
   pid_t pid_ = 0;
   int words_ = -1;  // where its stderr is read
   std::string line_;

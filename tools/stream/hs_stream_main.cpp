@@ -50,7 +50,8 @@ void add_options(CommandLine& app, StreamOptions& options, Pace& pace) {
   app.add_option("--track-options", options.track_options, "further options for hs-track");
   app.add_option("--view-options", options.view_options, "further options for hs-view");
   app.add_option("--every", pace.every, "seconds between two lines of state").range(0.1, 3600.0).capture_default_str();
-  app.add_option("--patience", pace.patience, "seconds in which to end; a video may need more")
+  app.add_option("--patience", pace.patience,
+                 "seconds in which to end; who says that it writes the end of a file gets ten minutes")
       .range(0.1, 600.0)
       .capture_default_str();
   app.add_option(

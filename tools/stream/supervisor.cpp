@@ -44,7 +44,9 @@ Supervisor::~Supervisor() {
 }
 
 void Supervisor::start(Member& member) {
-  member.child = std::make_unique<Child>(member.plan.command, true);
+  std::vector<std::string>& command = member.plan.command;
+  if (member.restarts > 0) command.erase(std::remove(command.begin(), command.end(), "--replace"), command.end());
+  member.child = std::make_unique<Child>(command, true);
   member.since = Clock::now();
   member.has_spoken = false;
   member.silent = Clock::duration(0);
@@ -88,13 +90,15 @@ void Supervisor::restart_if_due(Member& member) {
 }
 
 void Supervisor::look_for_hang(Member& member, Clock::duration listened) {
-  member.silent += listened;
+  const bool needs_time = member.child->needs_time();
+  member.silent = needs_time ? Clock::duration(0) : member.silent + listened;
   const milliseconds limit = member.has_spoken ? settings_.silence : settings_.start_silence;
   if (!member.asked_end && member.silent >= limit) {
     say_(fmt::format("{} has said nothing for {:.1f} s: it hangs and is ended", member.plan.name, seconds(limit)));
     member.child->signal(SIGTERM);
     member.asked_end = Clock::now();
-  } else if (member.asked_end && Clock::now() - *member.asked_end > settings_.patience) {
+  } else if (member.asked_end &&
+             Clock::now() - *member.asked_end > (needs_time ? settings_.finishing : settings_.patience)) {
     member.child->signal(SIGKILL);
   }
 }
@@ -158,18 +162,33 @@ void Supervisor::note_deaf() {
   last_step_ = Clock::now();
 }
 
+std::string Supervisor::names_of_running() {
+  std::string names;
+  for (Member& member : members_) {
+    if (member.child && !member.child->ending()) names += (names.empty() ? "" : ", ") + member.plan.name;
+  }
+  return names;
+}
+
 std::vector<std::string> Supervisor::stop() {
   for (const Member& member : members_) {
     if (member.child) member.child->signal(SIGINT);
   }
-  const auto running = [](Member& member) { return member.child && !member.child->ending(); };
-  const Clock::time_point end = Clock::now() + settings_.patience;
-  while (Clock::now() < end && std::any_of(members_.begin(), members_.end(), running)) {
+  const Clock::time_point begun = Clock::now();
+  const auto is_awaited = [&](Member& member) {
+    if (!member.child || member.child->ending()) return false;
+    const bool needs_time = member.child->needs_time();
+    return Clock::now() - begun < (needs_time ? settings_.finishing : settings_.patience);
+  };
+  bool has_said = false;
+  while (std::any_of(members_.begin(), members_.end(), is_awaited)) {
+    if (Clock::now() - begun > settings_.patience && !std::exchange(has_said, true))
+      say_(fmt::format("waiting for {}, which writes the end of a file", names_of_running()));
     std::this_thread::sleep_for(milliseconds(10));
   }
   std::vector<std::string> killed;
   for (Member& member : members_) {
-    if (running(member)) killed.push_back(member.plan.name);
+    if (member.child && !member.child->ending()) killed.push_back(member.plan.name);
     member.child.reset();
   }
   return killed;

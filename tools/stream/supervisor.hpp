@@ -26,6 +26,7 @@ struct SupervisorSettings {
   int most_failures = 8;                              ///< in a row: then it is given up, and the stream ends
   std::chrono::milliseconds start_time{3000};         ///< who runs that long has started
   std::chrono::milliseconds patience{1500};           ///< for a process to end by itself when it is asked to
+  std::chrono::milliseconds finishing{600'000};       ///< instead, for one that says that it is still writing
   std::chrono::milliseconds silence{10'000};          ///< who has spoken and then says nothing for so long hangs
   std::chrono::milliseconds start_silence{60'000};    ///< the same for one that has not spoken yet: it may still read
   std::chrono::milliseconds others_patience{10'000};  ///< who awaits the others starts after so long without them
@@ -35,7 +36,9 @@ struct SupervisorSettings {
 /// grows with each failure that follows, until it has failed `most_failures` times in a row. One that fails before it
 /// has ever run is not: it would fail again for the same reason. One that awaits the others starts when each of them
 /// has spoken, or `others_patience` after them. One that hangs, as its silence tells, is asked to end (SIGTERM), killed
-/// where it does not (SIGKILL after `patience`), and started again likewise. Only silence that was listened to counts:
+/// where it does not (SIGKILL after `patience`, or `finishing` where it says that it is still writing), and started
+/// again likewise. A process that is started again replaces no file that is there, whatever --replace said: it may be
+/// what it has recorded before. Only silence that was listened to counts:
 /// where this process has stood still itself, or its bus was gone, its children have not. Call it from one thread.
 class Supervisor {
  public:
@@ -61,7 +64,8 @@ class Supervisor {
   /// Since the last step nothing could have been heard of any.
   void note_deaf();
 
-  /// Asks all to end, waits, insists after `patience`. Returns the names of those that had to be killed.
+  /// Asks all to end, waits, insists after `patience`, or, with who says that it needs more time, `finishing`. Returns
+  /// the names of those that had to be killed.
   std::vector<std::string> stop();
 
   /// What there is to know of a process.
@@ -93,6 +97,7 @@ class Supervisor {
   void look_for_hang(Member& member, Clock::duration listened);
   void plan_restart(Member& member, const std::string& words);
   void restart_if_due(Member& member);
+  std::string names_of_running();
 
   std::vector<Member> members_;
   bool source_has_ended_ = false;  // by itself

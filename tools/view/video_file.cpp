@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_line.hpp"
+#include "pipeline/base/recording_log.hpp"
 #include "pipeline/base/stop_signal.hpp"
+#include "tools/view/video_remux.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -18,12 +22,23 @@ std::int64_t frames_in(const std::filesystem::path& video) {
   return written.isOpened() ? std::llround(written.get(cv::CAP_PROP_FRAME_COUNT)) : 0;
 }
 
-/// FFmpeg chooses the format by it; these may hold H.264.
-bool is_video_name(const std::filesystem::path& file) {
+std::string lower_extension(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".mp4" || ending == ".m4v" || ending == ".mov" || ending == ".mkv" || ending == ".avi";
+  return ending;
+}
+
+/// Formats whose index comes last: without it nothing of them can be played.
+bool needs_end(const std::filesystem::path& file) {
+  const std::string ending = lower_extension(file);
+  return ending == ".mp4" || ending == ".m4v" || ending == ".mov";
+}
+
+/// FFmpeg chooses the format by it; these may hold H.264.
+bool is_video_name(const std::filesystem::path& file) {
+  const std::string ending = lower_extension(file);
+  return needs_end(file) || ending == ".mkv" || ending == ".avi";
 }
 
 // H.264 wants even sides, and its encoders refuse very long ones. The first picture may be of a single row or column of
@@ -40,13 +55,15 @@ cv::Size video_size(const cv::Size& picture) {
 
 }  // namespace
 
-VideoFile::VideoFile(std::filesystem::path file, double rate_hz) : file_(std::move(file)), rate_hz_(rate_hz) {
+VideoFile::VideoFile(std::filesystem::path file, double rate_hz, Existing existing)
+    : file_(std::move(file)), existing_(existing), rate_hz_(rate_hz) {
   require(is_video_name(file_), "{}: no name of a video, expected one that ends with .mp4", file_.string());
   require_writable(file_);
 }
 
 void VideoFile::open(const cv::Mat& picture) {
-  whole_.emplace(file_, ".partial" + file_.extension().string());
+  whole_.emplace(file_, ".partial" + (needs_end(file_) ? ".mkv" : file_.extension().string()), existing_);
+  log_recording_names(*whole_);
   const int codec = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
   size_ = video_size(picture.size());
   const bool opened = writer_.open(whole_->partial().string(), cv::CAP_FFMPEG, codec, rate_hz_, size_);
@@ -85,14 +102,35 @@ void VideoFile::add(const cv::Mat& picture, std::int64_t slot) {
   last_ = fitting;
 }
 
-void VideoFile::finish() {
-  if (!whole_) return;
-  writer_.release();
-  const std::int64_t frames = frames_in(whole_->partial());
+// The frames are in a format that needs no end; the one that was asked for is made of it, and takes its place.
+void VideoFile::complete() {
+  std::optional<WholeFile> remuxed;
+  if (needs_end(file_)) {
+    remuxed.emplace(whole_->partial(), lower_extension(file_));
+    remux_video(whole_->partial(), remuxed->partial(), rate_hz_);
+  }
+  const std::int64_t frames = frames_in(remuxed ? remuxed->partial() : whole_->partial());
   require(frames == frames_written_,
           "{}: the video holds {} frames, expected the {} that were drawn; is the disk full?", file_.string(), frames,
           frames_written_);
+  if (remuxed) remuxed->publish();
   whole_->publish();
+}
+
+void VideoFile::finish() {
+  if (!whole_) return;
+  const auto start = std::chrono::steady_clock::now();
+  log_info("{}: the end of the video is being written", whole_->file().string());
+  writer_.release();
+  try {
+    complete();
+  } catch (const InputError& error) {
+    whole_->keep();  // what was seen cannot be had again
+    fail("{}; what could be written stays in {}", error.what(), whole_->partial().string());
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  log_info("{}: the video is whole, {} frames; its end took {:.1f} s", whole_->file().string(), frames_written_,
+           took.count());
   whole_.reset();
 }
 

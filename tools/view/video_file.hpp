@@ -10,20 +10,23 @@
 
 namespace houghstream::view {
 
-/// Writes an MP4 with H.264, which every browser plays, at a constant rate. A picture belongs to a slot of
-/// 1/rate seconds; a slot without a picture repeats the one before, so that the video lasts as long as the stream did;
-/// but once the program is asked to end, a gap of more than ten seconds is left out.
+/// Writes an MP4 with H.264, which every browser plays, at a constant rate. Until it is finished the frames are in a
+/// FILE.mp4.partial.mkv, which can be played however the program ends, but for the last hundred frames or so: an MP4
+/// without its end cannot. A picture belongs to a slot of 1/rate seconds; a slot without a picture repeats the one
+/// before, so that the video lasts as long as the stream did; but once the program is asked to end, a gap of more than
+/// ten seconds is left out.
 class VideoFile {
  public:
   /// Throws InputError where the file's name does not say that it is a video, or it cannot be written.
-  VideoFile(std::filesystem::path file, double rate_hz);
+  VideoFile(std::filesystem::path file, double rate_hz, Existing existing = Existing::kReplaced);
 
   /// Slots must grow. The video has the size of the first picture, made even in both directions; one of another size
   /// (the camera's mode has changed) is fitted into it. Throws InputError when the file cannot be written.
   void add(const cv::Mat& picture, std::int64_t slot);
 
-  /// Ends the video, which is in its place from here on, and not before (WholeFile). Throws InputError where it does
-  /// not hold all that was added, as on a full disk; what was in its place stays.
+  /// Ends the video, which is in its place from here on, and not before (WholeFile), and logs how long that took.
+  /// Throws InputError where it does not hold all that was added, as on a full disk; what was in its place stays, and
+  /// so does what could be written of it, under the name that the error says.
   void finish();
 
   std::int64_t frames_written() const { return frames_written_; }
@@ -31,8 +34,10 @@ class VideoFile {
  private:
   void open(const cv::Mat& picture);
   cv::Mat fitted(const cv::Mat& picture) const;
+  void complete();
 
   std::filesystem::path file_;
+  Existing existing_;
   std::optional<WholeFile> whole_;
   double rate_hz_;
   cv::VideoWriter writer_;

@@ -21,6 +21,7 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
       .positive();
   app.add_option("--video", outputs.video, "write a video to this file (.mp4)");
   app.add_option("--pictures", outputs.pictures, "write every picture drawn to this folder");
+  houghstream::add_replace_option(app, outputs.replace, "--video or --pictures");
   app.add_flag("--preview", show.preview,
                "send pictures as JPEG below 100 kB on HOUGHSTREAM_PREVIEW, for lcm-spy and others with small buffers");
   app.add_option("--http", show.http,

@@ -8,6 +8,7 @@
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/base/recording_names.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -35,14 +36,18 @@ ViewOutputs::ViewOutputs(OutputSettings settings) : settings_(std::move(settings
     require_image_format(settings_.snapshot);
     require_writable(settings_.snapshot);
   }
-  if (!settings_.video.empty()) video_ = std::make_unique<VideoFile>(settings_.video, settings_.rate_hz);
+  if (settings_.video.empty()) return;
+  video_ = std::make_unique<VideoFile>(settings_.video, settings_.rate_hz, existing_of_recording(settings_.replace));
 }
 
 void ViewOutputs::add(const cv::Mat& picture, std::int64_t utime, std::int64_t slot) {
   ++added_;
   last_ = picture;
   if (video_) video_->add(picture, slot);
-  if (!settings_.pictures.empty()) write_picture(settings_.pictures / fmt::format("{}.jpg", utime), picture);
+  if (!settings_.pictures.empty()) {
+    const fs::path file = settings_.pictures / fmt::format("{}.jpg", utime);
+    write_picture(settings_.replace ? file : next_recording_name(file), picture);
+  }
   if (!settings_.snapshot.empty() && added_ == settings_.snapshot_after) {
     write_picture(settings_.snapshot, picture);
     snapshot_written_ = true;

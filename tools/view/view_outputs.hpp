@@ -16,6 +16,7 @@ struct OutputSettings {
   std::filesystem::path video;      ///< MP4
   std::filesystem::path pictures;   ///< folder for every picture drawn, UTIME.jpg
   double rate_hz = 10.0;            ///< of the video
+  bool replace = false;             ///< a video and pictures that are there, instead of taking the next number
 };
 
 /// Writes pictures to files.

@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <opencv2/core/utility.hpp>
+#include <optional>
 
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "tools/view/bus_watcher.hpp"
 
@@ -47,6 +49,9 @@ void run_viewer(const ViewerSettings& settings) {
     if (const auto matched = watcher.next(std::chrono::milliseconds(20))) frame_show.show(*matched, watcher);
     if (!frame_show.handle_keys(watcher)) break;
   }
+  // On a busy machine, and with a long video, the end takes longer than who started this program would wait.
+  std::optional<StillFinishing> finishing;
+  if (settings.show.writes()) finishing.emplace();
   watcher.stop();
   while (const auto matched = watcher.next(std::chrono::milliseconds(0))) frame_show.show(*matched, watcher);
   frame_show.finish();  // before the last word, which a bus that is gone does not take: a video must be whole

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/service_notice.hpp"
 #include "tests/test_files.hpp"
 
 namespace houghstream::stream {
@@ -36,6 +37,26 @@ TEST(Child, TellsHowItEnded) {
   Child killed({"/bin/sh", "-c", "exec sleep 100"});
   killed.signal(SIGTERM);
   EXPECT_TRUE(wait_for(killed).by_signal);
+}
+
+TEST(Child, HasAServiceManagerOfItsOwn) {
+  setenv("NOTIFY_SOCKET", "/of/somebody/else", 1);
+  const auto folder = fresh_folder("child_notice");
+  Child child({"/bin/sh", "-c", "echo \"$NOTIFY_SOCKET\" >" + (folder / "name").string() + "; exec sleep 100"});
+  for (int i = 0; i < 1000 && read_text(folder / "name").empty(); ++i) std::this_thread::sleep_for(milliseconds(10));
+  const std::string name = read_text(folder / "name");
+  EXPECT_EQ(name.substr(0, 1), "@");
+  EXPECT_EQ(read_text(folder / "name").find("/of/somebody"), std::string::npos);
+  EXPECT_FALSE(child.needs_time());
+  setenv("NOTIFY_SOCKET", name.substr(0, name.find('\n')).c_str(), 1);
+  notify_service("READY=1");
+  EXPECT_FALSE(child.needs_time());
+  notify_service("EXTEND_TIMEOUT_USEC=5000000");
+  EXPECT_TRUE(child.needs_time());
+  EXPECT_TRUE(child.needs_time()) << "for as long as it has asked for";
+  notify_service("EXTEND_TIMEOUT_USEC=0");
+  EXPECT_FALSE(child.needs_time());
+  unsetenv("NOTIFY_SOCKET");
 }
 
 TEST(Child, DoesNotOutliveItsOwner) {

@@ -83,6 +83,54 @@ TEST(Supervisor, WhoDoesNotEndIsKilled) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, settings.patience);
 }
 
+/// A process that needs a second to end, and says so with the words of sd_notify(3) or not.
+ChildPlan slow_to_end(const std::filesystem::path& folder, bool says_so) {
+  const std::string notice =
+      says_so ? "python3 -c 'import os, socket; socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM).sendto("
+                "b\"EXTEND_TIMEOUT_USEC=30000000\", \"\\0\" + os.environ[\"NOTIFY_SOCKET\"][1:])'; "
+              : "";
+  return shell("slow", "trap '" + std::string("touch ") + (folder / "asked").string() + "' INT; touch " +
+                           (folder / "ready").string() + "; while [ ! -e " + (folder / "asked").string() +
+                           " ]; do sleep 0.02; done; " + notice + "sleep 1; touch " + (folder / "whole").string());
+}
+
+TEST(Supervisor, WhoSaysThatItIsStillWritingIsWaitedFor) {
+  for (const bool says_so : {true, false}) {
+    const auto folder = fresh_folder("supervisor_slow");
+    SupervisorSettings settings = quick();
+    settings.patience = milliseconds(says_so ? 5000 : 100);
+    std::vector<std::string> lines;
+    Supervisor supervisor({slow_to_end(folder, says_so)}, settings,
+                          [&](const std::string& words) { lines.push_back(words); });
+    ASSERT_TRUE(step_until(supervisor, [&] { return std::filesystem::exists(folder / "ready"); }));
+    const std::vector<std::string> killed = supervisor.stop();
+    EXPECT_EQ(killed.empty(), says_so);
+    EXPECT_EQ(std::filesystem::exists(folder / "whole"), says_so);
+  }
+}
+
+TEST(Supervisor, WhoSaysSoForEverIsKilledAllTheSame) {
+  const auto folder = fresh_folder("supervisor_for_ever");
+  SupervisorSettings settings = quick();
+  settings.patience = milliseconds(5000);
+  settings.finishing = milliseconds(5500);
+  ChildPlan plan = slow_to_end(folder, true);
+  plan.command.back() += "; sleep 100";
+  Supervisor supervisor({plan}, settings, be_silent);
+  ASSERT_TRUE(step_until(supervisor, [&] { return std::filesystem::exists(folder / "ready"); }));
+  EXPECT_EQ(supervisor.stop(), std::vector<std::string>{"slow"});
+}
+
+TEST(Supervisor, ARestartReplacesNoFile) {
+  const auto folder = fresh_folder("supervisor_replace");
+  const std::filesystem::path file = folder / "words";
+  Supervisor supervisor(
+      {{"a", {"/bin/sh", "-c", "echo \"$@\" >>" + file.string() + "; sleep 0.2; exit 3", "a", "--replace", "x"}}},
+      quick(), be_silent);
+  ASSERT_TRUE(step_until(supervisor, [&] { return supervisor.states()[0].restarts == 2; }));
+  EXPECT_EQ(read_text(file).substr(0, 14), "--replace x\nx\n");
+}
+
 TEST(Supervisor, WhoHangsIsKilledAndStartedAgain) {
   SupervisorSettings settings = quick();
   settings.silence = milliseconds(300);

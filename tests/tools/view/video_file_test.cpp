@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::view {
 namespace {
@@ -106,6 +109,55 @@ TEST(VideoFile, WhatAFullDiskCutsTakesNobodysPlace) {
   }
   EXPECT_EQ(read_file(file, "a video"), "what was there before");
   std::filesystem::remove(file);
+}
+
+/// Noise, which does not compress: what a killed program has handed to the encoder reaches the file soon.
+cv::Mat noise(int seed) {
+  cv::Mat picture(kSize, CV_8UC3);
+  cv::RNG(static_cast<std::uint64_t>(seed)).fill(picture, cv::RNG::UNIFORM, 0, 256);
+  return picture;
+}
+
+TEST(VideoFile, WhatAKilledProgramHasDrawnCanBePlayed) {
+  const std::filesystem::path folder = fresh_folder("video_killed");
+  const std::filesystem::path file = folder / "video.mp4";
+  constexpr int kFrames = 400;
+  const pid_t killed = fork();
+  if (killed == 0) {
+    VideoFile video(file, 10.0, Existing::kRecordingKept);
+    for (int i = 0; i < kFrames; ++i) video.add(noise(i), i);
+    raise(SIGKILL);
+  }
+  ASSERT_EQ(waitpid(killed, nullptr, 0), killed);
+  VideoFile video(file, 10.0, Existing::kRecordingKept);
+  video.add(noise(0), 0);
+  video.finish();
+  EXPECT_TRUE(std::filesystem::exists(file));
+  cv::VideoCapture interrupted((folder / "video.interrupted-1.mkv").string());
+  ASSERT_TRUE(interrupted.isOpened());
+  int frames = 0;
+  for (cv::Mat picture; interrupted.read(picture); ++frames) EXPECT_EQ(picture.size(), kSize);
+  EXPECT_GE(frames, kFrames / 2) << "but for the last ten seconds, which encoder and format hold back";
+  std::filesystem::remove_all(folder);
+}
+
+TEST(VideoFile, EachFormatHoldsAllFramesAtTheRate) {
+  const std::filesystem::path folder = fresh_folder("video_formats");
+  for (const char* name : {"a.mp4", "a.mkv", "a.avi", "a.mov", "A.M4V"}) {
+    for (const double rate_hz : {30.0, 7.5}) {
+      VideoFile video(folder / name, rate_hz);
+      for (int i = 0; i < 70; ++i) video.add(noise(i), i);
+      video.finish();
+      cv::VideoCapture written((folder / name).string());
+      EXPECT_NEAR(written.get(cv::CAP_PROP_FPS), rate_hz, 0.01) << name;
+      int frames = 0;
+      for (cv::Mat picture; written.read(picture);) ++frames;
+      EXPECT_EQ(frames, 70) << name << " " << rate_hz;
+    }
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()), 5)
+      << "nothing else is left";
+  std::filesystem::remove_all(folder);
 }
 
 TEST(VideoFile, WhatCannotBeWrittenIsRefusedBeforeAnythingIsSeen) {

@@ -6,17 +6,12 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "tests/test_files.hpp"
 
 namespace houghstream::view {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path fresh_folder(const std::string& name) {
-  fs::path folder = fs::path(testing::TempDir()) / ("view_outputs_test_" + name);
-  fs::remove_all(folder);
-  return folder;
-}
 
 cv::Mat grey(int level) {
   return cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(level));
@@ -27,7 +22,7 @@ int level_of(const fs::path& file) {
 }
 
 TEST(ViewOutputs, SnapshotIsThePictureAskedForAndThenAllIsDone) {
-  const fs::path folder = fresh_folder("snapshot");
+  const fs::path folder = fresh_folder("view_outputs_snapshot");
   OutputSettings settings;
   settings.snapshot = folder / "new" / "shot.png";
   settings.snapshot_after = 2;
@@ -43,7 +38,7 @@ TEST(ViewOutputs, SnapshotIsThePictureAskedForAndThenAllIsDone) {
 
 TEST(ViewOutputs, SnapshotOfAShortStreamIsItsLastPicture) {
   OutputSettings settings;
-  settings.snapshot = fresh_folder("short") / "shot.png";
+  settings.snapshot = fresh_folder("view_outputs_short") / "shot.png";
   settings.snapshot_after = 100;
   ViewOutputs outputs(settings);
   outputs.add(grey(10), 1, 0);
@@ -53,7 +48,7 @@ TEST(ViewOutputs, SnapshotOfAShortStreamIsItsLastPicture) {
 }
 
 TEST(ViewOutputs, VideoAndPicturesGoOnAfterTheSnapshot) {
-  const fs::path folder = fresh_folder("all");
+  const fs::path folder = fresh_folder("view_outputs_all");
   OutputSettings settings;
   settings.snapshot = folder / "shot.png";
   settings.video = folder / "video.mp4";
@@ -67,15 +62,32 @@ TEST(ViewOutputs, VideoAndPicturesGoOnAfterTheSnapshot) {
   EXPECT_GT(fs::file_size(settings.video), 0U);
 }
 
+TEST(ViewOutputs, PicturesAndVideosThatAreThereStay) {
+  const fs::path folder = fresh_folder("view_outputs_again");
+  OutputSettings settings;
+  settings.video = folder / "video.mp4";
+  settings.pictures = folder / "pictures";
+  for (const int level : {10, 60, 110}) {
+    settings.replace = level == 110;
+    ViewOutputs outputs(settings);
+    outputs.add(grey(level), 222, 0);
+    outputs.finish();
+  }
+  EXPECT_NEAR(level_of(settings.pictures / "222.jpg"), 110, 2);
+  EXPECT_NEAR(level_of(settings.pictures / "222_2.jpg"), 60, 2);
+  EXPECT_TRUE(fs::exists(settings.video) && fs::exists(folder / "video_2.mp4"));
+  EXPECT_FALSE(fs::exists(folder / "video_3.mp4"));
+}
+
 TEST(ViewOutputs, NoFrameAtAllOrABadPathIsAnError) {
   OutputSettings settings;
-  settings.snapshot = fresh_folder("bad") / "shot.png";
+  settings.snapshot = fresh_folder("view_outputs_bad") / "shot.png";
   EXPECT_THROW(ViewOutputs(settings).finish(), InputError);
-  settings.snapshot = fresh_folder("bad") / "shot.nosuchformat";
+  settings.snapshot = fresh_folder("view_outputs_bad") / "shot.nosuchformat";
   EXPECT_THROW(ViewOutputs{settings}, InputError);
   settings.snapshot = "/proc/nowhere/shot.png";
   EXPECT_THROW(ViewOutputs{settings}, InputError);
-  const fs::path folder = fresh_folder("bad");
+  const fs::path folder = fresh_folder("view_outputs_bad");
   fs::create_directories(folder / "folder.png");
   settings.snapshot = folder / "folder.png";
   EXPECT_THROW(ViewOutputs{settings}, InputError);
