@@ -140,9 +140,10 @@ def check_import(tools, folder, events):
 def check_recording(tools, camera, folder, script):
     """What is replayed from a .oni file is, message by message, what went out live."""
     camera.write(script)
-    live = run(tools / "hs-capture", "--source", "openni2", "--frames", LIVE_FRAMES, "--log", folder / "live.log", "--record", folder / "live.oni")
+    live = run(tools / "hs-capture", "--source", "openni2", "--frames", LIVE_FRAMES, "--log", folder / "live.log", "--record",
+               folder / "live.oni", "--replace")  # fmt: skip
     assert live.returncode == 0, live
-    replay = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--log", folder / "replay.log")
+    replay = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--log", folder / "replay.log", "--replace")
     assert replay.returncode == 0, replay
     sent = [(utime_of(data), images_of(data)) for _, _, data in read_log(folder / "live.log")]
     events = [(timestamp, utime_of(data), images_of(data)) for timestamp, _, data in read_log(folder / "replay.log")]
@@ -158,9 +159,26 @@ def check_recording(tools, camera, folder, script):
     for (_, before, _), (_, after, _) in zip(events, events[1:]):
         assert abs(after - before - PERIOD_US) < 200, "no frame is missing, times are those of the recording"
     check_import(tools, folder, events)
-    slow = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--frames", 10, "--rate", 10, "--log", folder / "slow.log")
+    slow = run(tools / "hs-capture", "--source", f"oni:{folder / 'live.oni'}", "--frames", 10, "--rate", 10, "--log", folder / "slow.log", "--replace")
     times = [timestamp for timestamp, _, _ in read_log(folder / "slow.log")]
     assert slow.returncode == 0 and times[-1] - times[0] == 900000, (slow, times)
+
+
+def check_lost_take(tools, camera, folder):
+    """A take of so many seconds ends by its time, whether the camera is still there or not."""
+    camera.write("")
+    teach = Process(folder, tools / "hs-teach", "show", "--source", "openni2", "--seconds", 3, "--name", "disc", "--no-teach")
+    try:
+        teach.wait_until_ready()
+        time.sleep(1.0)
+        camera.write("plugged no\n")
+        wait_for(teach.log, "the camera is gone; waiting for it")
+        start = time.monotonic()
+        teach.process.wait(30)
+    finally:
+        teach.kill()
+    print(f"the take of 3 s ended {time.monotonic() - start:.1f} s after its camera was lost")
+    assert "the take ends by its time" in teach.log.read_text(), teach.log.read_text()
 
 
 def main():
@@ -170,6 +188,7 @@ def main():
     camera = Camera(folder)
     check_listing(tools, camera)
     check_unplugging(tools, camera, folder)
+    check_lost_take(tools, camera, folder)
     for script in ("", LATE_COLOUR):
         check_recording(tools, camera, folder, script)
     print("live capture: frames, gap and recording are as they should be")

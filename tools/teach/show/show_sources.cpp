@@ -1,5 +1,7 @@
 #include "tools/teach/show/show_sources.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -18,16 +20,57 @@ bool starts_with(const std::string& text, const std::string& start) {
   return text.rfind(start, 0) == 0;
 }
 
+/// How long a take of a camera lasts, by a clock that nobody sets: frames may stop coming, and a camera that is gone is
+/// waited for no longer than the take.
+class TakeTime {
+ public:
+  explicit TakeTime(double longest_s) : longest_s_(longest_s) {}
+
+  /// The camera is open; its first frame may need longer than a short take.
+  void open() { end_ = after(std::max(longest_s_, kFirstFrameS)); }
+  void note_first_frame() { end_ = after(longest_s_ + kLateS); }
+  bool is_over() const { return end_ && Clock::now() > *end_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double kFirstFrameS = 10.0;
+  static constexpr double kLateS = 0.5;  // frames end by their own times where they come
+
+  static Clock::time_point after(double seconds) {
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
+
+  double longest_s_;
+  std::optional<Clock::time_point> end_;
+};
+
 /// A camera's frames come at their own time; a take of them has an end.
 class LiveFrames {
  public:
-  LiveFrames(std::unique_ptr<FrameSource> source, double longest_s)
-      : source_(std::move(source)), longest_us_(static_cast<std::int64_t>(1e6 * longest_s)) {}
+  LiveFrames(const std::string& source, const ShowOptions& options)
+      : time_(options.longest_s), longest_us_(static_cast<std::int64_t>(1e6 * options.longest_s)) {
+    capture::SourceOptions camera;
+    camera.source = source;
+    camera.camera = options.camera;
+    openni::CameraListener listener;
+    listener.stop_requested = [this] { return stop_requested() || time_.is_over(); };
+    source_ = capture::open_source(camera, listener);
+    time_.open();
+  }
+  LiveFrames(const LiveFrames&) = delete;  // the camera asks this one
+  LiveFrames& operator=(const LiveFrames&) = delete;
 
   std::optional<RgbdFrame> next() {
     if (stop_requested()) return std::nullopt;
     std::optional<RgbdFrame> frame = source_->next();
-    if (!frame) return frame;
+    if (!frame) {
+      if (!stop_requested())
+        log_warning("the take ends by its time, {} s, while no frames come; it has {}",
+                    1e-6 * static_cast<double>(longest_us_), count_);
+      return frame;
+    }
+    if (count_ == 0) time_.note_first_frame();
+    ++count_;
     // A clock that is set back begins the take anew, instead of making it longer by so much.
     if (!first_ || frame->id.utime < *first_) first_ = frame->id.utime;
     if (microseconds_between(*first_, frame->id.utime) > longest_us_) return std::nullopt;
@@ -35,9 +78,11 @@ class LiveFrames {
   }
 
  private:
-  std::unique_ptr<FrameSource> source_;
+  TakeTime time_;
   std::int64_t longest_us_;
+  std::unique_ptr<FrameSource> source_;
   std::optional<std::int64_t> first_;
+  std::int64_t count_ = 0;
 };
 
 /// Frames of a log or a recorder's file, with what was lost of it said at the end.
@@ -61,13 +106,8 @@ class RecordedFrames {
 
 ShownFrames open_shown(const std::string& source, const ShowOptions& options) {
   if (starts_with(source, "openni2")) {
-    capture::SourceOptions camera;
-    camera.source = source;
-    camera.camera = options.camera;
-    openni::CameraListener listener;
-    listener.stop_requested = [] { return stop_requested(); };
     catch_stop_signals();
-    const auto live = std::make_shared<LiveFrames>(capture::open_source(camera, listener), options.longest_s);
+    const auto live = std::make_shared<LiveFrames>(source, options);
     log_info("ready: frames from {}; Ctrl-C ends the take", source);
     return [live] { return live->next(); };
   }
