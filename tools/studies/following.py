@@ -71,7 +71,7 @@ def make_log(programs, scene, rate, seconds, log):
     if not (log.exists() and stamp.is_file() and stamp.read_text() == made_of):
         captured, part = log.with_suffix(".captured"), log.with_suffix(".part")
         call(programs / "hs-capture", "--source", f"bop:{scene}", "--rate", rate, "--loop", "--frames", rate * seconds, "--log",
-             captured, into=log.with_suffix(".txt"))  # fmt: skip
+             captured, "--replace", into=log.with_suffix(".txt"))  # fmt: skip
         restamp(captured, part, rate)
         captured.unlink()
         part.rename(log)

@@ -255,7 +255,7 @@ class Stream:
         if self.show:
             running.start("view", programs / "hs-view", *self.with_models, "--snapshot", self.out / "overlay.png",
                           "--after", self.frames // 9 + 1, "--video", self.out / "overlay.mp4", "--pictures",
-                          self.out / "pictures")  # fmt: skip
+                          self.out / "pictures", "--replace")  # fmt: skip
             running.start("logger", "lcm-logger", "-f", f"--lcm-url={self._logger_url()}", "-c", "HOUGHSTREAM_.*",
                           self.out / "results.lcmlog")  # fmt: skip
         for name in running.by_name.keys() - {"logger"}:

@@ -33,7 +33,7 @@ def start_stream(running, programs, out, store, scene):
     """All that a stream has, with the camera last. Nothing is known in it: there is no store yet."""
     running.start("detect", programs / "hs-detect", "--objects", store, "--threads", threads())
     running.start("pose", programs / "hs-pose", "--objects", store, "--threads", 1)
-    running.start("view", programs / "hs-view", "--objects", store, "--rate", 4, "--pictures", out / "pictures")
+    running.start("view", programs / "hs-view", "--objects", store, "--rate", 4, "--pictures", out / "pictures", "--replace")
     running.start("logger", "lcm-logger", "-f", "-c", "HOUGHSTREAM_.*", out / "results.lcmlog")
     for name in ("detect", "pose", "view"):
         running.by_name[name].wait_until_ready()
