@@ -1,5 +1,6 @@
-"""An object store that changes under a stream: what is renamed is there without a restart, what is torn is said, whoever is killed while
-he changes it leaves it whole, and none is replaced unless that is asked for.
+"""An object store that changes under a stream: what is renamed is there without a restart, and is the same object of the world, what is
+removed leaves the world, what is torn is said, whoever is killed while he changes it leaves it whole, with somebody's files in it, and none
+is replaced unless that is asked for.
 
 Forest, models and scene are those that end_to_end_test.py has made.
 """
@@ -15,7 +16,7 @@ import time
 from PIL import Image
 
 from folders import read_arguments
-from houghstream import detections_t, known_objects_t, status_t
+from houghstream import detections_t, known_objects_t, objects_t, status_t, tracked_object_t
 from houghstream.event_log import read_log
 from studies.stream import Process, enter_private_network
 from end_to_end_test import CLASSES, THRESHOLD
@@ -59,6 +60,18 @@ def check_refused(tools, store):
         assert files_in(store.parent) == before
 
 
+def put_notes(store):
+    """Somebody's own files in a store."""
+    (store / "NOTES.txt").write_text("the handle faces left")
+    (store / "recordings").mkdir()
+    (store / "recordings" / "monday.lcmlog").write_text("events")
+
+
+def expect_notes(store, after):
+    assert (store / "NOTES.txt").read_text() == "the handle faces left", after
+    assert (store / "recordings" / "monday.lcmlog").read_text() == "events", after
+
+
 def check_killed(tools, store):
     """At whatever moment: the store is the old one or the new one, and the next change goes through."""
     chance = random.Random(1)
@@ -74,10 +87,23 @@ def check_killed(tools, store):
         assert listed.returncode == 0, (turn, listed)
         changed += names_in(store) != before
         assert names_in(store) in (before, before - {old} | {new}), (turn, names_in(store))
+        expect_notes(store, f"killed {turn}")
+    expect_notes(store, "killed")
     print(f"killed 20 times, {changed} changes were made before that")
     if "dish" in names_in(store):
         assert hs_teach(tools, "rename", store, "dish", "bowl").returncode == 0
     assert [file.name for file in store.parent.glob(".*")] == [], "nothing is left beside it"
+
+
+def make_still_scene(scene, still):
+    """One frame of the scene, in which each object is found once: before a camera that jumps, they might become others."""
+    frame = 23
+    for part in ("rgb", "depth"):
+        (still / part).mkdir(parents=True)
+        shutil.copy(scene / part / f"{frame:06d}.png", still / part)
+    for name in ("scene_camera.json", "scene_gt.json", "scene_gt_info.json"):
+        (still / name).write_text(json.dumps({str(frame): json.loads((scene / name).read_text())[str(frame)]}))
+    return still
 
 
 class Log:
@@ -104,8 +130,13 @@ class Log:
         said = [k for k in self.read("HOUGHSTREAM_KNOWN_OBJECTS", known_objects_t) if k.process == process]
         return said[-1] if said else None
 
+    def worlds(self):
+        """Numbers of the objects that are there by their names, after each frame."""
+        return [[(one.class_name, one.track_id) for one in world.objects if one.state != tracked_object_t.GONE]
+                for world in self.read("HOUGHSTREAM_OBJECTS", objects_t)]  # fmt: skip
+
     def wait_for_known(self, name):
-        for process in ("hs-detect", "hs-pose"):
+        for process in ("hs-detect", "hs-pose", "hs-track"):
             self.wait(lambda: (known := self.known(process)) and name in known.object_names, f"{process} does not know {name}")
 
     def wait_for_found(self, name):
@@ -117,26 +148,34 @@ class Log:
 
 
 def check_stream(tools, made, folder, store):
+    scene = make_still_scene(made / "scene", folder / "still")
     log = Log(folder / "results.log")
     processes = [Process(folder, tools / "hs-detect", "--objects", store, "--threshold", THRESHOLD),
-                 Process(folder, tools / "hs-pose", "--objects", store)]
+                 Process(folder, tools / "hs-pose", "--objects", store),
+                 Process(folder, tools / "hs-track", "--objects", store)]
     try:
         for process in processes:
             process.wait_until_ready()
-        processes.append(Process(folder, tools / "hs-capture", "--source", f"bop:{made / 'scene'}", "--loop", "--rate", RATE))
+        processes.append(Process(folder, tools / "hs-capture", "--source", f"bop:{scene}", "--loop", "--rate", RATE))
         log.wait_for_known("bowl")
         log.wait_for_found("bowl")
+        log.wait(lambda: log.worlds() and len(log.worlds()[-1]) == len(CLASSES), "the world lacks an object")
         first = log.known("hs-detect")
         assert hs_teach(tools, "rename", store, "bowl", "dish").returncode == 0
         log.wait_for_known("dish")
         log.wait_for_found("dish")
+        check_world_renamed(log, "bowl", "dish")
         second = log.known("hs-detect")
         since = dict(zip(second.object_names, second.object_since_utimes))
         assert "bowl" not in since and since["soda_can"] < since["dish"], since
         assert since["soda_can"] == dict(zip(first.object_names, first.object_since_utimes))["soda_can"], since
         check_torn(log, store)
         assert hs_teach(tools, "remove", store, "soda_can").returncode == 0
+        log.wait(lambda: {name for name, _ in log.worlds()[-1]} == {"dish"}, "soda_can is still in the world", 30)
         log.wait(lambda: log.known("hs-detect").object_names == ["dish"], "soda_can is still known")
+        worlds = len(log.worlds())
+        log.wait(lambda: len(log.worlds()) > worlds + 3 * RATE, "no objects come")
+        assert all({name for name, _ in world} <= {"dish"} for world in log.worlds()[worlds:]), log.worlds()[worlds:]
         for process in reversed(processes):
             process.stop()
         log.wait(lambda: last_of(log, "hs-detect").frames_received == last_of(log, "hs-capture").frames_processed, "the last word is missing", 10)
@@ -150,6 +189,15 @@ def check_stream(tools, made, folder, store):
     assert last.frames_lost == 0 and last.frames_received == last.frames_processed + last.frames_skipped
     words = processes[0].log.read_text()
     assert words.count("what was known stays") == 1, words
+
+
+def check_world_renamed(log, former, name):
+    """One object with one number, first by one name and then by the other."""
+    log.wait(lambda: name in dict(log.worlds()[-1]), f"{name} is not in the world")
+    worlds = [world for world in log.worlds() if any(known in (former, name) for known, _ in world)]
+    of_object = [[(known, number) for known, number in world if known in (former, name)] for world in worlds]
+    assert all(len(objects) == 1 for objects in of_object), ("it stands twice", of_object)
+    assert len({number for ((_, number),) in of_object}) == 1, ("its number changes", of_object)
 
 
 def last_of(log, process):
@@ -175,9 +223,11 @@ def main():
     store = arguments.out / "my" / "store"
     make_store(arguments.made, store)
     assert names_in(store) == set(CLASSES.values()), names_in(store)
+    put_notes(store)
     check_refused(arguments.tools, store)
     check_killed(arguments.tools, store)
     check_stream(arguments.tools, arguments.made, arguments.out, store)
+    expect_notes(store, "changed under a stream")
 
 
 if __name__ == "__main__":

@@ -6,12 +6,57 @@ import shutil
 import subprocess
 import time
 
+from houghstream import objects_t, tracked_object_t
+from houghstream.event_log import read_log
 from studies.soak.faults import HEARD, RESULTS, Faults, said
-from studies.soak.wire import Listener
-from studies.stream import ProcessFailed
+from studies.soak.wire import Listener, bus
+from studies.stream import Process, ProcessFailed
 
 # After which the one who writes it is killed; of the time that it takes undisturbed.
 MOMENTS = (0.05, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.3)
+
+
+FOREIGN = {"NOTES.txt": "the handle faces left", "recordings/monday.lcmlog": "events", "models/mug.blend": "source of a mesh"}
+
+
+class Worlds:
+    """The objects of the world after each frame, in a log until stop()."""
+
+    def __init__(self, file):
+        self.file = file
+        self.logger = subprocess.Popen(["lcm-logger", "-f", "-q", "--flush-interval=1", "-l", bus(HEARD), "-c", "HOUGHSTREAM_OBJECTS", str(file)],
+                                       stderr=subprocess.DEVNULL)  # fmt: skip
+
+    def stop(self):
+        self.logger.terminate()
+        self.logger.wait()
+
+    def read(self):
+        """Of each frame when the log got it, seconds, and the numbers of the objects that are there, lists by name."""
+        worlds = []
+        for utime, _, data in self.events():
+            named = {}
+            for one in objects_t.decode(data).objects:
+                if one.state != tracked_object_t.GONE:
+                    named.setdefault(one.class_name, []).append(one.track_id)
+            worlds.append((utime * 1e-6, named))
+        return worlds
+
+    def events(self):
+        try:
+            return list(read_log(self.file))
+        except (FileNotFoundError, ValueError):
+            return []  # not there yet, or its end is just being written
+
+    def wait_for(self, is_it, seconds):
+        """Whether the last world is so, soon."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            worlds = self.read()
+            if worlds and is_it(worlds[-1][1]):
+                return True
+            time.sleep(0.2)
+        return False
 
 
 class StoreFaults(Faults):
@@ -162,7 +207,74 @@ class StoreFaults(Faults):
                 "reported": said(stream, "from here on|what was known stays"),
                 "good": kept and back and not restarts}  # fmt: skip
 
+    def foreign_files(self):
+        """Somebody's files lie in the store while its writers are killed at several moments."""
+        folder = self.folder("foreign_files")
+        store = self.store(folder)
+        for name, words in FOREIGN.items():
+            (store / name).parent.mkdir(exist_ok=True)
+            (store / name).write_text(words)
+        names = self.names(store)
+        start = time.monotonic()
+        self.changed("rename", store, names[0], "at_first")
+        took = time.monotonic() - start
+        name, lost = "at_first", []
+        for turn, moment in enumerate(MOMENTS):
+            was, other = self.names(store), f"turn_{turn}"
+            self.teach("rename", store, name, other, kill_after=moment * took)
+            name = name if self.names(store) == was else other
+            lost += [f"{file} at {moment}" for file in self.missing(store)]
+        self.changed("remove", store, name)
+        lost += [f"{file} at the end" for file in self.missing(store)]
+        left = [one.name for one in folder.iterdir() if one != store]
+        return {"killed": len(MOMENTS), "lost": lost, "left_behind": left, "good": not lost and not left}
+
+    @staticmethod
+    def missing(store):
+        """Of somebody's files those that are not there as they were."""
+        return [name for name, words in FOREIGN.items() if not (store / name).is_file() or (store / name).read_text() != words]
+
+    def changes_under_track(self):
+        """An object of the world is renamed, and then its class is removed, while hs-track runs."""
+        folder = self.folder("changes_under_track")
+        store = self.store(folder)
+        stream = self.stream(folder, "--objects", store)
+        track = Process(folder, self.programs / "hs-track", "--objects", store, "-l", bus(HEARD))
+        worlds = Worlds(folder / "worlds.lcmlog")
+        try:
+            self.wait_for(stream, r"pose [1-9][\d.]* Hz", 60)
+            known = set(self.names(store))
+            if not worlds.wait_for(lambda world: world.keys() & known, 60):
+                raise ProcessFailed("no object is in the world")
+            name = sorted(worlds.read()[-1][1].keys() & known)[0]
+            begun = time.time()
+            self.changed("rename", store, name, "another")
+            renamed = worlds.wait_for(lambda world: "another" in world and name not in world, 20)
+            self.wait_for(stream, r"hs-pose: .*new: another", 60)
+            time.sleep(3.0)  # for numbers to change, if they do
+            numbers = [world.get(name, []) + world.get("another", []) for when, world in worlds.read() if when > begun]
+            twice = [one for one in numbers if len(one) > 1]
+            self.changed("remove", store, "another")
+            removed = time.time()
+            gone = worlds.wait_for(lambda world: "another" not in world, 20)
+            self.wait_for(stream, r"hs-pose: .*gone: another", 60)
+            time.sleep(2.0)
+            late = [when - removed for when, world in worlds.read() if "another" in world and when > removed]
+            track.stop()
+            stream.stop(10.0)
+        finally:
+            for process in (track, stream):
+                process.kill()
+            worlds.stop()
+        one_number = len({tuple(one) for one in numbers if one}) == 1
+        return {"renamed": renamed, "same_number": one_number, "frames_with_two": len(twice),
+                "gone": gone, "last_there_s_after_removal": round(max(late, default=0.0), 2),
+                "reported": said(track, "from here on|is called|is gone"),
+                "good": bool(renamed and one_number and not twice and gone and max(late, default=0.0) < 2.0)}  # fmt: skip
+
     def all(self):
         yield "who changes the store is killed at 22 moments", self.writer_killed
         yield "the store's forest is cut, and hs-detect killed meanwhile", self.torn
         yield "the store is replaced, taken away, put back", self.replaced
+        yield "somebody's files lie in the store, and its writers are killed", self.foreign_files
+        yield "an object is renamed and removed while hs-track runs", self.changes_under_track
