@@ -13,7 +13,7 @@ STYLE = {
     "font.size": 9, "axes.titlesize": 10, "axes.titleweight": "bold", "axes.edgecolor": GREY, "axes.grid": True,
     "axes.axisbelow": True, "axes.spines.top": False, "axes.spines.right": False, "grid.color": PALE,
     "legend.frameon": False, "legend.fontsize": 9, "text.color": "#444444", "axes.labelcolor": "#444444",
-    "svg.fonttype": "none", "svg.hashsalt": "houghstream",
+    "text.parse_math": False, "svg.fonttype": "none", "svg.hashsalt": "houghstream",
 }  # fmt: skip
 NARROW, WIDE = (5.6, 3.6), (10.0, 3.6)  # inches
 

@@ -18,6 +18,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/folder_exchange.hpp"
+#include "pipeline/text/html_text.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 #include "tools/fuse/model_picture.hpp"
 #include "tools/teach/contact_sheet.hpp"
@@ -175,26 +176,36 @@ bool is_kept_entry(const fs::path& relative) {
 }
 
 void write_page(const Shown& shown, const Verdict& verdict, const fs::path& folder) {
-  std::ofstream out(folder / "report.html");
-  out << fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
-                     shown.name, verdict.good ? "good" : "poor", describe(shown, verdict));
+  ShownPictures pictures;
   for (const char* name : {"chosen.png", "chosen_2.png"}) {
-    if (fs::exists(folder / name))
-      out << fmt::format("<p>Taken for the object in the first frame:</p>\n<img src=\"{}\" width=\"50%\">\n", name);
+    if (fs::exists(folder / name)) pictures.chosen.emplace_back(name);
   }
-  out << "<p>Some keyframes, and the model in its colours and as shape:</p>\n<img src=\"contact_sheet.jpg\" "
-         "width=\"100%\">\n"
-      << "<p>The model's outline (green) and the mask (orange) over keyframes:</p>\n";
-  std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder / "outlines"))
-    names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  for (const std::string& name : names) out << fmt::format("<img src=\"outlines/{}\" width=\"32%\">\n", name);
+    pictures.outlines.push_back("outlines/" + entry.path().filename().string());
+  std::sort(pictures.outlines.begin(), pictures.outlines.end());
+  std::ofstream out(folder / "report.html");
+  out << report_page(shown, verdict, pictures);
   out.close();
   require(out.good(), "{}: cannot be written", (folder / "report.html").string());
 }
 
 }  // namespace
+
+std::string report_page(const Shown& shown, const Verdict& verdict, const ShownPictures& pictures) {
+  std::string page =
+      fmt::format("<!doctype html><meta charset=\"utf-8\"><title>{0}</title>\n<h1>{0}: {1}</h1>\n<pre>{2}</pre>\n",
+                  escape_html(shown.name), verdict.good ? "good" : "poor", escape_html(describe(shown, verdict)));
+  for (const std::string& file : pictures.chosen)
+    page += fmt::format("<p>Taken for the object in the first frame:</p>\n<img src=\"{}\" width=\"50%\">\n",
+                        escape_html(file));
+  page +=
+      "<p>Some keyframes, and the model in its colours and as shape:</p>\n<img src=\"contact_sheet.jpg\" "
+      "width=\"100%\">\n"
+      "<p>The model's outline (green) and the mask (orange) over keyframes:</p>\n";
+  for (const std::string& file : pictures.outlines)
+    page += fmt::format("<img src=\"{}\" width=\"32%\">\n", escape_html(file));
+  return page;
+}
 
 void require_keepable(const fs::path& folder) {
   const fs::path whole = kept_folder(folder);

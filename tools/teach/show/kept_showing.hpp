@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tools/teach/show/show_report.hpp"
 
@@ -14,5 +16,14 @@ void require_keepable(const std::filesystem::path& folder);
 /// masks), contact_sheet.jpg, chosen.png, outlines/, camera_poses.csv, report.json and report.html. One of an earlier
 /// time is replaced, anything else is not. Throws InputError where it cannot be written.
 void keep_shown(const Shown& shown, const Verdict& verdict, const std::filesystem::path& folder);
+
+/// Files beside report.html that it shows.
+struct ShownPictures {
+  std::vector<std::string> chosen;    ///< of each take
+  std::vector<std::string> outlines;  ///< of some keyframes
+};
+
+/// report.html. Names are shown as they are, whatever they hold.
+std::string report_page(const Shown& shown, const Verdict& verdict, const ShownPictures& pictures);
 
 }  // namespace houghstream::teach
