@@ -1,14 +1,37 @@
 """A headless Chromium that is told what to do through its DevTools pipe; nothing but Chromium is needed."""
 
 import base64
+import ctypes
 import fcntl
 import json
 import os
+import pathlib
 import select
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
+
+
+PR_SET_CHILD_SUBREAPER = 36  # prctl(2)
+
+
+def adopt_orphans():
+    """What Chromium's processes leave behind becomes ours: there may be nobody else who waits for it, as in a container."""
+    ctypes.CDLL(None, use_errno=True).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def children_of_chromium():
+    """Our children by that name, dead ones too."""
+    for status in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            pid, _, rest = status.read_text().partition(" (")
+        except OSError:  # it has ended meanwhile
+            continue
+        name, _, fields = rest.rpartition(") ")
+        if name.startswith("chrom") and int(fields.split()[1]) == os.getpid():
+            yield int(pid)
 
 
 def find_chromium():
@@ -19,9 +42,11 @@ class Browser:
     """Use with `with`. What its pages ask for from the network is in `requests`, what their scripts complain of in `errors`."""
 
     def __init__(self, program, width=1280, height=900):
+        adopt_orphans()
         self.folder = tempfile.TemporaryDirectory(prefix="page_test_")
         command = [program, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-                   "--disable-background-networking", "--disable-component-update", "--disable-extensions",
+                   "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--disable-quic",
+                   "--disable-sync", "--disable-breakpad",
                    f"--user-data-dir={self.folder.name}", f"--window-size={width},{height}", "--remote-debugging-pipe",
                    "about:blank"]  # fmt: skip
         # The pipe's ends are file descriptors 3 and 4 there, by Chromium's own rule.
@@ -57,9 +82,20 @@ class Browser:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
+        self.end_helpers()
         os.close(self.orders)
         os.close(self.answers)
         self.folder.cleanup()
+
+    def end_helpers(self):
+        """Waits for the processes that Chromium has started; they end when it does. Leaves none."""
+        end = time.monotonic() + 10
+        while helpers := list(children_of_chromium()):
+            for pid in helpers:
+                if time.monotonic() > end:
+                    os.kill(pid, signal.SIGKILL)
+                os.waitpid(pid, os.WNOHANG)
+            time.sleep(0.02)
 
     def ask(self, method, **parameters):
         """The answer to a method of the DevTools protocol."""
