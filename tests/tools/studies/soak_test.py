@@ -1,6 +1,8 @@
 """Tests of what tools/soak sends and counts. Usage: PYTHONPATH=tools:build/python soak_test.py"""
 
 import argparse
+import contextlib
+import io
 import json
 import math
 import os
@@ -13,10 +15,11 @@ import threading
 import time
 import types
 import unittest
+import unittest.mock
 
 from studies.encoded import utime_of
 from studies.soak import __main__ as soak
-from studies.soak import faults, frames, long_account, long_run, page, relay, wire
+from studies.soak import faults, frames, long_account, long_run, page, relay, time_left, wire
 from studies.stream import ProcessFailed
 
 
@@ -211,6 +214,47 @@ class Kept(unittest.TestCase):
         for text in ("", "30,", "30,30", "0", "x"):
             with self.assertRaises(argparse.ArgumentTypeError, msg=text):
                 soak.rates(text)
+
+
+class Time(unittest.TestCase):
+    def test_what_is_left_is_known_from_the_last_time(self):
+        at = [0.0]
+        clock = time_left.TimeLeft(["a", "b", "c"], {"a": 60.0, "b": 120.0, "gone": 1e6}, 600.0, now=lambda: at[0])
+        self.assertEqual(clock.words(), "3 left, about 4 min", "c takes as long as the others do")
+        clock.begin()
+        at[0] = 400.0
+        self.assertEqual(clock.done("a"), 400.0)
+        self.assertEqual(clock.words(), "2 left, about 6 min; more than the 10 min that it may take")
+        clock.pass_over("b")
+        self.assertFalse(clock.is_over())
+        at[0] = 600.0
+        self.assertTrue(clock.is_over())
+        clock.pass_over("c")
+        self.assertEqual(clock.words(), "none left")
+
+    def test_the_first_time_only_the_limit_is_known(self):
+        self.assertEqual(time_left.TimeLeft(["a"], {}, 2400.0).words(), "1 left, at most 40 min")
+
+    def test_faults_end_in_time_and_what_was_not_run_is_told(self):
+        ran = []
+
+        def fault(name, good):
+            return name, lambda: ran.append(name) or {"good": good}
+
+        def broken():
+            raise ProcessFailed("died")
+
+        earlier = {"first": {"seconds": 30.0}, "second": {"good": True}}
+        with contextlib.redirect_stdout(io.StringIO()) as words:
+            seen = dict(soak.run_faults([fault("first", True), ("second", broken)], earlier))
+        self.assertEqual((ran, seen["first"]["good"], seen["second"]["failed"]), (["first"], True, "died"))
+        self.assertIn("2 left, about 1 min", words.getvalue())
+        self.assertIn("none left", words.getvalue())
+        with unittest.mock.patch.object(soak, "FAULTS_S", 0), contextlib.redirect_stdout(io.StringIO()):
+            seen = dict(soak.run_faults([fault("third", True)], {}))
+        self.assertEqual(ran, ["first"])
+        self.assertRegex(seen["third"]["failed"], "^not run")
+        self.assertNotIn("seconds", seen["third"], "it says nothing of the next time")
 
 
 # Says that it is ready, and in the end what the program in whose place it is says.

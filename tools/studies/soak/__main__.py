@@ -11,32 +11,52 @@ from studies.command import Options, die, know_messages, positive, step
 from studies.measured import REPOSITORY
 from studies.soak.long_run import long_runs
 from studies.soak.page import Record
+from studies.soak.time_left import TimeLeft
 from studies.stream import ProcessFailed, enter_private_network
+
+FAULTS_S = 2400  # that all faults may take
 
 
 def tell(name, seen):
     step(f"{'ok   ' if seen['good'] else 'WRONG'} {name}: {json.dumps(seen)}")
 
 
-def run_faults(options, out):
-    """Yields each one's name and what was seen."""
+def all_faults(options, out):
+    """Pairs of a name and what it runs."""
     from studies.soak.bus_faults import BusFaults  # needs the messages' package, as the others do
     from studies.soak.clock_faults import ClockFaults
     from studies.soak.frame_faults import FrameFaults
+    from studies.soak.page_faults import PageFaults
     from studies.soak.store_faults import StoreFaults
     from studies.soak.stream_faults import StreamFaults
 
-    kinds = (FrameFaults, ClockFaults, StreamFaults, StoreFaults, BusFaults)
-    faults = [fault for kind in kinds for fault in kind(options, out).all()]
+    kinds = (FrameFaults, ClockFaults, StreamFaults, StoreFaults, BusFaults, PageFaults)
+    return [(name, fault) for kind in kinds for name, fault in kind(options, out).all() if options.only in name]
+
+
+def run_fault(fault):
+    try:
+        return fault()
+    except (ProcessFailed, subprocess.SubprocessError, OSError) as error:
+        return {"good": False, "failed": str(error)}
+
+
+def run_faults(faults, earlier):
+    """Yields each one's name and what was seen. `earlier`: what was seen the last time."""
+    earlier_s = {name: seen["seconds"] for name, seen in earlier.items() if "seconds" in seen}
+    clock = TimeLeft([name for name, _ in faults], earlier_s, FAULTS_S)
+    step(clock.words())
     for name, fault in faults:
-        if options.only not in name:
-            continue
-        try:
-            seen = fault()
-        except (ProcessFailed, subprocess.SubprocessError, OSError) as error:
-            seen = {"good": False, "failed": str(error)}
+        clock.begin()
+        if clock.is_over():
+            seen = {"good": False, "failed": f"not run, the faults have taken their {FAULTS_S // 60} minutes"}
+            clock.pass_over(name)
+        else:
+            seen = run_fault(fault)
+            seen["seconds"] = clock.done(name)
         seen["load"] = round(os.getloadavg()[0], 1)
         tell(name, seen)
+        step(clock.words())
         yield name, seen
 
 
@@ -92,7 +112,7 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     record = Record(out)
     if not options.long_only:
-        for name, seen in run_faults(options, out):
+        for name, seen in run_faults(all_faults(options, out), record.summary["faults"]):
             record.note("faults", name, seen, "tools/soak --faults-only")
     if not options.faults_only:
         for rate, seen in long_runs(options, out):
