@@ -65,7 +65,18 @@ install(DIRECTORY "${PROJECT_BINARY_DIR}/lcmtypes/generated/houghstream" DESTINA
         COMPONENT development FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/lcmtypes/" DESTINATION "${shared_data}/lcmtypes" COMPONENT development
         FILES_MATCHING PATTERN "*.lcm")
-file(STRINGS "${PROJECT_SOURCE_DIR}/.cmake/public_headers.txt" headers REGEX "^[a-z]")
+file(STRINGS "${PROJECT_SOURCE_DIR}/.cmake/public_headers.txt" moved_headers REGEX "^[a-z].* = ")
+foreach(line IN LISTS moved_headers)
+  string(REGEX REPLACE "^(.*) = (.*)$" "\\1;\\2" names "${line}")
+  list(GET names 0 old)
+  list(GET names 1 new)
+  get_filename_component(folder "${old}" DIRECTORY)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/moved_headers/${old}" @ONLY
+       CONTENT "#pragma once\n\n// This header has moved; its old name goes with the next release.\n#include \"${new}\"\n")
+  install(FILES "${PROJECT_BINARY_DIR}/moved_headers/${old}"
+          DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/houghstream/${folder}" COMPONENT development)
+endforeach()
+file(STRINGS "${PROJECT_SOURCE_DIR}/.cmake/public_headers.txt" headers REGEX "^[a-z][^=]*$")
 foreach(header IN LISTS headers)
   get_filename_component(folder "${header}" DIRECTORY)
   install(FILES "${PROJECT_SOURCE_DIR}/${header}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/houghstream/${folder}"

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <filesystem>
-#include <memory>
 #include <optional>
-#include <string>
 
 #include "pipeline/types/frame.hpp"
 
@@ -24,15 +21,5 @@ class FrameSource {
   /// Whether frames come at their own time, as a camera's do; those of a recording come as soon as they are asked for.
   virtual bool is_live() const { return false; }
 };
-
-/// Opens "bop:DIR" (a BOP scene folder), "uw:DIR" (a UW RGB-D scene folder: NAME_color.png or NAME.png with
-/// NAME_depth.png, at the dataset's 640x480 with the nominal camera 525,525,319.5,239.5, or as
-/// "uw:DIR,WIDTHxHEIGHT,fx,fy,cx,cy") or "tum:DIR" (a sequence of the TUM RGB-D benchmark, with the same nominal camera
-/// or its own). Throws InputError naming what is known; `others` are those that the caller opens itself, "oni:FILE, ".
-std::unique_ptr<FrameSource> open_frame_source(const std::string& specification, const std::string& others = "");
-
-/// Throws InputError where an output is what "KIND:WHERE", or a plain name, stands for, or lies in it
-/// (require_other_file()).
-void require_outside_source(const std::filesystem::path& output, const std::string& specification);
 
 }  // namespace houghstream

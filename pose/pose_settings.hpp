@@ -5,10 +5,10 @@
 
 #include "pose/following/follow_settings.hpp"
 #include "pose/model/object_model.hpp"
-#include "pose/region.hpp"
 #include "pose/registration/candidates.hpp"
 #include "pose/registration/choice.hpp"
 #include "pose/registration/registration.hpp"
+#include "pose/seen/region.hpp"
 #include "pose/verification/quality.hpp"
 #include "pose/verification/verification.hpp"
 

@@ -6,9 +6,9 @@
 
 #include "detector/extensions.hpp"
 #include "detector/features/feature_families.hpp"
-#include "detector/features/tiles/tile_derivatives.hpp"
-#include "detector/features/tiles/tile_features.hpp"
-#include "detector/features/tiles/tile_histograms.hpp"
+#include "detector/features/tile_derivatives.hpp"
+#include "detector/features/tile_features.hpp"
+#include "detector/features/tile_histograms.hpp"
 
 namespace houghstream::baseline {
 namespace {

@@ -1,14 +1,6 @@
 #pragma once
 
-#include <cstdint>
-
 namespace houghstream {
-
-/// What a detection's score is. Stored in the forest file.
-enum class Scoring : std::uint32_t {
-  kEvidence = 0,  ///< a calibrated probability from votes and from how remembered views fit, see score.hpp
-  kVotes = 1,     ///< vote mass over that of a wholly visible object, at most 1 (the paper's confidence)
-};
 
 /// What is reported.
 struct EvidenceSettings {

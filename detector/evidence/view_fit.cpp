@@ -7,7 +7,7 @@
 
 #include "detector/evidence/likeness.hpp"
 #include "detector/evidence/outline_fit.hpp"
-#include "detector/evidence/relief_tilt.hpp"
+#include "detector/forest/relief_tilt.hpp"
 #include "pipeline/base/no_value.hpp"
 
 namespace houghstream {

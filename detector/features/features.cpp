@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "detector/extensions.hpp"
-#include "detector/features/tiles/tile_turn.hpp"
+#include "detector/features/tile_turn.hpp"
 #include "pipeline/base/checks.hpp"
 
 namespace houghstream {

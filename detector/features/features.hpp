@@ -9,7 +9,7 @@
 #include "detector/features/feature_settings.hpp"
 #include "detector/features/feature_tiles.hpp"
 #include "detector/features/picture_memory.hpp"
-#include "detector/features/tiles/tile_features.hpp"
+#include "detector/features/tile_features.hpp"
 #include "detector/features/working_frame.hpp"
 #include "pipeline/base/parallel.hpp"
 

@@ -6,13 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "detector/evidence/appearance.hpp"
-#include "detector/evidence/evidence_settings.hpp"
-#include "detector/evidence/score_model.hpp"
 #include "detector/features/feature_settings.hpp"
+#include "detector/forest/appearance.hpp"
 #include "detector/forest/pixel_test.hpp"
+#include "detector/forest/score_model.hpp"
 
 namespace houghstream {
+
+/// What a detection's score is. Stored in the forest file.
+enum class Scoring : std::uint32_t {
+  kEvidence = 0,  ///< a calibrated probability from votes and from how remembered views fit, see evidence/score.hpp
+  kVotes = 1,     ///< vote mass over that of a wholly visible object, at most 1 (the paper's confidence)
+};
 
 /// Inner node: a patch that passes the test goes right. A child is the index of a later node of Forest::nodes, or,
 /// below 0, leaf number -1 - child.

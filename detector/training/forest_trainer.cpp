@@ -10,7 +10,7 @@
 #include "detector/extensions.hpp"
 #include "detector/forest/packed_trees.hpp"
 #include "detector/training/calibration.hpp"
-#include "detector/training/pictures/hard_negatives.hpp"
+#include "detector/training/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
 #include "detector/training/tree_trainer.hpp"
 #include "pipeline/base/checks.hpp"

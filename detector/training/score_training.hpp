@@ -39,7 +39,7 @@ using ScoreExamples = std::map<int, std::vector<ScoreExample>>;
 std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, std::uint32_t first_view,
                                                const Profile& profile, const Forest& forest);
 
-/// Learns the weights of the score (evidence/score_model.hpp) of each class in `class_ids`, beginning from those of all
+/// Learns the weights of the score (forest/score_model.hpp) of each class in `class_ids`, beginning from those of all
 /// of them together.
 void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest);
 

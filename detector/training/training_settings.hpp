@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "detector/evidence/evidence_settings.hpp"
+#include "detector/forest/forest.hpp"
 
 namespace houghstream::training {
 

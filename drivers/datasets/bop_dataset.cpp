@@ -7,7 +7,7 @@
 #include "drivers/files/image_file.hpp"
 #include "drivers/files/json_file.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 namespace {

@@ -8,7 +8,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/text/yaml_text.hpp"
+#include "pipeline/base/yaml_text.hpp"
 
 namespace houghstream {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/text/json_names.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/json_names.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 namespace {

@@ -5,9 +5,9 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "drivers/openni/oni_times.hpp"
 #include "drivers/openni/openni_parts.hpp"
-#include "drivers/openni/recording/oni_times.hpp"
-#include "drivers/openni/recording/openni_recording.hpp"
+#include "drivers/openni/openni_recording.hpp"
 #include "drivers/openni/stream_reader.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/base/recording_log.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/log_seal.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/messages/channels.hpp"
 
 namespace houghstream {
 namespace {

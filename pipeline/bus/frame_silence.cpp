@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 

@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/base/log_line.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/bus_link.hpp"
@@ -25,8 +27,6 @@
 #include "pipeline/bus/lcm_url.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
-#include "pipeline/text/limited_lines.hpp"
-#include "pipeline/text/printable.hpp"
 
 namespace houghstream {
 namespace {

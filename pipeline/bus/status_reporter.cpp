@@ -6,8 +6,8 @@
 
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/percentiles.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
 namespace houghstream {

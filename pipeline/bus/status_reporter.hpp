@@ -10,9 +10,9 @@
 #include <optional>
 #include <string>
 
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/sequence_count.hpp"
-#include "pipeline/text/limited_lines.hpp"
 #include "pipeline/types/known_objects.hpp"
 
 namespace houghstream {

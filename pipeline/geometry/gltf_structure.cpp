@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/json_names.hpp"
 #include "pipeline/geometry/mesh_structure.hpp"
-#include "pipeline/text/json_names.hpp"
 
 namespace houghstream {
 namespace {

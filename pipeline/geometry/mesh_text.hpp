@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 // Lines, words and numbers of meshes that are text; for ply_structure.cpp and obj_structure.cpp only.
 

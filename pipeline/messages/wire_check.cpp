@@ -10,7 +10,7 @@
 #include <houghstream/status_t.hpp>
 #include <houghstream/teaching_t.hpp>
 
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 
 namespace houghstream {
 namespace {

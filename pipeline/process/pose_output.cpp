@@ -3,7 +3,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
 namespace houghstream {

@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/known_objects.hpp"

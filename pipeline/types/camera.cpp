@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 

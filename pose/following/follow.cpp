@@ -6,7 +6,7 @@
 
 #include "pose/model/angles.hpp"
 #include "pose/registration/turn_search.hpp"
-#include "pose/verification/depth_score.hpp"
+#include "pose/seen/depth_score.hpp"
 #include "pose/verification/judgement.hpp"
 
 namespace houghstream {

@@ -6,7 +6,7 @@
 
 #include "pipeline/types/frame_id.hpp"
 #include "pose/model/angles.hpp"
-#include "pose/verification/depth_score.hpp"
+#include "pose/seen/depth_score.hpp"
 
 namespace houghstream {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/object_pose.hpp"
-#include "pose/region.hpp"
+#include "pose/seen/region.hpp"
 
 namespace houghstream {
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "pose/region.hpp"
 #include "pose/registration/candidates.hpp"
+#include "pose/seen/region.hpp"
 
 namespace houghstream {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pose/verification/colour_score.hpp"
-#include "pose/verification/depth_score.hpp"
+#include "pose/seen/colour_score.hpp"
+#include "pose/seen/depth_score.hpp"
 
 namespace houghstream {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pose/region.hpp"
+#include "pose/seen/region.hpp"
 
 namespace houghstream {
 

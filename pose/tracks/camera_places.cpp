@@ -10,8 +10,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
-#include "pipeline/text/printable.hpp"
-#include "pipeline/text/yaml_text.hpp"
+#include "pipeline/base/printable.hpp"
+#include "pipeline/base/yaml_text.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "pose/tracks/motion_filter.hpp"
 

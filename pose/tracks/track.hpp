@@ -16,7 +16,7 @@
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pipeline/types/tracked_object.hpp"
-#include "pose/region.hpp"
+#include "pose/seen/region.hpp"
 #include "pose/tracks/motion_filter.hpp"
 
 namespace houghstream::tracks {

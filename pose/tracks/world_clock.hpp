@@ -6,8 +6,8 @@
 #include <set>
 #include <string>
 
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/bus/sequence_count.hpp"
-#include "pipeline/text/limited_lines.hpp"
 #include "pipeline/types/frame_id.hpp"
 
 namespace houghstream::tracks {

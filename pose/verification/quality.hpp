@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "pipeline/types/object_pose.hpp"
-#include "pose/region.hpp"
-#include "pose/verification/colour_score.hpp"
+#include "pose/seen/colour_score.hpp"
+#include "pose/seen/region.hpp"
 #include "pose/verification/presence.hpp"
 #include "pose/verification/verification.hpp"
 

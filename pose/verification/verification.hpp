@@ -4,8 +4,8 @@
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/frame.hpp"
-#include "pose/region.hpp"
-#include "pose/verification/depth_score.hpp"
+#include "pose/seen/depth_score.hpp"
+#include "pose/seen/region.hpp"
 
 namespace houghstream {
 

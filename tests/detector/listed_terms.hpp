@@ -1,6 +1,6 @@
 #pragma once
 
-#include "detector/evidence/score_model.hpp"
+#include "detector/forest/score_model.hpp"
 
 namespace houghstream {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "detector/evidence/relief_tilt.hpp"
+#include "detector/forest/relief_tilt.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/random.hpp"
 

@@ -1,4 +1,4 @@
-#include "drivers/openni/recording/oni_times.hpp"
+#include "drivers/openni/oni_times.hpp"
 #include "pipeline/bus/log_seal.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"

@@ -15,7 +15,7 @@ GOOD = {
 WRONG = {
     "history in prose": {"tools/studies/README.md": "Measured at 1a2b3c4.\n"},
     "a stranger at the top": {"notes.txt": ""},
-    "memory without an owner": {"pose/region.cpp": "static thread_local int x = 0;\n"},
+    "memory without an owner": {"pose/seen/region.cpp": "static thread_local int x = 0;\n"},
     "something unfinished": {"tools/view/viewer.cpp": "// TO" "DO: the rest\n"},
     "a function of many parameters": {"tools/studies/soak/relay.py": "def pass_on(a, b, c, d, e=1, *, f=2):\n    return a\n"},
 }

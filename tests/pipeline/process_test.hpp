@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "drivers/datasets/open_frame_source.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/openni/camera_options.hpp"
 #include "drivers/openni/camera_source.hpp"

@@ -10,10 +10,10 @@
 #include "pipeline/base/host_clock.hpp"
 #include "pipeline/base/service_notice.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/status_reporter.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "tools/common/progress_line.hpp"
 
 namespace houghstream::capture {

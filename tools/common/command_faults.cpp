@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 #include "tools/common/nearest_word.hpp"
 
 namespace houghstream {

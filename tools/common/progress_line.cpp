@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 namespace {

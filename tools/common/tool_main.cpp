@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream {
 

@@ -7,8 +7,8 @@
 #include <houghstream/status_t.hpp>
 #include <vector>
 
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream::doctor {

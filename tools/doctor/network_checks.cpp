@@ -9,11 +9,11 @@
 #include <tuple>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/bus/frame_silence.hpp"
 #include "pipeline/bus/lcm_url.hpp"
 #include "pipeline/bus/own_host.hpp"
 #include "pipeline/bus/receive_buffer.hpp"
-#include "pipeline/text/printable.hpp"
 
 namespace houghstream::doctor {
 namespace {

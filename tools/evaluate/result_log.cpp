@@ -7,8 +7,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 

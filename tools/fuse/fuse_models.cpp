@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "drivers/datasets/bop_writer.hpp"
+#include "drivers/datasets/open_frame_source.hpp"
 #include "drivers/files/image_file.hpp"
-#include "drivers/frame_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/log_line.hpp"

@@ -1,8 +1,8 @@
 #include "tools/log/import_log.hpp"
 
-#include "drivers/frame_source.hpp"
+#include "drivers/datasets/open_frame_source.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream::log_tools {

@@ -9,10 +9,10 @@
 #include <houghstream/images_t.hpp>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/printable.hpp"
 #include "pipeline/bus/sequence_count.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
-#include "pipeline/text/printable.hpp"
 #include "pipeline/types/frame_id.hpp"
 #include "tools/log/message_types.hpp"
 

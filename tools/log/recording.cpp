@@ -11,7 +11,7 @@
 #include <set>
 #include <string_view>
 
-#include "drivers/frame_source.hpp"
+#include "drivers/datasets/open_frame_source.hpp"
 #include "drivers/openni/camera_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"

@@ -5,8 +5,8 @@
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/observe/frame_times.hpp"
 

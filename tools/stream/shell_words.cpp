@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream::stream {
 namespace {

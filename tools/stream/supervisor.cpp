@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/text/printable.hpp"
+#include "pipeline/base/printable.hpp"
 
 namespace houghstream::stream {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
-#include "pipeline/text/limited_lines.hpp"
 
 namespace houghstream::track {
 

@@ -5,6 +5,7 @@
 #include <deque>
 #include <mutex>
 
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/bus/channel_pattern.hpp"
 #include "pipeline/bus/status_reporter.hpp"
@@ -13,7 +14,6 @@
 #include "pipeline/process/byte_count.hpp"
 #include "pipeline/process/pair_inbox.hpp"
 #include "pipeline/process/process_loop.hpp"
-#include "pipeline/text/limited_lines.hpp"
 #include "pipeline/types/shifted.hpp"
 #include "tools/track/recent_detections.hpp"
 #include "tools/track/silence.hpp"

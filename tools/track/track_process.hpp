@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/types/camera.hpp"
 #include "pipeline/types/known_objects.hpp"
 #include "pose/tracks/extrinsic_check.hpp"

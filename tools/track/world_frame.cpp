@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 
 namespace houghstream::track {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
 namespace houghstream::track {

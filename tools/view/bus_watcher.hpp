@@ -10,8 +10,8 @@
 #include "pipeline/bus/lcm_bus.hpp"
 #include "pipeline/bus/status_reporter.hpp"
 #include "pipeline/process/process_loop.hpp"
+#include "tools/view/drawing/stream_watch.hpp"
 #include "tools/view/match_queue.hpp"
-#include "tools/view/stream_watch.hpp"
 
 namespace houghstream::view {
 

@@ -15,7 +15,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "tools/view/view_outputs.hpp"
 
 namespace houghstream::view {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "tools/view/frame_show.hpp"
 
 namespace houghstream::view {

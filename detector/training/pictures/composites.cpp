@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/evidence/relief_tilt.hpp"
+#include "detector/forest/relief_tilt.hpp"
 #include "detector/training/pictures/clearing.hpp"
 #include "detector/training/pictures/occluders.hpp"
 

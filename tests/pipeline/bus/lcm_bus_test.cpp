@@ -20,8 +20,8 @@
 #include <thread>
 
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
 

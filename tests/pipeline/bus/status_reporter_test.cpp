@@ -10,8 +10,8 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/channels.hpp"
 
 namespace houghstream {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 #include "tests/test_files.hpp"

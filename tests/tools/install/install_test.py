@@ -33,7 +33,7 @@ def run(*words, status=0, **options):
 
 def public_headers():
     lines = (SOURCE / ".cmake" / "public_headers.txt").read_text().splitlines()
-    return [line for line in lines if line and not line.startswith("#")]
+    return [line.split(" = ")[0] for line in lines if line and not line.startswith("#")]
 
 
 def python_of_installation():

@@ -7,7 +7,7 @@
 #include "pipeline/base/checks.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
-#include "tools/log/export/export_frames.hpp"
+#include "tools/log/export_frames.hpp"
 #include "tools/log/import_log.hpp"
 
 // Whatever is imported and exported again is what it was: depth always, colour where nothing compressed it with loss.

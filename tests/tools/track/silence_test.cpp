@@ -4,7 +4,7 @@
 
 #include <houghstream/status_t.hpp>
 
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/wire_check.hpp"
 
 namespace houghstream::track {

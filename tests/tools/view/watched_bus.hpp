@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "tests/pipeline/test_frame.hpp"
 #include "tools/view/bus_watcher.hpp"

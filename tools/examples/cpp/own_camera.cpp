@@ -6,8 +6,8 @@
 #include <limits>
 #include <thread>
 
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
 /// In its place stands what an SDK gives: colour (BGR), depth (16 bits) in its unit, and the colour camera's numbers.

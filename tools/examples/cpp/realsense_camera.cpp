@@ -7,8 +7,8 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
 houghstream::RgbdFrame to_frame(const rs2::video_frame& colour, const rs2::depth_frame& depth) {

@@ -7,15 +7,15 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
+#include "tools/render/world/objects/seeds.hpp"
 #include "tools/render/world/objects/vessels.hpp"
 #include "tools/render/world/optics/depth_sensor.hpp"
 #include "tools/render/world/optics/light.hpp"
 #include "tools/render/world/optics/photo.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
 #include "tools/render/world/optics/shading.hpp"
 #include "tools/render/world/rooms/resting.hpp"
 #include "tools/render/world/scene_frames.hpp"
-#include "tools/render/world/seeds.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
-#include "tools/render/world/rooms/thing.hpp"
+#include "tools/render/world/objects/thing.hpp"
 
 namespace houghstream::world {
 

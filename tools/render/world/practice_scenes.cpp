@@ -5,12 +5,12 @@
 
 #include "tools/render/world/objects/nearly_alike.hpp"
 #include "tools/render/world/objects/objects.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
+#include "tools/render/world/objects/seeds.hpp"
 #include "tools/render/world/optics/light.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
 #include "tools/render/world/rooms/attitudes.hpp"
 #include "tools/render/world/rooms/room.hpp"
 #include "tools/render/world/rooms/table_setter.hpp"
-#include "tools/render/world/seeds.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/objects.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 #include "tools/render/world/rooms/table_setter.hpp"
 
 namespace houghstream::world {

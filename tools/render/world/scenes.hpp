@@ -3,9 +3,9 @@
 #include <array>
 #include <string>
 
+#include "tools/render/world/objects/seeds.hpp"
 #include "tools/render/world/optics/light.hpp"
 #include "tools/render/world/rooms/room.hpp"
-#include "tools/render/world/seeds.hpp"
 #include "tools/render/world/trajectory.hpp"
 
 namespace houghstream::world {

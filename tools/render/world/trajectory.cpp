@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 namespace houghstream::world {
 

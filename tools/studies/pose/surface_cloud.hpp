@@ -5,7 +5,7 @@
 
 #include "pipeline/types/frame.hpp"
 #include "pose/model/object_model.hpp"
-#include "pose/region.hpp"
+#include "pose/seen/region.hpp"
 #include "tools/studies/pose/rival_settings.hpp"
 
 namespace houghstream {

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "pose/region.hpp"
-#include "pose/verification/depth_score.hpp"
+#include "pose/seen/depth_score.hpp"
+#include "pose/seen/region.hpp"
 
 namespace houghstream {
 namespace {

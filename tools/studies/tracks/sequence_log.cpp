@@ -2,8 +2,8 @@
 
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
-#include "pipeline/bus/channels.hpp"
 #include "pipeline/bus/event_log.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "pipeline/messages/wire_check.hpp"
 

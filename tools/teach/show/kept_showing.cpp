@@ -18,7 +18,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/folder_exchange.hpp"
-#include "pipeline/text/html_text.hpp"
+#include "pipeline/base/html_text.hpp"
 #include "pose/reconstruction/take_merging.hpp"
 #include "tools/fuse/model_picture.hpp"
 #include "tools/teach/contact_sheet.hpp"

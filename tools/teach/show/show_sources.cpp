@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "drivers/frame_source.hpp"
+#include "drivers/datasets/open_frame_source.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"

@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/base/limited_lines.hpp"
 #include "pipeline/bus/lcm_bus.hpp"
-#include "pipeline/text/limited_lines.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/types/frame.hpp"
 
 namespace houghstream::teach {

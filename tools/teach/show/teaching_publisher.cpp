@@ -5,7 +5,7 @@
 
 #include "pipeline/base/log_line.hpp"
 #include "pipeline/base/stop_signal.hpp"
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
 namespace houghstream::teach {

@@ -5,7 +5,7 @@
 
 #include "tools/view/drawing/latency_chart.hpp"
 #include "tools/view/drawing/overlay.hpp"
-#include "tools/view/stream_watch.hpp"
+#include "tools/view/drawing/stream_watch.hpp"
 
 namespace houghstream::view {
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "pipeline/bus/channels.hpp"
+#include "pipeline/messages/channels.hpp"
 #include "pipeline/messages/messages.hpp"
 
 namespace houghstream::teach {

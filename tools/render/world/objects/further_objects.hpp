@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/rooms/thing.hpp"
+#include "tools/render/world/objects/thing.hpp"
 
 // The sixteen further classes (ids 101 to 116), by family. Sizes and colours are fixed, the generator only draws
 // prints. Each is finished: origin at the centre of its bounding box, z up, front to -y.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "tools/render/world/objects/pixel_noise.hpp"
 #include "tools/render/world/objects/prints.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/rooms/thing.hpp"
+#include "tools/render/world/objects/thing.hpp"
 
 // What is like a taught object and is not quite it.
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/render/world/rooms/thing.hpp"
+#include "tools/render/world/objects/thing.hpp"
 
 // The objects. Frame of each: origin at the centre of its bounding box, z up, front to -y.
 

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/base/no_value.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {

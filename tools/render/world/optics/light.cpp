@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 namespace houghstream::world {
 

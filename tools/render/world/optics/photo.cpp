@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {

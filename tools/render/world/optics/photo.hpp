@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 namespace houghstream::world {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "pipeline/types/camera.hpp"
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 namespace houghstream::world {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "pipeline/base/no_value.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 // Furniture, as things whose origin is on the floor (or wall) in the middle, front to -y. Lengths in metres.
 

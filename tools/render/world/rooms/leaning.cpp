@@ -8,8 +8,8 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 #include "tools/render/world/objects/prints.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
 #include "tools/render/world/rooms/attitudes.hpp"
 #include "tools/render/world/rooms/tipping.hpp"
 

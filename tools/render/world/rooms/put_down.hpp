@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 // Things put down otherwise than upright, alone or on something: groups that belong together. Group frame: z up, z = 0
 // on the table, origin within the group; `T_world_object` of a group's members maps into it.

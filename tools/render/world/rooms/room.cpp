@@ -4,10 +4,10 @@
 
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 #include "tools/render/world/objects/prints.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
+#include "tools/render/world/objects/seeds.hpp"
 #include "tools/render/world/rooms/furniture.hpp"
-#include "tools/render/world/seeds.hpp"
 
 namespace houghstream::world {
 namespace {

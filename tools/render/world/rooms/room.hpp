@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 namespace houghstream::world {
 

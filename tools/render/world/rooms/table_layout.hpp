@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/base/random.hpp"
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 namespace houghstream::world {
 

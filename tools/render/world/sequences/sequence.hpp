@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/render/world/objects/seeds.hpp"
 #include "tools/render/world/scene_frames.hpp"
-#include "tools/render/world/seeds.hpp"
 #include "tools/render/world/sequences/sequence_plan.hpp"
 
 namespace houghstream::world {

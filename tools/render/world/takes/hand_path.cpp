@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/render/world/optics/pixel_noise.hpp"
-#include "tools/render/world/world.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
+#include "tools/render/world/objects/world.hpp"
 
 namespace houghstream::world {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "tools/render/world/objects/materials.hpp"
+#include "tools/render/world/objects/pixel_noise.hpp"
 #include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/objects/vessels.hpp"
 #include "tools/render/world/optics/light.hpp"
-#include "tools/render/world/optics/pixel_noise.hpp"
 #include "tools/render/world/rooms/attitudes.hpp"
 #include "tools/render/world/rooms/room.hpp"
 #include "tools/render/world/rooms/table_setter.hpp"

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "tools/render/world/objects/objects.hpp"
-#include "tools/render/world/seeds.hpp"
+#include "tools/render/world/objects/seeds.hpp"
+#include "tools/render/world/objects/world.hpp"
 #include "tools/render/world/takes/hand_path.hpp"
-#include "tools/render/world/world.hpp"
 
 namespace houghstream::world {
 

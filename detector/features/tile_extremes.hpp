@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "detector/features/tile_plane.hpp"
+
+namespace houghstream {
+
+/// The side of a square around each pixel; where it is even, one pixel more lies to the left and above.
+struct Neighbourhood {
+  int side = 1;
+  int before() const { return side / 2; }
+  int after() const { return side - 1 - side / 2; }
+};
+
+/// Which planes of the rows get the largest and the smallest value.
+struct ExtremePlanes {
+  int largest = 0;
+  int smallest = 0;
+};
+
+/// Largest and smallest value around each pixel of a part, which has a margin of at least `around.before()` pixels.
+void byte_extremes(const TilePlane<std::uint8_t>& plane, Neighbourhood around, ExtremePlanes planes, TileRows& rows);
+
+/// How steps of depth become bytes.
+enum class StepBytes : std::uint8_t { kWrapped, kLimited };
+
+/// The same of 16 bits a value, which become bytes afterwards.
+void step_extremes(const TilePlane<std::uint16_t>& plane, Neighbourhood around, StepBytes bytes, ExtremePlanes planes,
+                   TileRows& rows);
+
+}  // namespace houghstream

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <OpenNI.h>
+
+#include <string>
+#include <vector>
+
+#include "drivers/openni/camera_options.hpp"
+#include "drivers/openni/recorded_start.hpp"
+#include "drivers/openni/timestamp_pairing.hpp"
+#include "pipeline/base/files.hpp"
+
+// Recording of a camera to a .oni file. Included by the .cpp files of this folder only.
+
+namespace houghstream::openni {
+
+/// OpenNI2's recorder lets each stream begin at zero, so that colour and depth that were taken together lie apart in
+/// the file wherever their first images were not. What was seen live tells when those were taken, and with it the times
+/// in the file are mended once it is finished.
+class OpenniRecording {
+ public:
+  /// Records to the file that the options name, or to its next number. What a killed program has recorded under that
+  /// name is ended, so that it can be played. Throws InputError where the file cannot be written.
+  OpenniRecording(const CameraOptions& options, ::openni::VideoStream& depth, ::openni::VideoStream& colour);
+
+  bool started() const { return started_us_ > 0; }
+  void start();
+
+  /// Takes note of an image as the camera's users get it.
+  void note(const SensorImage& image);
+
+  /// Ends the recording; the streams must still exist, and have been stopped.
+  void stop() { recorder_.destroy(); }
+
+  /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero, and puts it
+  /// into its place. Warns where the times cannot be mended; they are then as OpenNI2 has left them. A recording that
+  /// is not whole (a full disk) is told, and stays as FILE.partial.oni; an earlier FILE is left alone.
+  void finish() noexcept;
+
+ private:
+  void mend_times(const FirstImages& recorded);
+
+  WholeFile whole_;
+  std::string file_;  // while it is written
+  bool jpeg_;
+  ::openni::Recorder recorder_;
+  std::int64_t started_us_ = 0;  // host's time, 0 before
+  FirstImages live_;
+};
+
+}  // namespace houghstream::openni

@@ -1,0 +1,169 @@
+#include "pose/seen/colour_score.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace houghstream {
+namespace {
+
+// What exposure and haze make of a remembered contrast.
+constexpr double kLeastGain = 0.4;
+constexpr double kMostGain = 2.5;
+
+/// About grey.
+template <typename Lab>
+Eigen::Array4f about_grey(const Lab& lab) {
+  constexpr float kGrey = 128.0F;
+  return {static_cast<float>(lab[0]) - kGrey, static_cast<float>(lab[1]) - kGrey, static_cast<float>(lab[2]) - kGrey,
+          1.0F};
+}
+
+double variance(const ColourProducts& products, Eigen::Index channel) {
+  return products(channel, channel) - products(channel, kOne) * products(channel, kOne);
+}
+
+/// Mean square that is left over of a channel's seen values by least squares on the remembered ones.
+double chroma_left_over(const ColourProducts& products, Eigen::Index remembered, Eigen::Index seen) {
+  const double own = variance(products, remembered);
+  const double covariance = products(remembered, seen) - products(remembered, kOne) * products(seen, kOne);
+  const double gain = std::clamp(covariance / std::max(own, 1e-3), kLeastGain, kMostGain);
+  return std::max(0.0, variance(products, seen) - gain * (2.0 * covariance - gain * own));
+}
+
+/// The same for lightness on the remembered one and the surface's normal.
+double lightness_left_over(const ColourProducts& products) {
+  constexpr double kRidge = 1e-4;   // terms that do not vary are left alone
+  constexpr int kTerms = kOne + 1;  // remembered value, normal (3), 1
+  constexpr int kOthers = kTerms - 1;
+  using Terms = Eigen::Matrix<double, kTerms, 1>;
+  Eigen::Matrix<double, kTerms, kTerms> curvature = products.topLeftCorner<kTerms, kTerms>();
+  curvature.diagonal().array() += kRidge;
+  const Terms with_seen = products.block<kTerms, 1>(0, kSeenLightness);
+  Terms weights = curvature.ldlt().solve(with_seen);
+  const double gain = std::clamp(weights[0], kLeastGain, kMostGain);
+  if (gain != weights[0]) {
+    const Eigen::Matrix<double, kOthers, 1> rest = with_seen.tail<kOthers>() - gain * curvature.block<kOthers, 1>(1, 0);
+    weights << gain, curvature.bottomRightCorner<kOthers, kOthers>().ldlt().solve(rest);
+  }
+  const double seen_sq = products(kSeenLightness, kSeenLightness);
+  return std::max(0.0, seen_sq - 2.0 * weights.dot(with_seen) + weights.dot(curvature * weights));
+}
+
+float chroma_conflict(const ColourProducts& products) {
+  constexpr double kPlain = 100.0;  // variance that plain surfaces have in changing light
+  constexpr double kPalest = 0.5;   // strengths over the remembered one
+  constexpr double kStrongest = 2.5;
+  constexpr double kMost = 4.0;
+  const Eigen::Vector2d own(products(kA, kOne), products(kB, kOne));
+  const Eigen::Vector2d seen(products(kSeenA, kOne), products(kSeenB, kOne));
+  const double strength = std::clamp(own.dot(seen) / std::max(own.squaredNorm(), 1.0), kPalest, kStrongest);
+  const double spread_sq = kPlain + variance(products, kSeenA) + variance(products, kSeenB);
+  return static_cast<float>(std::min(kMost, (seen - strength * own).norm() / std::sqrt(spread_sq)));
+}
+
+/// The compared points, and those where the camera was at its limit.
+struct SummedColours {
+  ColourSums compared;
+  ColourSums clipped;
+
+  /// Of both. `compared_means` is that of the former, and mostly all there is.
+  ColourProducts all_means(const ColourProducts& compared_means) const {
+    if (clipped.count() == 0) return compared_means;
+    ColourSums all = compared;
+    return (all += clipped).means();
+  }
+};
+
+ColourComparison compare(const SummedColours& sums) {
+  const auto weighted = [](double lightness, double a, double b) {
+    constexpr double kLightnessWeight = 0.5;  // shading is only roughly accounted for
+    return kLightnessWeight * lightness + a + b;
+  };
+  const ColourProducts products = sums.compared.means();
+  const double seen =
+      weighted(variance(products, kSeenLightness), variance(products, kSeenA), variance(products, kSeenB));
+  const double own = weighted(variance(products, kLightness), variance(products, kA), variance(products, kB));
+  const double left = weighted(lightness_left_over(products), chroma_left_over(products, kA, kSeenA),
+                               chroma_left_over(products, kB, kSeenB));
+  ColourComparison comparison;
+  comparison.points = sums.compared.count();
+  comparison.agreement = static_cast<float>(1.0 - left / (kPlainColourVariance + seen));
+  comparison.left_over = static_cast<float>(std::sqrt(left));
+  comparison.chroma_conflict = chroma_conflict(sums.all_means(products));
+  comparison.clipped = sums.clipped.count();
+  comparison.seen_contrast = static_cast<float>(std::sqrt(std::max(0.0, seen)));
+  comparison.own_contrast = static_cast<float>(std::sqrt(std::max(0.0, own)));
+  return comparison;
+}
+
+}  // namespace
+
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
+                                                const DepthTolerance& tolerance) {
+  constexpr int kFewest = 30;
+  constexpr float kNormalUnits = 100.0F;  // brings normals to the size of the other terms
+  if (seen.view.colours.empty()) return std::nullopt;
+  const auto width = static_cast<float>(tolerance.at(seen.depth));
+  const cv::Rect part(cv::Point(), colours.lab.size());
+  SummedColours sums;
+  std::array<ComparedPoint, 64> points;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < seen.looks.size(); ++i) {
+    const Look& look = seen.looks[i];
+    const cv::Point inside = cv::Point(look.x, look.y) - colours.origin_px;
+    if (!(std::abs(look.beyond) <= width) || !part.contains(inside)) continue;
+    const Eigen::Vector3f normal = kNormalUnits * (seen.T.linear() * seen.view.normals[i]);
+    points[count] = {about_grey(seen.view.colours[i]),
+                     about_grey(colours.lab.at<cv::Vec3b>(inside)),
+                     {normal.x(), normal.y(), normal.z(), 1.0F}};
+    if (!colours.clipped.empty() && colours.clipped.at<std::uint8_t>(inside) != 0) {
+      sums.clipped.add(&points[count], 1);
+      continue;
+    }
+    if (++count < points.size()) continue;
+    sums.compared.add(points, count);
+    count = 0;
+  }
+  sums.compared.add(points, count);
+  if (sums.compared.count() < kFewest) return std::nullopt;
+  return compare(sums);
+}
+
+std::optional<ColourComparison> compare_print(const SeenObject& seen, const ViewLook& look,
+                                              const DepthTolerance& tolerance) {
+  constexpr double kDetails = 2.5;  // averaged over so many of the model's details, so that a little beside is near,
+  constexpr double kMost = 5.0;     // or so many pixels,
+  constexpr int kAlready = 3;       // which LabRegion's are averaged over
+  const LabRegion& colours = seen.colours;
+  if (colours.lab.empty() || !(look.depth > 0.0)) return std::nullopt;
+  const double detail_m = 2.0 * static_cast<double>(seen.model.radius) / ModelSettings{}.pixels_per_diameter;
+  const double averaged_px = std::min(kDetails * detail_m / seen.frame.camera.metres_per_px(look.depth), kMost);
+  const int side = 2 * static_cast<int>(0.5 * averaged_px) + 1;
+  const int reach = side > kAlready ? 2 : 1;
+  LabRegion moved{{}, {}, colours.clipped};  // a copy of the picture would be the picture, and change with it
+  if (side > kAlready) {
+    cv::blur(colours.lab, moved.lab, cv::Size(side, side));
+  } else {
+    moved.lab = colours.lab;
+  }
+  std::optional<ColourComparison> best;
+  for (const int dy : {0, -reach, reach}) {
+    for (const int dx : {0, -reach, reach}) {
+      moved.origin_px = colours.origin_px + cv::Point(dx, dy);
+      const std::optional<ColourComparison> here = compare_colours(moved, look, tolerance);
+      if (here && (!best || here->agreement > best->agreement)) best = here;
+    }
+  }
+  return best;
+}
+
+float joint_score(float depth_value, const std::optional<ColourComparison>& colour) {
+  constexpr float kUnknown = 0.5F;
+  const float kept = 0.1F + 0.9F * std::clamp(colour ? colour->agreement : kUnknown, 0.0F, 1.0F);
+  return depth_value > 0.0F ? kept * std::sqrt(depth_value) : depth_value;
+}
+
+}  // namespace houghstream

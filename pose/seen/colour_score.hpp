@@ -1,0 +1,152 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "pose/seen/depth_score.hpp"
+#include "pose/seen/region.hpp"
+
+namespace houghstream {
+
+/// Variance of the seen 8-bit CIE L*a*b* colours, all channels, on a plain surface in even light: it tells of no print.
+constexpr double kPlainColourVariance = 15.0;
+
+/// How the colours that the model has at a pose and those that are seen compare, where measured and model depth agree
+/// and, unless said otherwise, the camera was not at its limit.
+struct ColourComparison {
+  int points = 0;  ///< compared
+  /// 1 less the share of the seen variance that is left over, with each channel's gain (within limits) and offset free,
+  /// as exposure and the light's colour decide them, and lightness also free to follow the surface's normals, as
+  /// shading does. Near 0, or below, for unrelated prints.
+  float agreement = 0.0F;
+  float left_over = 0.0F;  ///< standard deviation of the seen colours that is left over, 8-bit CIE L*a*b*
+  /// How far the mean a* and b* that are seen are from the remembered ones, at any strength (within limits) that haze
+  /// or a camera gives these: over the spread of those seen, at most 4. Where the camera was at its limit too: what is
+  /// left without is edges and shade, of another hue.
+  float chroma_conflict = 0.0F;
+  int clipped = 0;             ///< not compared: the camera was at its limit
+  float seen_contrast = 0.0F;  ///< standard deviation of the seen colours, the channels weighted as in `left_over`
+  float own_contrast = 0.0F;   ///< the same of the model's
+};
+
+/// Compares the points that were looked at. Nothing where the model has no colours or too few points agree.
+std::optional<ColourComparison> compare_colours(const LabRegion& colours, const ViewLook& seen,
+                                                const DepthTolerance& tolerance);
+
+/// The same with the seen colours averaged over little more than the model's are, and moved by up to two pixels to
+/// where they agree best (less where the object is small): cameras' colours are registered to their depth, and poses
+/// found, no better than that. For judging a pose, not for choosing between poses, which differ by less.
+std::optional<ColourComparison> compare_print(const SeenObject& seen, const ViewLook& look,
+                                              const DepthTolerance& tolerance);
+
+/// Depth and colour together: the square root of `depth_value` (DepthScore::value), whose noise would else drown what
+/// little the turns of a round thing differ in colour, less a part where the colours do not explain what is seen.
+/// `depth_value` itself where that is not above 0.
+float joint_score(float depth_value, const std::optional<ColourComparison>& colour);
+
+// What compare_colours() sums, to be tested by itself.
+
+/// What is noted of a compared point; values about 0, so that single precision is enough.
+enum ColourColumn : Eigen::Index {
+  kLightness,
+  kNormal,
+  kOne = kNormal + 3,
+  kA,
+  kB,
+  kSeenLightness,
+  kSeenA,
+  kSeenB,
+  kColourColumns
+};
+using ColourProducts = Eigen::Matrix<double, kColourColumns, kColourColumns>;  ///< of the columns' mean values
+
+/// A compared point, in vectors of four.
+struct ComparedPoint {
+  Eigen::Array4f own, seen;  ///< L*, a*, b* and 1
+  Eigen::Array4f normal;     ///< its coordinates and 1
+};
+
+/// Sums of those products that are asked for. Only sums of normals are ever rounded: colours are whole numbers.
+class ColourSums {
+ public:
+  /// By blocks, so that the sums stay in registers.
+  template <typename Points>
+  void add(const Points& points, std::size_t count) {
+    ColourSums sums = *this;
+    for (std::size_t i = 0; i < count; ++i) sums.add(points[i]);
+    *this = sums;
+  }
+
+  int count() const { return count_; }
+
+  ColourSums& operator+=(const ColourSums& other) {
+    own_ += other.own_;
+    seen_ += other.seen_;
+    own_own_ += other.own_own_;
+    own_seen_ += other.own_seen_;
+    seen_seen_ += other.seen_seen_;
+    normal_own_ += other.normal_own_;
+    normal_seen_ += other.normal_seen_;
+    normal_x_ += other.normal_x_;
+    normal_y_ += other.normal_y_;
+    normal_z_ += other.normal_z_;
+    count_ += other.count_;
+    return *this;
+  }
+
+  /// Of at least one point. Entries that were not summed are 0.
+  ColourProducts means() const {
+    ColourProducts products = ColourProducts::Zero();
+    const auto set = [&](Eigen::Index a, Eigen::Index b, float sum) {
+      products(a, b) = products(b, a) = static_cast<double>(sum) / static_cast<double>(count_);
+    };
+    constexpr std::array<Eigen::Index, 3> kOwn = {kLightness, kA, kB};
+    constexpr std::array<Eigen::Index, 3> kSeen = {kSeenLightness, kSeenA, kSeenB};
+    const std::array<const Eigen::Array4f*, 3> normals = {&normal_x_, &normal_y_, &normal_z_};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto i = static_cast<Eigen::Index>(c);
+      set(kOwn[c], kOne, own_[i]);
+      set(kSeen[c], kOne, seen_[i]);
+      set(kOwn[c], kOwn[c], own_own_[i]);
+      set(kOwn[c], kSeen[c], own_seen_[i]);
+      set(kSeen[c], kSeen[c], seen_seen_[i]);
+      set(kNormal + i, kLightness, normal_own_[i]);
+      set(kNormal + i, kSeenLightness, normal_seen_[i]);
+      set(kNormal + i, kOne, (*normals[c])[3]);
+      for (Eigen::Index j = 0; j <= i; ++j) set(kNormal + i, kNormal + j, (*normals[c])[j]);
+    }
+    set(kOne, kOne, static_cast<float>(count_));
+    return products;
+  }
+
+ private:
+  void add(const ComparedPoint& point) {
+    own_ += point.own;
+    seen_ += point.seen;
+    own_own_ += point.own * point.own;
+    own_seen_ += point.own * point.seen;
+    seen_seen_ += point.seen * point.seen;
+    normal_own_ += point.own[0] * point.normal;
+    normal_seen_ += point.seen[0] * point.normal;
+    normal_x_ += point.normal[0] * point.normal;
+    normal_y_ += point.normal[1] * point.normal;
+    normal_z_ += point.normal[2] * point.normal;
+    ++count_;
+  }
+
+  Eigen::Array4f own_ = Eigen::Array4f::Zero();
+  Eigen::Array4f seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f own_own_ = Eigen::Array4f::Zero();
+  Eigen::Array4f own_seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f seen_seen_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_own_ = Eigen::Array4f::Zero();   // times the own lightness
+  Eigen::Array4f normal_seen_ = Eigen::Array4f::Zero();  // times the seen lightness
+  Eigen::Array4f normal_x_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_y_ = Eigen::Array4f::Zero();
+  Eigen::Array4f normal_z_ = Eigen::Array4f::Zero();
+  int count_ = 0;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,88 @@
+#include "pose/seen/depth_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace houghstream {
+namespace {
+
+/// `width` is the tolerance at the object's depth.
+DepthScore score_of(const ViewLook& seen, float shift, float width) {
+  DepthScore score;
+  for (const Look& look : seen.looks) {
+    const float ratio = (look.beyond - shift) / width;
+    // Without branches, as the case changes from point to point: NaN is not above 0 and adds nothing.
+    score.agreeing += std::max(0.0F, 1.0F - ratio * ratio);
+    score.violating += std::min(1.0F, std::max(0.0F, ratio - 1.0F));
+  }
+  score.agreeing /= static_cast<float>(seen.looks.size());
+  score.violating /= static_cast<float>(seen.looks.size());
+  score.value = (score.agreeing - score.violating) * seen.view.area;
+  return score;
+}
+
+/// Mean of the fullest window of `width` among the sorted values; 0 without values.
+float densest_mean(const std::vector<float>& sorted, float width) {
+  std::size_t best_first = 0;
+  std::size_t best_count = 0;
+  std::size_t last = 0;
+  for (std::size_t first = 0; first < sorted.size(); ++first) {
+    while (last < sorted.size() && sorted[last] <= sorted[first] + width) ++last;
+    if (last - first > best_count) {
+      best_count = last - first;
+      best_first = first;
+    }
+  }
+  float sum = 0.0F;
+  for (std::size_t i = best_first; i < best_first + best_count; ++i) sum += sorted[i];
+  return best_count == 0 ? 0.0F : sum / static_cast<float>(best_count);
+}
+
+}  // namespace
+
+ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points) {
+  const double depth = (T_camera_object * model.centre.cast<double>()).z();
+  ViewLook result{nearest_view(model, T_camera_object), T_camera_object.cast<float>(), depth, {}};
+  const auto columns = static_cast<float>(frame.depth.cols);
+  const auto rows = static_cast<float>(frame.depth.rows);
+  result.looks.resize(std::min<std::size_t>(static_cast<std::size_t>(std::max(0, points)), result.view.points.size()));
+  for (std::size_t i = 0; i < result.looks.size(); ++i) {
+    const Eigen::Vector3f point = result.T * result.view.points[i];
+    if (!(point.z() > 0.0F)) continue;
+    const Eigen::Vector2f pixel = frame.camera.project_single(point) + Eigen::Vector2f::Constant(0.5F);
+    if (!(pixel.x() >= 0.0F && pixel.y() >= 0.0F && pixel.x() < columns && pixel.y() < rows)) continue;
+    Look& look = result.looks[i];
+    look.x = static_cast<int>(pixel.x());
+    look.y = static_cast<int>(pixel.y());
+    look.beyond = frame.depth.ptr<float>(look.y)[look.x] - point.z();
+  }
+  return result;
+}
+
+DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance) {
+  return score_of(seen, 0.0F, static_cast<float>(tolerance.at(seen.depth)));
+}
+
+DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points, const DepthTolerance& tolerance) {
+  return score_look(look_at_view(frame, model, T_camera_object, points), tolerance);
+}
+
+DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                            const ShiftSearch& search) {
+  const ViewLook seen = look_at_view(frame, model, T_camera_object, search.points);
+  const auto width = static_cast<float>(search.tolerance.at(seen.depth));
+  std::vector<float> within;
+  within.reserve(seen.looks.size());
+  for (const Look& look : seen.looks) {
+    if (std::abs(look.beyond) <= search.reach_m) within.push_back(look.beyond);  // false for NaN
+  }
+  std::sort(within.begin(), within.end());
+  const float shift = densest_mean(within, width);
+  return {shift, score_of(seen, shift, width)};
+}
+
+}  // namespace houghstream

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <vector>
+
+#include "pipeline/types/frame.hpp"
+#include "pose/model/object_model.hpp"
+#include "pose/seen/region.hpp"
+
+namespace houghstream {
+
+/// Where a model's point falls in a frame, and what was measured there.
+struct Look {
+  /// Measured minus model depth along the ray, metres; NaN where nothing was measured or the image ends.
+  float beyond = std::numeric_limits<float>::quiet_NaN();
+  int x = 0;  ///< pixel; meaningless where the image ends
+  int y = 0;
+};
+
+/// A model's view at a pose, against a frame.
+struct ViewLook {
+  const ModelView& view;    ///< nearest to the pose
+  Eigen::Isometry3f T;      ///< camera from object
+  double depth = 0.0;       ///< of the model's middle, metres: tolerances are those of there
+  std::vector<Look> looks;  ///< of the first points of the view
+};
+ViewLook look_at_view(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points);
+
+/// How the measured depth speaks for a pose, judged at the visible points of the model.
+struct DepthScore {
+  float agreeing = 0.0F;   ///< fraction of the points where measured and model depth agree
+  float violating = 0.0F;  ///< fraction in front of what was measured: the camera saw through them
+  float value = 0.0F;      ///< (agreeing - violating) times the view's silhouette: explained minus contradicted area
+};
+
+/// Judges the points that were looked at. Points behind what was measured (occluded),
+/// without depth, or outside the image speak neither way.
+DepthScore score_look(const ViewLook& seen, const DepthTolerance& tolerance);
+
+/// The same for the first `points` points of the view nearest to the pose.
+DepthScore score_pose(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                      int points, const DepthTolerance& tolerance);
+
+/// A move of the pose along the line of sight, and how the depth speaks for the pose after it.
+struct DepthShift {
+  double shift_m = 0.0;
+  DepthScore score;  ///< as score_pose would give it, but for the small change of scale
+};
+
+/// Where such a move is looked for.
+struct ShiftSearch {
+  int points = 0;        ///< of the view nearest to the pose, the first
+  double reach_m = 0.0;  ///< to each side
+  DepthTolerance tolerance;
+};
+
+/// The shift within reach that makes most visible points agree; none where no point is within reach.
+DepthShift best_depth_shift(const RgbdFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
+                            const ShiftSearch& search);
+
+}  // namespace houghstream

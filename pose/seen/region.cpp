@@ -1,0 +1,91 @@
+#include "pose/seen/region.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace houghstream {
+namespace {
+
+/// Whole pixels of the box, enlarged and cut to the image. A box with absurd numbers gives an empty one.
+cv::Rect enlarged(const cv::Rect2f& box, double by, const cv::Size& image) {
+  const auto clip = [](double v, int limit) { return v > 0.0 ? static_cast<int>(std::min<double>(v, limit)) : 0; };
+  const int left = clip(std::floor(box.x - by * box.width), image.width);
+  const int top = clip(std::floor(box.y - by * box.height), image.height);
+  const int right = clip(std::ceil(box.x + (1.0 + by) * box.width), image.width);
+  const int bottom = clip(std::ceil(box.y + (1.0 + by) * box.height), image.height);
+  return {left, top, std::max(0, right - left), std::max(0, bottom - top)};
+}
+
+bool in_range(const DepthRegion& region, float z) {
+  return z >= region.nearest && z <= region.farthest;  // false for NaN
+}
+
+cv::Mat clipped_pixels(const cv::Mat& colour) {
+  constexpr double kWithin = 249.0;  // JPEG and sharpening leave what is clipped a little below 255
+  std::array<cv::Mat, 3> channels;
+  cv::split(colour, channels.data());
+  cv::Mat brightest;
+  cv::max(channels[0], channels[1], brightest);
+  cv::max(brightest, channels[2], brightest);
+  cv::threshold(brightest, brightest, kWithin, 255.0, cv::THRESH_BINARY);
+  cv::dilate(brightest, brightest, cv::Mat());
+  return brightest;
+}
+
+}  // namespace
+
+DepthRegion find_region(const RgbdFrame& frame, const Detection& detection, const ObjectModel& model,
+                        const RegionSettings& settings) {
+  DepthRegion region;
+  region.box_px = enlarged(detection.box_px, settings.enlarge, frame.depth.size());
+  // The model's farthest point from where the detection is.
+  const float reach =
+      (model.centre - model.vote_centre).norm() + model.radius + static_cast<float>(settings.gate_margin_m);
+  region.nearest = std::max(0.0F, detection.centre_camera.z() - reach);
+  region.farthest = detection.centre_camera.z() + reach;
+  for (int y = region.box_px.y; y < region.box_px.br().y; ++y) {
+    const float* depth = frame.depth.ptr<float>(y);
+    for (int x = region.box_px.x; x < region.box_px.br().x; ++x) region.points += in_range(region, depth[x]) ? 1 : 0;
+  }
+  return region;
+}
+
+std::vector<Eigen::Vector3f> region_points(const RgbdFrame& frame, const DepthRegion& region, int most) {
+  std::vector<Eigen::Vector3f> points;
+  const int stride = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(region.points) / most))));
+  for (int y = region.box_px.y; y < region.box_px.br().y; y += stride) {
+    const float* depth = frame.depth.ptr<float>(y);
+    for (int x = region.box_px.x; x < region.box_px.br().x; x += stride) {
+      if (in_range(region, depth[x])) points.push_back(frame.camera.backproject(x, y, depth[x]).cast<float>());
+    }
+  }
+  return points;
+}
+
+LabRegion lab_region(const RgbdFrame& frame, const cv::Rect& part_px, const ToneCurve& tone) {
+  LabRegion region{{}, part_px.tl(), clipped_pixels(frame.colour(part_px))};
+  cv::blur(frame.colour(part_px), region.lab, cv::Size(3, 3));
+  if (tone.changes()) apply_tone(tone, region.lab, region.lab);
+  cv::cvtColor(region.lab, region.lab, cv::COLOR_BGR2Lab);
+  return region;
+}
+
+SeenFrame see_frame(const RgbdFrame& frame, const RegionSettings& settings, const DepthNoise& noise) {
+  return {frame, noise, tone_curve(frame.colour, settings.tone)};
+}
+
+SeenObject see_object(const SeenFrame& seen, const Detection& detection, const ObjectModel& model,
+                      const RegionSettings& settings) {
+  const DepthRegion region = find_region(seen.frame, detection, model, settings);
+  SeenObject object{seen.frame, model, detection.centre_camera, seen.noise, region, {}};
+  if (region.points >= settings.min_points) object.colours = lab_region(seen.frame, region.box_px, seen.tone);
+  return object;
+}
+
+double distance_from_detected(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object) {
+  return (T_camera_object * seen.model.vote_centre.cast<double>() - seen.centre_camera.cast<double>()).norm();
+}
+
+}  // namespace houghstream

@@ -1,0 +1,74 @@
+#include "tools/view/drawing/stream_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream::view {
+namespace {
+
+ProcessState heard(const std::string& name, std::int64_t time_us) {
+  ProcessState process;
+  process.name = name;
+  process.heard_us = time_us;
+  return process;
+}
+
+TEST(StreamWatch, RateIsThatOfTheLastTwoSeconds) {
+  StreamWatch watch;
+  EXPECT_EQ(watch.state(0).frames_hz, 0.0);
+  for (std::int64_t i = 0; i < 100; ++i) watch.note_frame(i * 1'000'000);  // once a second
+  for (std::int64_t i = 0; i < 90; ++i) watch.note_frame(100'000'000 + i * 33'333);
+  EXPECT_NEAR(watch.state(103'000'000).frames_hz, 30.0, 0.5);
+  EXPECT_EQ(watch.state(110'000'000).frames_hz, 0.0);  // nothing comes any more
+}
+
+TEST(StreamWatch, ProcessesAreShownByNameUntilTheyFallSilent) {
+  StreamWatch watch;
+  watch.note_process(heard("hs-pose", 1'000'000));
+  watch.note_process(heard("hs-detect", 2'000'000));
+  watch.note_process(heard("hs-detect", 3'000'000));
+  const StreamState both = watch.state(4'000'000);
+  ASSERT_EQ(both.processes.size(), 2U);
+  EXPECT_EQ(both.processes[0].name, "hs-detect");
+  const StreamState later = watch.state(7'000'000);
+  ASSERT_EQ(later.processes.size(), 1U);
+  EXPECT_EQ(later.processes[0].heard_us, 3'000'000);
+}
+
+TEST(StreamWatch, ATeachingIsShownUntilItFallsSilent) {
+  StreamWatch watch;
+  EXPECT_FALSE(watch.state(0).teaching.has_value());
+  Teaching mug;
+  mug.name = "mug";
+  watch.note_teaching(mug, 1'000'000);
+  ASSERT_TRUE(watch.state(5'000'000).teaching.has_value());
+  EXPECT_EQ(watch.state(5'000'000).teaching->name, "mug");
+  EXPECT_FALSE(watch.state(7'000'000).teaching.has_value());
+}
+
+TEST(StreamWatch, TwoProcessesOfOneNameAreTwo) {
+  StreamWatch watch;
+  ProcessState other = heard("hs-detect", 2'000'000);
+  other.pid = 17;
+  watch.note_process(heard("hs-detect", 1'000'000));
+  watch.note_process(other);
+  EXPECT_EQ(watch.state(3'000'000).processes.size(), 2U);
+}
+
+TEST(ShownCamera, TheFirstIsShownUntilAnotherIsAskedFor) {
+  ShownCamera cameras;
+  EXPECT_TRUE(cameras.is_shown("ANY"));
+  cameras.next();
+  cameras.note("LEFT");
+  cameras.note("RIGHT");
+  cameras.note("ABOVE");
+  EXPECT_TRUE(cameras.is_shown("LEFT"));
+  EXPECT_FALSE(cameras.is_shown("RIGHT"));
+  cameras.next();
+  EXPECT_TRUE(cameras.is_shown("RIGHT"));
+  cameras.next();
+  EXPECT_TRUE(cameras.is_shown("ABOVE"));
+  EXPECT_EQ(cameras.heard(), (std::vector<std::string>{"ABOVE", "LEFT", "RIGHT"}));
+}
+
+}  // namespace
+}  // namespace houghstream::view

@@ -1,0 +1,83 @@
+#include "tools/view/drawing/stream_watch.hpp"
+
+#include <utility>
+
+namespace houghstream::view {
+namespace {
+
+constexpr std::int64_t kWindowUs = 2'000'000;   // over which rates are counted
+constexpr std::int64_t kSilenceUs = 5'000'000;  // five times the interval of status_t, and of teaching_t at its slowest
+
+}  // namespace
+
+void StreamWatch::note_frame(std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  arrivals_us_.push_back(now_us);
+  while (now_us - arrivals_us_.front() > kWindowUs) arrivals_us_.pop_front();
+}
+
+void StreamWatch::note_process(ProcessState process) {
+  const std::lock_guard lock(mutex_);
+  constexpr std::size_t kProcesses = 64;  // a sender of rubbish may make them up without end
+  if (processes_.size() >= kProcesses) {
+    for (auto entry = processes_.begin(); entry != processes_.end();)
+      entry = process.heard_us - entry->second.heard_us > kSilenceUs ? processes_.erase(entry) : std::next(entry);
+  }
+  const std::pair<std::string, std::int32_t> key(process.name, process.pid);
+  if (processes_.size() >= kProcesses && processes_.count(key) == 0) return;
+  processes_[key] = std::move(process);
+}
+
+void StreamWatch::note_teaching(Teaching teaching, std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  teaching_ = std::move(teaching);
+  taught_us_ = now_us;
+}
+
+void StreamWatch::note_world(const WorldObjects& world, std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  world_.add(world);
+  world_us_ = now_us;
+}
+
+StreamState StreamWatch::state(std::int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  while (!arrivals_us_.empty() && now_us - arrivals_us_.front() > kWindowUs) arrivals_us_.pop_front();
+  StreamState state;
+  if (arrivals_us_.size() > 1 && arrivals_us_.back() > arrivals_us_.front()) {
+    state.frames_hz = static_cast<double>(arrivals_us_.size() - 1) * 1e6 /
+                      static_cast<double>(arrivals_us_.back() - arrivals_us_.front());
+  }
+  for (const auto& [key, process] : processes_) {
+    if (now_us - process.heard_us <= kSilenceUs) state.processes.push_back(process);
+  }
+  if (now_us - taught_us_ <= kSilenceUs) state.teaching = teaching_;
+  if (now_us - world_us_ <= kSilenceUs) state.world = world_;
+  return state;
+}
+
+void ShownCamera::note(const std::string& channel) {
+  const std::lock_guard lock(mutex_);
+  constexpr std::size_t kCameras = 64;
+  if (heard_.empty()) shown_ = channel;
+  if (heard_.size() < kCameras) heard_.insert(channel);
+}
+
+void ShownCamera::next() {
+  const std::lock_guard lock(mutex_);
+  if (heard_.empty()) return;
+  const auto after = heard_.upper_bound(shown_);
+  shown_ = after == heard_.end() ? *heard_.begin() : *after;
+}
+
+bool ShownCamera::is_shown(const std::string& channel) const {
+  const std::lock_guard lock(mutex_);
+  return heard_.empty() || channel == shown_;
+}
+
+std::vector<std::string> ShownCamera::heard() const {
+  const std::lock_guard lock(mutex_);
+  return {heard_.begin(), heard_.end()};
+}
+
+}  // namespace houghstream::view
