@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/voting/vote_casting.hpp"
-
 namespace houghstream {
 namespace {
 

@@ -1,13 +1,13 @@
 // Compiled once for each instruction set, see foreach_target.h of Highway.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detector/voting/vote_casting.cpp"
-#include "detector/voting/vote_casting.hpp"
-
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
 #include <algorithm>
+
+#include "detector/voting/hough_space.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {

@@ -1,5 +1,5 @@
 #include "drivers/openni/oni_times.hpp"
-#include "pipeline/bus/log_seal.hpp"
+#include "pipeline/bus/event_log.hpp"
 #include "pipeline/messages/messages.hpp"
 #include "tests/fuzz/fuzz_targets.hpp"
 #include "tests/tools/log/recordings.hpp"

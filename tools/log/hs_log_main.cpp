@@ -6,7 +6,7 @@
 #include "drivers/openni/oni_repair.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
-#include "pipeline/bus/log_seal.hpp"
+#include "pipeline/bus/event_log.hpp"
 #include "tools/common/progress_line.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/log/export_frames.hpp"

@@ -47,4 +47,9 @@ void vary_light(cv::Mat& colour, double strength, double darkest_stops, double b
 /// The same with the limits of a camera's exposure: dim rooms are commoner than overexposed ones.
 void vary_exposure(cv::Mat& colour, double strength, Random& random);
 
+/// Puts something in front of the composite's object: a patch of the room, nearer than the object, of random shape
+/// and place, that hides between a tenth and four fifths of it, with the infrared shadow that a structured-light
+/// camera sees to its left. Nothing where no try hides as much as that.
+void add_occluder(const RgbdFrame& room, double object_distance, Composite& composite, Random& random);
+
 }  // namespace houghstream::training

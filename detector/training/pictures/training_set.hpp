@@ -8,8 +8,11 @@
 
 #include "detector/features/feature_families.hpp"
 #include "detector/features/feature_image.hpp"
+#include "detector/features/features.hpp"
+#include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "detector/profiles.hpp"
+#include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
 namespace houghstream::training {
@@ -44,5 +47,38 @@ struct TrainingSet {
 /// large as the set. It is not called for views of several composites.
 TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile,
                               const std::function<void(const TrainingView*)>& is_done);
+
+/// A picture that trees learn from.
+struct TrainingPicture {
+  FeatureImage features;
+  std::vector<TrainingSample> samples;
+  std::vector<TrainingSample> spare_background;
+  float whole_area = 0.0F;  ///< of the object, square metres; 0 in a background picture
+};
+
+/// A view that objects are taught by.
+struct TaughtView {
+  const TrainingView& view;
+  int label = 0;            ///< class index + 1
+  std::uint32_t index = 0;  ///< into TrainingSet::views
+};
+
+/// Memory that pictures share, one after another: it is written to much faster than new memory, which the system has to
+/// clear first.
+struct PictureWorkspace {
+  FeatureTiles tiles;
+  FeatureMemory feature_memory;
+  FeatureImage features;
+};
+
+/// An object put into a background: patches on it and some beside it. Empty where the background is too small.
+TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const Profile& profile,
+                               Random& random, PictureWorkspace& own);
+
+constexpr int kBackgroundPictures = 4;  ///< per background frame, spread over the levels
+
+/// A part of a background as one level sees it.
+TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const Profile& profile,
+                                   Random& random, PictureWorkspace& own);
 
 }  // namespace houghstream::training

@@ -1,8 +1,7 @@
-#include "detector/voting/vote_casting.hpp"
-
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
+#include "detector/voting/hough_space.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream {

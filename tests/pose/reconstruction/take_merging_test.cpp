@@ -1,7 +1,6 @@
-#include "pose/reconstruction/take_merging.hpp"
-
 #include <gtest/gtest.h>
 
+#include "pose/reconstruction/take_model.hpp"
 #include "tests/pose/reconstruction/shown_scene.hpp"
 
 namespace houghstream::reconstruction {

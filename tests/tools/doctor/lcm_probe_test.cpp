@@ -1,6 +1,6 @@
-#include "tools/doctor/lcm_probe.hpp"
-
 #include <gtest/gtest.h>
+
+#include "tools/doctor/machine.hpp"
 
 namespace houghstream::doctor {
 namespace {

@@ -1,5 +1,3 @@
-#include "pipeline/bus/log_seal.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
+#include "pipeline/bus/event_log.hpp"
 #include "tests/test_files.hpp"
 #include "tests/tools/log/recordings.hpp"
 #include "tools/log/good_events.hpp"

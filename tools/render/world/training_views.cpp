@@ -6,7 +6,6 @@
 #include "pipeline/base/checks.hpp"
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
-#include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/objects/vessels.hpp"
 
 namespace houghstream::world {

@@ -12,7 +12,7 @@
 #include "pose/fusion/fuse_views.hpp"
 #include "pose/reconstruction/model_registration.hpp"
 #include "pose/reconstruction/outline_placement.hpp"
-#include "pose/reconstruction/take_merging.hpp"
+#include "pose/reconstruction/take_model.hpp"
 
 namespace houghstream::teach {
 namespace {

@@ -1,15 +1,149 @@
 #include "tools/view/drawing/frame_view.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "tools/view/drawing/teaching_view.hpp"
 #include "tools/view/drawing/turned_view.hpp"
-#include "tools/view/drawing/view_panel.hpp"
 #include "tools/view/drawing/world_view.hpp"
 
 namespace houghstream::view {
+namespace {
+
+constexpr int kBlockWidth = 320;
+constexpr int kRows = 6;
+constexpr int kRowHeight = 18;
+constexpr int kHeading = 24;
+constexpr int kBlockHeight = kHeading + kRows * kRowHeight + 6;
+constexpr int kKeysHeight = 28;
+constexpr int kMargin = 8;
+const cv::Scalar kKeysGround(60, 54, 50);
+const cv::Scalar kMuted(190, 190, 190);
+const cv::Scalar kBright(255, 255, 255);
+const cv::Scalar kWarning(80, 170, 255);
+
+// One block of the panel, with its heading; what does not fit is cut off at its right edge.
+class Block {
+ public:
+  Block(cv::Mat& panel, const cv::Point& corner, const std::string& heading)
+      : image_(panel(cv::Rect(corner, cv::Size(kBlockWidth, kBlockHeight)) & cv::Rect({}, panel.size()))) {
+    draw_text(image_, heading, {kMargin, kHeading - 7}, kPanelText, kMuted);
+  }
+
+  void line(int row, const std::string& text, const cv::Scalar& colour = kBright, int indent = 0) {
+    draw_text(image_, text, {kMargin + indent, kHeading + (row + 1) * kRowHeight - 5}, kPanelText, colour);
+  }
+
+  void square(int row, const cv::Scalar& colour) {
+    cv::rectangle(image_, cv::Rect(kMargin, kHeading + row * kRowHeight + 4, 10, 10), colour, cv::FILLED);
+  }
+
+  cv::Rect area() const { return {kMargin, kHeading, kBlockWidth - 2 * kMargin, kRows * kRowHeight}; }
+  cv::Mat& image() { return image_; }
+
+ private:
+  cv::Mat image_;
+};
+
+std::string process_line(const ProcessState& process) {
+  std::string text = fmt::format("{} {:.1f} Hz, {} skipped", process.name, process.rate_hz, process.skipped);
+  if (process.lost > 0) text += fmt::format(", {} lost", process.lost);
+  if (process.refused > 0) text += fmt::format(", {} refused", process.refused);
+  return text;
+}
+
+void draw_stream(Block block, const StreamState& state, std::int64_t lost) {
+  block.line(0, fmt::format("frames {:.1f} Hz, {} lost", state.frames_hz, lost), lost > 0 ? kWarning : kBright);
+  int row = 1;
+  for (const ProcessState& process : state.processes) {
+    if (row >= kRows) return;
+    const bool wrong = process.lost > 0 || process.refused > 0;
+    block.line(row++, process_line(process), wrong ? kWarning : kBright);
+  }
+}
+
+std::string object_line(const Detection& detection, const ObjectPose* pose) {
+  std::string text = fmt::format("{} {:.2f}", detection.class_name, detection.score);
+  if (pose == nullptr) return text;
+  if (!pose->T_camera_object) return text + fmt::format(", {}", to_string(pose->status));
+  return text + fmt::format(", {:.2f} m, quality {:.2f}", pose->T_camera_object->translation().z(), pose->quality);
+}
+
+const ObjectPose* pose_of(const ViewedFrame& viewed, std::size_t detection) {
+  return viewed.poses ? find_pose(*viewed.poses, detection) : nullptr;
+}
+
+void draw_objects(Block block, const ViewedFrame& viewed) {
+  const std::vector<Detection>& detections = viewed.detections.detections;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const int row = static_cast<int>(i);
+    if (row == kRows - 1 && detections.size() > kRows) {
+      block.line(row, fmt::format("and {} more", detections.size() - i), kMuted);
+      return;
+    }
+    block.square(row, class_colour(detections[i].class_id));
+    block.line(row, object_line(detections[i], pose_of(viewed, i)), kBright, 16);
+  }
+}
+
+std::string latency_heading(const ViewedFrame& viewed) {
+  if (!viewed.detect_latency_ms) return "no detections";
+  const std::string detections = fmt::format("detections after {:.0f} ms, ", *viewed.detect_latency_ms);
+  return detections + (viewed.pose_latency_ms ? fmt::format("poses {:.0f}", *viewed.pose_latency_ms) : "no poses");
+}
+
+void draw_keys(cv::Mat image, const FrameViewSettings& settings, bool several_cameras) {
+  image.setTo(kKeysGround);
+  const int baseline = kKeysHeight - 9;
+  draw_text(image,
+            fmt::format("q end   space pause   d depth   3 3-D   w world   s save   + - score from {:.2f}{}{}",
+                        settings.min_score, several_cameras ? "   c camera" : "",
+                        settings.can_teach ? "   t teach (mouse: click or box)" : ""),
+            {kMargin, baseline}, 0.45);
+  if (settings.paused) draw_text(image, "paused", {std::max(image.cols - 70, 0), baseline}, 0.5, kWarning);
+}
+
+}  // namespace
+
+std::string camera_heading(const FrameId& frame, const std::vector<std::string>& cameras) {
+  std::string time = fmt::format("frame {:.3f} s", static_cast<double>(frame.utime) * 1e-6);
+  if (frame.channel.empty()) return time;
+  const auto found = std::find(cameras.begin(), cameras.end(), frame.channel);
+  if (cameras.size() < 2 || found == cameras.end()) return frame.channel + ", " + time;
+  return fmt::format("{} ({} of {}), {}", frame.channel, found - cameras.begin() + 1, cameras.size(), time);
+}
+
+std::string objects_heading(const ViewedFrame& viewed, float min_score) {
+  const std::size_t shown = viewed.detections.detections.size();
+  if (min_score <= 0.0F) return fmt::format("{} objects, all that are reported", shown);
+  return fmt::format("{} of {} objects, from score {:.2f}", shown, shown + viewed.weak, min_score);
+}
+
+cv::Mat draw_panel(const ViewedFrame& viewed, const StreamView& stream, const FrameViewSettings& settings, int width) {
+  constexpr int kBlocks = 4;
+  const int columns = std::clamp(width / kBlockWidth, 1, kBlocks);
+  const int blocks_height = (kBlocks + columns - 1) / columns * kBlockHeight;
+  cv::Mat panel(blocks_height + (settings.show_keys ? kKeysHeight : 0), std::max(width, kBlockWidth), CV_8UC3,
+                kPanelGround);
+  const auto corner = [&](int block) {
+    return cv::Point(block % columns * kBlockWidth, block / columns * kBlockHeight);
+  };
+  const std::string frame = camera_heading(viewed.frame.id, stream.cameras);
+  draw_stream(Block(panel, corner(0), frame), stream.state, stream.frames_lost);
+  draw_objects(Block(panel, corner(1), objects_heading(viewed, settings.min_score)), viewed);
+  Block stages(panel, corner(2), "stages, ms");
+  draw_stage_list(stages.image(), stages.area(), viewed.poses ? viewed.poses->stages : viewed.detections.stages, kRows);
+  Block latency(panel, corner(3), latency_heading(viewed));
+  draw_latency_chart(latency.image(), latency.area(), stream.history);
+  if (settings.show_keys) draw_keys(panel.rowRange(blocks_height, panel.rows), settings, stream.cameras.size() > 1);
+  return panel.colRange(0, width).clone();
+}
+
 cv::Mat colour_depth(const cv::Mat& depth, float near, float far) {
   const double per_metre = -255.0 / (far - near);
   cv::Mat warmth;

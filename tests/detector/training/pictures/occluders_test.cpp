@@ -1,5 +1,3 @@
-#include "detector/training/pictures/occluders.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "detector/training/pictures/composites.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::training {

@@ -1,5 +1,3 @@
-#include "detector/training/pictures/training_pictures.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/training/pictures/training_set.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::training {

@@ -1,6 +1,6 @@
-#include "tools/view/drawing/view_panel.hpp"
-
 #include <gtest/gtest.h>
+
+#include "tools/view/drawing/frame_view.hpp"
 
 namespace houghstream::view {
 namespace {

@@ -1,8 +1,47 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <string>
 
 #include "pipeline/base/random.hpp"
+
+// Print-like textures: what is on boxes, cans, mugs and covers. All CV_8UC3 BGR, drawn from the given generator only.
+
+namespace houghstream::world {
+
+/// The colours one print uses.
+struct Palette {
+  cv::Scalar base;    ///< most of the surface
+  cv::Scalar accent;  ///< panels, stripes
+  cv::Scalar light;   ///< lettering on dark ground
+  cv::Scalar dark;    ///< lettering on light ground
+};
+Palette random_palette(Random& random);
+
+/// BGR of a hue 0-360 degrees, saturation and value 0-1.
+cv::Scalar hsv(double hue_deg, double saturation, double value);
+
+/// Made-up brand word of capital and small letters.
+std::string brand_word(Random& random);
+
+// Elements, drawn inside a region of an image.
+void draw_title(cv::Mat& image, const cv::Rect& region, const cv::Scalar& colour, Random& random);
+void draw_text_lines(cv::Mat& image, const cv::Rect& region, const cv::Scalar& colour, Random& random);
+void draw_barcode(cv::Mat& image, const cv::Rect& region, Random& random);
+void draw_logo(cv::Mat& image, const cv::Rect& region, const Palette& palette, Random& random);
+void draw_photo(cv::Mat& image, const cv::Rect& region, Random& random);  ///< noise blobs like a product photograph
+
+// Whole surfaces.
+cv::Mat carton_front(const cv::Size& size, const Palette& palette, Random& random);
+cv::Mat carton_side(const cv::Size& size, const Palette& palette, Random& random);
+cv::Mat can_label(const cv::Size& size, const Palette& palette, Random& random);  ///< wraps round, u = 0 meets u = 1
+cv::Mat mug_print(const cv::Size& size, const Palette& palette, Random& random);  ///< glaze with a motif
+cv::Mat book_cover(const cv::Size& size, const Palette& palette, Random& random);
+cv::Mat screen_picture(const cv::Size& size, Random& random);  ///< windows on a monitor
+cv::Mat keyboard_top(const cv::Size& size, Random& random);
+cv::Mat poster(const cv::Size& size, Random& random);
+
+}  // namespace houghstream::world
 
 // Textures of things that are not printed. All CV_8UC3 BGR, drawn from the given generator only.
 

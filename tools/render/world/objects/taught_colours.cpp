@@ -4,8 +4,8 @@
 #include <array>
 
 #include "pipeline/base/checks.hpp"
+#include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/objects.hpp"
-#include "tools/render/world/objects/prints.hpp"
 
 namespace houghstream::world {
 

@@ -8,7 +8,6 @@
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/objects.hpp"
-#include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/objects/taught_colours.hpp"
 #include "tools/render/world/objects/vessels.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
-#include "tools/render/world/objects/prints.hpp"
 
 // Meshes of vessels and cartons, finished (origin at the centre of the bounding box). Lengths in metres.
 

@@ -9,7 +9,6 @@
 #include "pipeline/geometry/renderer.hpp"
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
-#include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/rooms/attitudes.hpp"
 
 namespace houghstream::world {

@@ -9,7 +9,6 @@
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/pixel_noise.hpp"
-#include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/rooms/attitudes.hpp"
 #include "tools/render/world/rooms/tipping.hpp"
 

@@ -5,7 +5,6 @@
 #include "tools/render/world/objects/materials.hpp"
 #include "tools/render/world/objects/mesh_parts.hpp"
 #include "tools/render/world/objects/pixel_noise.hpp"
-#include "tools/render/world/objects/prints.hpp"
 #include "tools/render/world/objects/seeds.hpp"
 #include "tools/render/world/rooms/furniture.hpp"
 
