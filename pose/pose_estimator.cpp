@@ -82,7 +82,7 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 }
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
-  it.chosen = choose_poses(*it.seen, it.registered, it.rotations, settings);
+  it.chosen = choose_poses(*it.seen, it.registered, it.rotations, choice_settings_of(settings));
   tell_registration(it.chosen.front(), it.pose);
   if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
@@ -95,7 +95,7 @@ void verify_one(const PoseSettings& settings, Estimation& it) {
     ObjectPose judged = it.pose;
     tell_registration(result, judged);
     judge(gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification), T_camera_object,
-          it.detection.reported, settings, judged);
+          it.detection.reported, class_quality_of(settings, it.pose.class_name), judged);
     if (!best || judged.quality > best->quality) best = std::move(judged);
   }
   it.pose = *std::move(best);
@@ -140,6 +140,10 @@ const std::map<std::string, ObjectModel>& PoseEstimator::models() const {
   return state_->models;
 }
 
+const PoseSettings& PoseEstimator::settings() const {
+  return state_->settings;
+}
+
 ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& detections) const {
   return estimate(frame, detections, {});
 }
@@ -176,27 +180,6 @@ ObjectPoses PoseEstimator::estimate(const RgbdFrame& frame, const Detections& de
 
   result.stages.insert(result.stages.end(), clock.times().begin(), clock.times().end());
   return result;
-}
-
-std::vector<FollowedPose> PoseEstimator::follow(const RgbdFrame& frame,
-                                                const std::vector<ExpectedObject>& expected) const {
-  check_frame(frame, "pose estimation");
-  const SeenFrame seen = see_frame(frame, state_->settings.region, state_->settings.noise);
-  std::vector<FollowedPose> followed(expected.size());
-  parallel_for(state_->settings.threads, static_cast<int>(expected.size()), [&](int i) {
-    const ExpectedObject& object = expected[i];
-    const auto model = state_->models.find(object.class_name);
-    if (model != state_->models.end()) {
-      followed[i] = follow_object(seen, model->second, object, state_->settings);
-    } else {
-      followed[i].pose.class_id = object.class_id;
-      followed[i].pose.class_name = object.class_name;
-      followed[i].pose.detection_score = object.score;
-      followed[i].pose.status = PoseStatus::kNoModel;
-      followed[i].T_camera_object = object.starts.front();
-    }
-  });
-  return followed;
 }
 
 Eigen::Vector3d PoseEstimator::vote_centre(const PlacedObject& object) const {

@@ -9,7 +9,6 @@
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
-#include "pose/following/follow.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/pose_settings.hpp"
 
@@ -39,6 +38,7 @@ class PoseEstimator {
 
   /// By class name.
   const std::map<std::string, ObjectModel>& models() const;
+  const PoseSettings& settings() const;
 
   /// One ObjectPose per detection, in their order; the times of the stages pose.region, pose.candidates,
   /// pose.registration, pose.choice and pose.verification are appended to those of the detections.
@@ -49,10 +49,6 @@ class PoseEstimator {
   /// The same with the poses of an earlier frame (warm start): they are candidates beside those of the votes, never the
   /// only ones, so that a wrong pose does not stick and what was lost comes back by itself.
   ObjectPoses estimate(const RgbdFrame& frame, const Detections& detections, const ObjectPoses& earlier) const;
-
-  /// The poses in this frame of objects that were posed in earlier ones, in their order, without detections
-  /// (follow_object). Of a class without a model: kNoModel. Throws InputError for a frame that is none.
-  std::vector<FollowedPose> follow(const RgbdFrame& frame, const std::vector<ExpectedObject>& expected) const;
 
   /// Where a detection of the object would have its centre, camera frame, metres; its origin where the class has no
   /// model.

@@ -3,7 +3,6 @@
 #include <map>
 #include <string>
 
-#include "pose/following/follow_settings.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/registration/candidates.hpp"
 #include "pose/registration/choice.hpp"
@@ -26,11 +25,26 @@ struct PoseSettings {
   TurnSettings turn;
   VerificationSettings verification;
   QualitySettings quality;
-  FollowSettings follow;
   std::map<std::string, QualitySettings> class_quality;  ///< learnt for one class, by name; of the others: `quality`
   float min_score = 0.1F;                                ///< of a detection whose pose is looked for
   int threads = 1;                                       ///< any number gives the same poses
 };
+
+/// The quality that a class' poses are judged by: the one learnt for it, or the common one.
+inline const QualitySettings& class_quality_of(const PoseSettings& settings, const std::string& class_name) {
+  const auto learnt = settings.class_quality.find(class_name);
+  return learnt != settings.class_quality.end() ? learnt->second : settings.quality;
+}
+
+/// The settings of all stages that the choice among registered candidates reads.
+inline ChoiceSettings choice_settings_of(const PoseSettings& settings) {
+  ChoiceSettings choice;
+  choice.initial = settings.initial;
+  choice.registration = settings.registration;
+  choice.turn = settings.turn;
+  choice.tolerance_m = settings.verification.tolerance_m;
+  return choice;
+}
 
 /// Publishes poses from this quality on, whatever their detections and their classes are.
 inline void publish_from(float quality, PoseSettings& settings) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/base/parallel.hpp"
 #include "pose/model/angles.hpp"
 #include "pose/registration/turn_search.hpp"
 #include "pose/seen/depth_score.hpp"
@@ -11,6 +12,11 @@
 
 namespace houghstream {
 namespace {
+
+struct FollowerInput {
+  const PoseSettings& pose;
+  const FollowSettings& follow;
+};
 
 Eigen::Vector3d middle_of(const ObjectModel& model, const Eigen::Isometry3d& T_camera_object) {
   return T_camera_object * model.centre.cast<double>();
@@ -40,8 +46,9 @@ SeenObject see_expected(const SeenFrame& frame, const ObjectModel& model, const 
 }
 
 RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d& start, const ExpectedObject& expected,
-                                 const PoseSettings& settings) {
-  const FollowSettings& follow = settings.follow;
+                                 const FollowerInput& input) {
+  const PoseSettings& settings = input.pose;
+  const FollowSettings& follow = input.follow;
   const PairDistances distances = pair_distances(seen, settings.registration);
   const double end_m = distances.end;
   const double start_m = expected.is_lost ? distances.start : std::max(end_m, follow.start_distance_m);
@@ -62,9 +69,11 @@ RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d
 
 /// Judges the pose, of an object that was reported before, by points of the view and the outline of an earlier frame,
 /// where there is one and that suffices; else the model is rendered.
-void judge_followed(const SeenObject& seen, const ExpectedObject& expected, const PoseSettings& settings,
+void judge_followed(const SeenObject& seen, const ExpectedObject& expected, const FollowerInput& input,
                     FollowedPose& followed) {
+  const PoseSettings& settings = input.pose;
   const DepthTolerance tolerance{settings.verification.tolerance_m, seen.noise};
+  const QualitySettings& quality = class_quality_of(settings, followed.pose.class_name);
   const Eigen::Isometry3d& T = followed.T_camera_object;
   const ViewLook look = look_at_view(seen.frame, seen.model, T, settings.verification.points);
   PoseEvidence evidence{expected.score, {}, compare_print(seen, look, tolerance)};
@@ -73,65 +82,92 @@ void judge_followed(const SeenObject& seen, const ExpectedObject& expected, cons
     evidence.depth.outline = expected.verified->outline;
     evidence.depth.outline_goes_on = expected.verified->outline_goes_on;
     followed.verified = expected.verified;
-    judge(evidence, T, true, settings, followed.pose);
+    judge(evidence, T, true, quality, followed.pose);
     if (followed.pose.status == PoseStatus::kValid) return;
   }
   evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance, &seen.colours);
   followed.verified = evidence.depth;
-  judge(evidence, T, true, settings, followed.pose);
+  judge(evidence, T, true, quality, followed.pose);
+}
+
+/// Of an object of which nothing is known yet in this frame.
+FollowedPose unposed(const ExpectedObject& expected) {
+  FollowedPose followed;
+  followed.pose.class_id = expected.class_id;
+  followed.pose.class_name = expected.class_name;
+  followed.pose.detection_score = expected.score;
+  followed.pose.residual = std::numeric_limits<float>::quiet_NaN();
+  followed.T_camera_object = expected.starts.front();
+  return followed;
 }
 
 FollowedPose follow_from(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
-                         const Eigen::Isometry3d& start, const PoseSettings& settings) {
-  FollowedPose followed;
+                         const Eigen::Isometry3d& start, const FollowerInput& input) {
+  const PoseSettings& settings = input.pose;
+  FollowedPose followed = unposed(expected);
   ObjectPose& pose = followed.pose;
-  pose.class_id = expected.class_id;
-  pose.class_name = expected.class_name;
-  pose.detection_score = expected.score;
-  pose.residual = std::numeric_limits<float>::quiet_NaN();
   followed.T_camera_object = start;
   const SeenObject seen = see_expected(frame, model, start, settings);
   if (seen.region.points < settings.region.min_points) {
     pose.status = PoseStatus::kTooFewPoints;
     return followed;
   }
-  const RegistrationResult result = register_near(seen, start, expected, settings);
+  const RegistrationResult result = register_near(seen, start, expected, input);
   tell_registration(result, pose);
   const double jump_m = (middle_of(model, result.T_camera_object) - middle_of(model, start)).norm();
-  const double most_m = expected.is_lost ? settings.registration.max_shift_m : settings.follow.max_jump_m;
+  const double most_m = expected.is_lost ? settings.registration.max_shift_m : input.follow.max_jump_m;
   if (result.inliers == 0 || !(jump_m <= most_m)) {
     pose.status = PoseStatus::kNotConverged;
     return followed;
   }
   followed.T_camera_object = result.T_camera_object;
-  judge_followed(seen, expected, settings, followed);
+  judge_followed(seen, expected, input, followed);
   return followed;
 }
 
 /// Whether something stands before the object, and what can be seen of it is not seen through.
 bool is_hidden(const SeenFrame& frame, const ObjectModel& model, const Eigen::Isometry3d& T_camera_object,
-               const PoseSettings& settings) {
-  const DepthTolerance tolerance{settings.verification.tolerance_m, frame.noise};
+               const FollowerInput& input) {
+  const DepthTolerance tolerance{input.pose.verification.tolerance_m, frame.noise};
   const Verification seen = verify_pose(frame.frame, model.mesh, T_camera_object, tolerance);
   const auto rendered = static_cast<float>(seen.rendered);
   const auto hidden = static_cast<float>(seen.occluded);
-  return hidden > settings.follow.hidden_share * rendered &&
-         static_cast<float>(seen.violating) <= settings.follow.through_share * (rendered - hidden);
+  return hidden > input.follow.hidden_share * rendered &&
+         static_cast<float>(seen.violating) <= input.follow.through_share * (rendered - hidden);
+}
+
+FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
+                           const FollowerInput& input) {
+  FollowedPose best;
+  for (std::size_t i = 0; i < expected.starts.size(); ++i) {
+    FollowedPose here = follow_from(frame, model, expected, expected.starts[i], input);
+    if (i == 0 || here.pose.quality > best.pose.quality) best = std::move(here);
+    if (best.pose.status == PoseStatus::kValid) return best;
+  }
+  if (expected.tell_hidden && is_hidden(frame, model, expected.starts.front(), input))
+    best.pose.status = PoseStatus::kOccluded;
+  return best;
 }
 
 }  // namespace
 
-FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
-                           const PoseSettings& settings) {
-  FollowedPose best;
-  for (std::size_t i = 0; i < expected.starts.size(); ++i) {
-    FollowedPose here = follow_from(frame, model, expected, expected.starts[i], settings);
-    if (i == 0 || here.pose.quality > best.pose.quality) best = std::move(here);
-    if (best.pose.status == PoseStatus::kValid) return best;
-  }
-  if (expected.tell_hidden && is_hidden(frame, model, expected.starts.front(), settings))
-    best.pose.status = PoseStatus::kOccluded;
-  return best;
+std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const FollowSettings& settings,
+                                         const RgbdFrame& frame, const std::vector<ExpectedObject>& expected) {
+  check_frame(frame, "pose estimation");
+  const FollowerInput input{estimator.settings(), settings};
+  const SeenFrame seen = see_frame(frame, input.pose.region, input.pose.noise);
+  std::vector<FollowedPose> followed(expected.size());
+  parallel_for(input.pose.threads, static_cast<int>(expected.size()), [&](int i) {
+    const ExpectedObject& object = expected[i];
+    const auto model = estimator.models().find(object.class_name);
+    if (model != estimator.models().end()) {
+      followed[i] = follow_object(seen, model->second, object, input);
+    } else {
+      followed[i] = unposed(object);
+      followed[i].pose.status = PoseStatus::kNoModel;
+    }
+  });
+  return followed;
 }
 
 }  // namespace houghstream

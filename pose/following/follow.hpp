@@ -7,7 +7,8 @@
 
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
-#include "pose/pose_settings.hpp"
+#include "pose/following/follow_settings.hpp"
+#include "pose/pose_estimator.hpp"
 
 namespace houghstream {
 
@@ -25,17 +26,19 @@ struct ExpectedObject {
 
 /// What came of it.
 struct FollowedPose {
-  ObjectPose pose;  ///< without a detection; its status says why where there is none
+  ObjectPose pose;  ///< without a detection; its status says why where there is none, its residual is NaN then
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< where the best attempt ended, withheld or not
   std::optional<Verification> verified;                               ///< of the last rendering
 };
 
-/// Registers the model from each start in turn until the evidence suffices (PoseSettings::follow): coarsely and finely
-/// as Stoiber et al. (2022) follow objects, by few points of the view, then verified as any pose is. Rendering the
-/// model costs most: with an outline of an earlier frame, points of the view take its place as long as they suffice.
-/// What is withheld has always been rendered. Where nothing suffices and the object is hidden where it was expected
-/// first, its status is kOccluded (ExpectedObject::tell_hidden).
-FollowedPose follow_object(const SeenFrame& frame, const ObjectModel& model, const ExpectedObject& expected,
-                           const PoseSettings& settings);
+/// Finds objects that were posed in earlier frames in this one, in their order, without detections, on
+/// PoseSettings::threads threads. Registers the model from each start in turn until the evidence suffices: coarsely and
+/// finely as Stoiber et al. (2022) follow objects, by few points of the view, then verified as any pose is. Rendering
+/// the model costs most: with an outline of an earlier frame, points of the view take its place as long as they
+/// suffice. What is withheld has always been rendered. Where nothing suffices and the object is hidden where it was
+/// expected first, its status is kOccluded (ExpectedObject::tell_hidden). Of a class without a model it is kNoModel.
+/// Throws InputError for a frame that is none.
+std::vector<FollowedPose> follow_objects(const PoseEstimator& estimator, const FollowSettings& settings,
+                                         const RgbdFrame& frame, const std::vector<ExpectedObject>& expected);
 
 }  // namespace houghstream

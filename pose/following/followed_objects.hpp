@@ -13,6 +13,7 @@ namespace houghstream {
 
 /// When what is followed is given up, and which detection is of it.
 struct FollowerSettings {
+  FollowSettings follow;            ///< how one object is found again in one frame
   int most_failures = 3;            ///< frames one after the other without evidence: it is lost
   float least_kept_quality = 0.3F;  ///< a pose that is withheld is followed on from this quality on
   double longest_withheld_s = 1.0;  ///< but no longer without a valid pose

@@ -92,7 +92,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
                         true,
                         settle ? std::nullopt : object.verified});
   }
-  std::vector<FollowedPose> poses = estimator.follow(frame, expected);
+  std::vector<FollowedPose> poses = follow_objects(estimator, settings_.follow, frame, expected);
   follow_again(estimator, frame, camera, poses);
   return poses;
 }
@@ -121,7 +121,7 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
     again.tell_hidden = carried || !object.speed.isZero(0.0) || !object.turn_rate.isZero(0.0);
     expected.push_back(std::move(again));
   }
-  std::vector<FollowedPose> found = estimator.follow(frame, expected);
+  std::vector<FollowedPose> found = follow_objects(estimator, settings_.follow, frame, expected);
   for (std::size_t k = 0; k < failed.size(); ++k) {
     FollowedPose& pose = poses[failed[k]];
     const PoseStatus before = pose.pose.status;

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "pose/model/angles.hpp"
-#include "pose/pose_settings.hpp"
 #include "pose/registration/turn_search.hpp"
 
 namespace houghstream {
@@ -18,11 +17,11 @@ struct Scored {
 /// The steps of the choice for one object, with what they share.
 class Choice {
  public:
-  Choice(const SeenObject& seen, const std::vector<RotationCandidate>& votes, const PoseSettings& settings)
+  Choice(const SeenObject& seen, const std::vector<RotationCandidate>& votes, const ChoiceSettings& settings)
       : seen_(seen),
         votes_(votes),
         settings_(settings),
-        tolerance_{settings.verification.tolerance_m, seen.noise},
+        tolerance_{settings.tolerance_m, seen.noise},
         distances_(pair_distances(seen, settings.registration)) {}
 
   RegistrationResult best_of(const std::vector<RegistrationResult>& registered) const {
@@ -90,7 +89,7 @@ class Choice {
 
   const SeenObject& seen_;
   const std::vector<RotationCandidate>& votes_;
-  const PoseSettings& settings_;
+  const ChoiceSettings& settings_;
   DepthTolerance tolerance_;
   PairDistances distances_;
 };
@@ -99,7 +98,7 @@ class Choice {
 
 std::vector<RegistrationResult> choose_poses(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
                                              const std::vector<RotationCandidate>& votes,
-                                             const PoseSettings& settings) {
+                                             const ChoiceSettings& settings) {
   const Choice choice(seen, votes, settings);
   const TurnSettings& turn = settings.turn;
   const RegistrationSettings& registration = settings.registration;

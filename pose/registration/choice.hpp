@@ -7,8 +7,6 @@
 
 namespace houghstream {
 
-struct PoseSettings;
-
 /// Turns about the object's z axis that are tried after registration, degrees.
 struct TurnSettings {
   double step_deg = 15.0;       ///< all the way round
@@ -21,6 +19,14 @@ struct TurnSettings {
   float rival_share = 0.8F;     ///< where they score at least so much of it
 };
 
+/// The settings that the choice reads; each stands beside its stage.
+struct ChoiceSettings {
+  InitialSettings initial;
+  RegistrationSettings registration;
+  TurnSettings turn;
+  double tolerance_m = 0.008;  ///< VerificationSettings::tolerance_m
+};
+
 /// Of the registered candidates the one for which depth, colour and votes speak most is registered finely and turned
 /// about its principal axes by half a turn each, and about its z axis, where votes err most; of the turns, each
 /// registered again and moved a little uphill, the one for which they speak most goes on; then its print may turn it a
@@ -28,6 +34,7 @@ struct TurnSettings {
 /// points of a view part them badly, verification better. A single one without inliers where no candidate ended near
 /// the detected centre. `votes` are the modes of the detection's rotations.
 std::vector<RegistrationResult> choose_poses(const SeenObject& seen, const std::vector<RegistrationResult>& registered,
-                                             const std::vector<RotationCandidate>& votes, const PoseSettings& settings);
+                                             const std::vector<RotationCandidate>& votes,
+                                             const ChoiceSettings& settings);
 
 }  // namespace houghstream

@@ -8,9 +8,7 @@ constexpr float kRefutedBelow = 0.5F;  // less probably there than not
 }  // namespace
 
 void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
-           const PoseSettings& settings, ObjectPose& pose) {
-  const auto learnt = settings.class_quality.find(pose.class_name);
-  const QualitySettings& quality = learnt != settings.class_quality.end() ? learnt->second : settings.quality;
+           const QualitySettings& quality, ObjectPose& pose) {
   const QualityTerms terms = quality_terms(evidence, quality);
   pose.visible_fraction = evidence.depth.visible_fraction();
   pose.free_space_violation = evidence.depth.free_space_violation();

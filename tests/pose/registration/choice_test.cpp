@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "pose/pose_settings.hpp"
 #include "tests/pose/printed_box.hpp"
 
 namespace houghstream {

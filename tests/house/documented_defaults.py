@@ -1,0 +1,49 @@
+"""Compares the numbers that documents state with the defaults of the code.
+
+Each row names a document, a pattern in it and a source, a pattern in it; both patterns hold one number. Words that have changed so that a
+pattern is not found are a fault too. Prints one line per fault; status 1 where there is any. Usage: documented_defaults.py REPOSITORY
+"""
+
+import pathlib
+import re
+import sys
+
+QUALITY = "pose/verification/quality.hpp"
+STORED = "tools/common/stored_quality.hpp"
+ROWS = (
+    ("pose/README.md", r"A pose is published from quality ([\d.]+) on", QUALITY, r"float least = ([\d.]+)F"),
+    ("pose/README.md", r"learnt per object: ([\d.]+)\)", STORED, r"kStoreQuality = ([\d.]+)F"),
+    ("pose/README.md", r"so a pose of quality ([\d.]+) \(", QUALITY, r"float least_of_candidates = ([\d.]+)F"),
+    ("pose/README.md", r"of a store's\s+objects ([\d.]+), as most", STORED, r"kStoreCandidateQuality = ([\d.]+)F"),
+    ("pose/README.md", r"not seen \(([\d.]+) is in use", QUALITY, r"float least = ([\d.]+)F"),
+    ("tools/studies/README.md", r"from its limit of ([\d.]+) on", QUALITY, r"float least = ([\d.]+)F"),
+)
+
+
+def number_in(root, name, pattern):
+    """The number that the pattern finds in a file; None where it finds none."""
+    found = re.search(pattern, (root / name).read_text())
+    return float(found.group(1)) if found else None
+
+
+def find_faults(root, rows=ROWS):
+    for document, words, source, code in rows:
+        said, meant = number_in(root, document, words), number_in(root, source, code)
+        if said is None:
+            yield f"{document}: no words like '{words}', expected the default of {source}"
+        elif meant is None:
+            yield f"{source}: no default like '{code}', expected the one that {document} states"
+        elif said != meant:
+            yield f"{document}: says {said:g}, but {source} has {meant:g}"
+
+
+def main():
+    if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1], "pipeline").is_dir():
+        sys.exit("usage: documented_defaults.py REPOSITORY (the folder that holds pipeline/)")
+    faults = list(find_faults(pathlib.Path(sys.argv[1])))
+    print("\n".join(faults) if faults else "documents state the code's defaults")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
