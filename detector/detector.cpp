@@ -29,13 +29,17 @@ std::vector<Detection> suppress(std::vector<Candidate>& candidates, const Detect
 }  // namespace
 
 struct Detector::State {
+  State(Forest given, const DetectionSettings& how, const Engine& by)
+      : forest(std::move(given)), index(forest), settings(how), engine(by) {}
+
   Forest forest;
+  ForestIndex index;
   DetectionSettings settings;
   const Engine& engine;
 };
 
 Detector::Detector(Forest forest, DetectionSettings settings, const Engine& engine)
-    : state_(std::make_unique<State>(State{std::move(forest), settings, engine})) {
+    : state_(std::make_unique<State>(std::move(forest), settings, engine)) {
   require_extensions(state_->forest.features, "forest");
 }
 Detector::~Detector() = default;
@@ -55,11 +59,11 @@ const DetectionSettings& Detector::settings() const {
 
 // The method on one page; sections are those of Haensch, Kaiser and Hellwich (2017).
 Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const {
-  const Search search{state_->forest, state_->settings, state_->engine};
+  const Search search{state_->index, state_->settings, state_->engine};
   check_frame(frame, "detector");
   StageClock clock;
   std::vector<Candidate> candidates;
-  if (search.forest.features.handling == ScaleHandling::kScaleSpace) {  // the original's way, see detector/baseline
+  if (search.forest().features.handling == ScaleHandling::kScaleSpace) {  // the original's way, see detector/baseline
     candidates = extensions().search_scale_space(search, frame, clock);
   } else {
     make_working_images(search, frame, workspace);  // Section 5.1.1

@@ -18,12 +18,14 @@ namespace houghstream {
 
 /// What frames are searched with.
 struct Search {
-  const Forest& forest;
+  const ForestIndex& index;
   const DetectionSettings& settings;
   const Engine& engine = fast_engine();
   /// Into Forest::views: not compared with the frame. A picture composed for training must not be recognised by the
   /// very views that it shows.
   std::vector<std::uint32_t> excluded_views = {};
+
+  const Forest& forest() const { return index.forest(); }
 };
 
 /// The memory of a search, which is used again for the next frame's: a frame asks the system for nothing that grows

@@ -53,7 +53,7 @@ cv::Mat at_frame_size(const cv::Mat& cells, int cell_px, const Camera& working_c
 }  // namespace
 
 cv::Mat hough_image(const Search& search, int class_index, const RgbdFrame& frame) {
-  if (search.forest.features.handling == ScaleHandling::kScaleSpace) {
+  if (search.forest().features.handling == ScaleHandling::kScaleSpace) {
     return largest_over_sizes(search, class_index, frame);
   }
   DetectorWorkspace workspace;
@@ -65,7 +65,7 @@ cv::Mat hough_image(const Search& search, int class_index, const RgbdFrame& fram
   HoughSpace space;
   cast_votes(input, class_index, memory, space);
   const cv::Mat masses = masses_by_cell(space, input);
-  const float expected = search.forest.classes[static_cast<std::size_t>(class_index)].expected_mass;
+  const float expected = search.forest().classes[static_cast<std::size_t>(class_index)].expected_mass;
   return at_frame_size(masses / expected, space.cell_px, input.camera, frame.colour.size());
 }
 

@@ -14,7 +14,7 @@ void compute_whole_features(const FeatureInput& input, int, FeatureMemory&, Feat
 }
 
 void find_leaves_one_by_one(const LeafInput& input, int threads, LeafMemory&, const LeafVisitor& visit) {
-  const Forest& forest = input.forest;
+  const Forest& forest = input.index.forest();
   const PatchGrid& patches = input.patches;
   const EarlyEnd& early_end = input.early_end;
   const int trees = static_cast<int>(forest.roots.size());
@@ -26,7 +26,7 @@ void find_leaves_one_by_one(const LeafInput& input, int threads, LeafMemory&, co
       const PatchView patch = input.features[patches.level[p]].patch(patches.x[p], patches.y[p], patches.scale[p]);
       float certainty = 0.0F;
       for (int tree = 0; early_end.is_used(forest) && tree < early_end.trees; ++tree) {
-        certainty += forest.leaf_heads[find_leaf(forest, tree, patch)].certainty;
+        certainty += input.index.leaf_heads()[find_leaf(forest, tree, patch)].certainty;
       }
       if (early_end.is_used(forest) && !early_end.goes_on(certainty)) continue;
       left.push_back(static_cast<std::uint32_t>(p));

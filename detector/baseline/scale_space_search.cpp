@@ -26,7 +26,7 @@ struct SeenLevel {
 
 /// Classifies the patches of a level; closes its stages on the clock.
 SeenLevel see_level(const Search& search, const RgbdFrame& frame, const FeatureLevel& level, StageClock& clock) {
-  const Forest& forest = search.forest;
+  const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
   const WorkingFrame working = make_working_frame(frame, level, forest.features);
   clock.mark("detect.resize");
@@ -42,7 +42,7 @@ SeenLevel see_level(const Search& search, const RgbdFrame& frame, const FeatureL
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
   add_patches_everywhere(working, level, forest.patch, settings.spacing.stride, seen.grid);
   LeafMemory leaf_memory;
-  find_posteriors({forest, features, seen.grid, settings.leaves, settings.threads}, search.engine, leaf_memory,
+  find_posteriors({search.index, features, seen.grid, settings.leaves, settings.threads}, search.engine, leaf_memory,
                   seen.posteriors);
   clock.mark("detect.leaves");
   return seen;
@@ -76,7 +76,7 @@ void for_votes_of(const Forest& forest, int class_index, const SeenLevel& seen, 
 
 /// Vote mass per pixel over the class's expected mass.
 cv::Mat hough_image(const Search& search, int class_index, const SeenLevel& seen) {
-  const Forest& forest = search.forest;
+  const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
   cv::Mat image = cv::Mat::zeros(seen.camera.height, seen.camera.width, CV_32FC1);
   for_votes_of(forest, class_index, seen,
@@ -119,7 +119,7 @@ cv::Mat supported_maximum(const std::vector<cv::Point>& maxima, cv::Size size, f
 /// The patches, and the views that they remember, whose votes meet at each maximum.
 std::vector<Hypothesis> gather_supporters(const Search& search, int class_index, const SeenLevel& seen,
                                           const std::vector<cv::Point>& maxima) {
-  const Forest& forest = search.forest;
+  const Forest& forest = search.forest();
   const float sigma = search.settings.voting.vote_sigma * seen.px_per_offset;
   const cv::Mat number = supported_maximum(maxima, cv::Size(seen.camera.width, seen.camera.height), kVoteReach * sigma);
   std::vector<Hypothesis> hypotheses(maxima.size());
@@ -165,7 +165,7 @@ Candidate make_candidate(const ObjectClass& object, const Hypothesis& hypothesis
 
 /// All maxima of one class in one size.
 std::vector<ScalePeak> level_peaks(const Search& search, int class_index, const SeenLevel& seen, const Camera& camera) {
-  const ObjectClass& object = search.forest.classes[static_cast<std::size_t>(class_index)];
+  const ObjectClass& object = search.forest().classes[static_cast<std::size_t>(class_index)];
   const VotingSettings& settings = search.settings.voting;
   const cv::Mat image = hough_image(search, class_index, seen);
   const int reach_px = static_cast<int>(std::lround(kVoteReach * settings.vote_sigma * seen.px_per_offset));
@@ -180,7 +180,7 @@ std::vector<ScalePeak> level_peaks(const Search& search, int class_index, const 
     const cv::Point at = maxima[m];
     Hypothesis& hypothesis = hypotheses[m];
     hypothesis.centre_camera = seen.camera.backproject(at.x, at.y, seen.size_ratio).cast<float>();
-    const cv::Rect2f box_px = backprojected_box(search.forest, hypothesis, seen.grid, camera, box_memory);
+    const cv::Rect2f box_px = backprojected_box(search.forest(), hypothesis, seen.grid, camera, box_memory);
     if (box_px.empty()) continue;
     peaks.push_back({make_candidate(object, hypothesis, image.at<float>(at), box_px),
                      (cv::Point2f(at) + half) * to_frame - half, static_cast<float>(reach_px) * to_frame, seen.size});
@@ -216,10 +216,10 @@ std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
 std::vector<Candidate> search_scale_space(const Search& search, const RgbdFrame& frame, StageClock& clock) {
   std::vector<ScalePeak> all;
   int sizes = 0;
-  for (const FeatureLevel& level : feature_levels(search.forest.features)) {
+  for (const FeatureLevel& level : feature_levels(search.forest().features)) {
     SeenLevel seen = see_level(search, frame, level, clock);
     seen.size = sizes++;
-    std::vector<std::vector<ScalePeak>> by_class(search.forest.classes.size());
+    std::vector<std::vector<ScalePeak>> by_class(search.forest().classes.size());
     parallel_for(search.settings.threads, static_cast<int>(by_class.size()),
                  [&](int c) { by_class[static_cast<std::size_t>(c)] = level_peaks(search, c, seen, frame.camera); });
     for (std::vector<ScalePeak>& part : by_class) std::move(part.begin(), part.end(), std::back_inserter(all));
@@ -231,7 +231,7 @@ std::vector<Candidate> search_scale_space(const Search& search, const RgbdFrame&
 std::vector<cv::Mat> scale_space_hough_images(const Search& search, int class_index, const RgbdFrame& frame) {
   std::vector<cv::Mat> images;
   StageClock clock;
-  for (const FeatureLevel& level : feature_levels(search.forest.features)) {
+  for (const FeatureLevel& level : feature_levels(search.forest().features)) {
     images.push_back(hough_image(search, class_index, see_level(search, frame, level, clock)));
   }
   return images;

@@ -26,7 +26,7 @@ void compare_views(const EvidenceInput& input, const Hypothesis& hypothesis, std
     if (place == count) break;
     if (std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
     if (place == compared.size()) {
-      compared.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
+      compared.push_back({view, centre, fit_view(input.index.forest().views[view], centre, input.frame)});
     }
     ++place;
   }
@@ -40,15 +40,15 @@ PlacedView climb(const EvidenceInput& input, PlacedView best, std::vector<Placed
   for (int step = 0; step < kSteps; ++step) {
     const std::uint32_t from = best.view;
     const Eigen::Vector3f centre = best.centre_camera;
-    for (const std::uint32_t view : input.forest.view_neighbours[from]) {
+    for (const std::uint32_t view : input.index.view_neighbours()[from]) {
       if (view == from || std::find(excluded.begin(), excluded.end(), view) != excluded.end()) continue;
-      way.push_back({view, centre, fit_view(input.forest.views[view], centre, input.frame)});
+      way.push_back({view, centre, fit_view(input.index.forest().views[view], centre, input.frame)});
       if (agreement(way.back().fit) > agreement(best.fit)) best = way.back();
     }
     if (best.view == from) break;
-    best = align_view(input.forest.views, best, input.frame);
+    best = align_view(input.index.forest().views, best, input.frame);
   }
-  return align_view(input.forest.views, best, input.frame, 0.5F);
+  return align_view(input.index.forest().views, best, input.frame, 0.5F);
 }
 
 /// Where to climb from: the view that agrees best, and those that agree next best of attitudes unlike these, up to
@@ -58,9 +58,9 @@ class Starts {
   Starts(const EvidenceInput& input, std::size_t count, std::vector<PlacedView>& compared) {
     constexpr float kUnlike = 0.6F;  // radians
     const auto rotation = [&](const PlacedView& placed) {
-      return Eigen::Quaternionf(input.forest.views[placed.view].R_ray_object);
+      return Eigen::Quaternionf(input.index.forest().views[placed.view].R_ray_object);
     };
-    starts_[count_++] = align_best_few(input.forest.views, input.frame, compared);
+    starts_[count_++] = align_best_few(input.index.forest().views, input.frame, compared);
     for (const PlacedView& next : compared) {
       if (count_ == count) break;
       const auto is_like = [&](const PlacedView& start) {
@@ -80,7 +80,7 @@ class Starts {
 /// What a view says where it stands, `evidence` otherwise.
 void look_at_view(const EvidenceInput& input, const PlacedView& placed, Evidence& evidence) {
   evidence.fit = placed.fit;
-  evidence.outline = look_across_outline(input.forest.views[placed.view], placed.centre_camera, input.frame);
+  evidence.outline = look_across_outline(input.index.forest().views[placed.view], placed.centre_camera, input.frame);
 }
 
 /// Completes the evidence by the view that agrees best with the frame, aligned with it; of views of unlike attitudes by
@@ -95,7 +95,7 @@ void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, floa
   compare_views(input, hypothesis, kViews, compared);
   if (compared.empty()) return;
   look_at_view(input, best_unaligned(compared), evidence);
-  if (score(input.forest.classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
+  if (score(input.index.forest().classes[hypothesis.class_index].score_model, evidence) < kHopeless) return;
   compare_views(input, hypothesis, static_cast<std::size_t>(kViews * spread), compared);
   const Evidence unaligned = evidence;
   const auto attitudes = static_cast<std::size_t>(spread);
@@ -106,7 +106,7 @@ void add_best_fit(const EvidenceInput& input, const Hypothesis& hypothesis, floa
     const PlacedView best = climb(input, start, own.way);
     Evidence seen = unaligned;
     look_at_view(input, best, seen);
-    seen.other_size = gain_of_other_size(input.forest.views[best.view], best, input.frame);
+    seen.other_size = gain_of_other_size(input.index.forest().views[best.view], best, input.frame);
     const double odds = log_odds(kCommon, score_terms(seen));
     if (odds <= most) continue;
     most = odds;
@@ -143,7 +143,7 @@ void add_rotations(const EvidenceInput& input, const Hypothesis& hypothesis, con
   rotations.reserve(std::min(room, hypothesis.views.size()));
   for (const auto& [view, weight] : views) {
     if (rotations.size() >= room) break;
-    rotations.push_back({R_camera_ray * Eigen::Quaternionf(input.forest.views[view].R_ray_object), weight});
+    rotations.push_back({R_camera_ray * Eigen::Quaternionf(input.index.forest().views[view].R_ray_object), weight});
   }
 }
 
@@ -158,7 +158,7 @@ cv::Rect2f visible_box(const cv::Rect2f& voted, const cv::Rect2f& fitted, const 
 }
 
 Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float spread, EvidenceMemory::Worker& own) {
-  const ObjectClass& object = input.forest.classes[hypothesis.class_index];
+  const ObjectClass& object = input.index.forest().classes[hypothesis.class_index];
   const Camera& camera = input.frame.frame.camera;
   own.compared.clear();
   Candidate candidate;
@@ -169,9 +169,9 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
   candidate.evidence.distance = hypothesis.centre_camera.norm();
   candidate.evidence.radius_px =
       octaves_scale(camera) * static_cast<float>(camera.fx) * object.radius / candidate.evidence.distance;
-  detection.box_px = backprojected_box(input.forest, hypothesis, input.patches, camera, own.box);
+  detection.box_px = backprojected_box(input.index.forest(), hypothesis, input.patches, camera, own.box);
   detection.score = vote_score(candidate.evidence.mass_share);
-  if (input.forest.scoring == Scoring::kEvidence) {
+  if (input.index.forest().scoring == Scoring::kEvidence) {
     add_best_fit(input, hypothesis, spread, own, candidate.evidence);
     detection.score = score(object.score_model, candidate.evidence);
     detection.box_px = visible_box(detection.box_px, candidate.evidence.fit.visible_box_px, camera);
@@ -191,10 +191,11 @@ Candidate weigh(const EvidenceInput& input, const Hypothesis& hypothesis, float 
 
 std::vector<Candidate> weigh_evidence(const EvidenceInput& input, const std::vector<Hypothesis>& hypotheses,
                                       int threads, EvidenceMemory& memory) {
-  std::vector<float> spreads(input.forest.classes.size(), 0.0F);
+  std::vector<float> spreads(input.index.forest().classes.size(), 0.0F);
   for (const Hypothesis& hypothesis : hypotheses) {
     float& spread = spreads[hypothesis.class_index];
-    if (spread == 0.0F) spread = attitude_spread(input.forest, static_cast<std::uint32_t>(hypothesis.class_index));
+    if (spread == 0.0F)
+      spread = attitude_spread(input.index.forest(), static_cast<std::uint32_t>(hypothesis.class_index));
   }
   memory.workers.make_room(threads);
   std::vector<Candidate> candidates(hypotheses.size());

@@ -7,6 +7,7 @@
 #include "detector/evidence/evidence_settings.hpp"
 #include "detector/evidence/score.hpp"
 #include "detector/evidence/view_alignment.hpp"
+#include "detector/forest/forest_index.hpp"
 #include "detector/voting/boxes.hpp"
 #include "detector/voting/hypotheses.hpp"
 #include "pipeline/types/detection.hpp"
@@ -21,7 +22,7 @@ struct Candidate {
 
 /// What hypotheses are weighed by.
 struct EvidenceInput {
-  const Forest& forest;
+  const ForestIndex& index;
   LabFrame frame;
   const PatchGrid& patches;
   const EvidenceSettings& settings;

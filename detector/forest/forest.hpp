@@ -68,28 +68,7 @@ struct TrainedView {
   Appearance appearance;
 };
 
-/// What detection asks of every leaf it meets, side by side: one cache miss instead of two.
-struct LeafHead {
-  float certainty = 0.0F;         ///< the largest p(class | leaf)
-  std::uint32_t first_class = 0;  ///< as Forest::leaves
-};
-
-/// A node or leaf as walk_wide reads it, see packed_trees.hpp.
-struct PackedNode {
-  std::uint32_t test = 0;
-  std::int32_t way = 0;
-};
-
-/// The trees once more, packed for walk_wide: eight bytes for each node and leaf; the right child follows the left one.
-struct PackedTrees {
-  std::vector<PackedNode> nodes;    ///< and leaves; empty = see pack_trees
-  std::vector<std::int32_t> roots;  ///< per tree, into nodes
-};
-
-/// The views of the same class that look at it from nearest by, nearest first; itself where there are no more.
-using ViewNeighbours = std::array<std::uint32_t, 6>;
-
-/// A trained forest: flat arrays, trees one after another. Read-only once built.
+/// A trained forest as its file holds it: flat arrays, trees one after another. A ForestIndex is what searches it.
 struct Forest {
   std::string profile;  ///< that it was trained by, see profiles.hpp
   FeatureSettings features;
@@ -106,16 +85,7 @@ struct Forest {
   std::vector<LeafClass> leaf_classes;
   std::vector<LeafVote> votes;
   std::vector<LeafView> leaf_views;
-  std::vector<LeafHead> leaf_heads;             ///< number of leaves + 1; not in files, see note_leaf_heads
-  PackedTrees packed;                           ///< not in files, see pack_trees
-  std::vector<ViewNeighbours> view_neighbours;  ///< per view; not in files, see note_view_neighbours
 };
-
-/// Fills leaf_heads from the leaves; to be called whenever they have changed, before a frame is searched.
-void note_leaf_heads(Forest& forest);
-
-/// Fills view_neighbours by the angle between R_ray_object; to be called whenever the views have changed.
-void note_view_neighbours(Forest& forest);
 
 /// Smallest rotation from the optical axis to a ray: R * (0,0,1) is parallel to the ray.
 Eigen::Matrix3f ray_rotation(const Eigen::Vector3f& ray);

@@ -11,7 +11,6 @@
 
 #include "detector/extensions.hpp"
 #include "detector/features/feature_families.hpp"
-#include "detector/forest/packed_trees.hpp"
 #include "detector/profiles.hpp"
 #include "pipeline/base/archive.hpp"
 #include "pipeline/base/checks.hpp"
@@ -261,9 +260,6 @@ Forest load_forest(const std::filesystem::path& file) {
   check_indices(forest, source);
   check_leaves(forest, source);
   check_numbers(forest, source);
-  note_leaf_heads(forest);
-  note_view_neighbours(forest);
-  pack_trees(forest);
   return forest;
 }
 

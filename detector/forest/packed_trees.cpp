@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <utility>
-#include <vector>
 
 namespace houghstream {
 namespace {
@@ -59,16 +57,13 @@ bool append_packed(const Forest& forest, std::int32_t root, PackedTrees& trees) 
 
 }  // namespace
 
-void pack_trees(Forest& forest) {
+PackedTrees pack_trees(const Forest& forest) {
   PackedTrees trees;
   for (const std::int32_t root : forest.roots) {
     trees.roots.push_back(static_cast<std::int32_t>(trees.nodes.size()));
-    if (!append_packed(forest, root, trees)) {
-      forest.packed = {};
-      return;
-    }
+    if (!append_packed(forest, root, trees)) return {};
   }
-  forest.packed = std::move(trees);
+  return trees;
 }
 
 void fetch_nodes(const PackedNode* nodes, const std::int32_t* at, std::size_t count, PackedNode* fetched) {

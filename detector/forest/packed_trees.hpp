@@ -2,10 +2,23 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "detector/forest/forest.hpp"
 
 namespace houghstream {
+
+/// A node or leaf as walk_wide reads it.
+struct PackedNode {
+  std::uint32_t test = 0;
+  std::int32_t way = 0;
+};
+
+/// The trees once more, packed for walk_wide: eight bytes for each node and leaf; the right child follows the left one.
+struct PackedTrees {
+  std::vector<PackedNode> nodes;    ///< and leaves; empty = see pack_trees
+  std::vector<std::int32_t> roots;  ///< per tree, into nodes
+};
 
 /// How a PackedNode is read, from the lowest bits on.
 namespace packed {
@@ -17,10 +30,9 @@ constexpr std::uint32_t kLeaf = 1U << 30;  ///< nothing else: the way is the lea
 constexpr int kLimitShift = 23;            ///< of the way: below lies the left child, above it the limit, with sign
 }  // namespace packed
 
-/// Fills Forest::packed from roots and nodes; to be called whenever they have changed, before a frame is searched.
-/// Leaves it empty where the trees do not fit: patches with a radius above 15 steps, more than 2^23 nodes and leaves,
-/// or nodes with several parents.
-void pack_trees(Forest& forest);
+/// Packs the forest's roots and nodes. Empty where the trees do not fit: patches with a radius above 15 steps, more
+/// than 2^23 nodes and leaves, or nodes with several parents.
+PackedTrees pack_trees(const Forest& forest);
 
 /// Copies the nodes that patches stand at, and the values of the pixels that they look at, side by side. Apart from the
 /// walk, whose instruction set has gathers: dozens of plain loads overlap where a cache misses, but few gathers do.

@@ -9,11 +9,12 @@ namespace {
 
 /// Sums over the trees of what the leaves of a run's patches are most certain of: for no class is a patch's sum larger,
 /// not even by rounding, as long as it is summed in the same order.
-void sum_certainties(const Forest& forest, const RunLeaves& seen, std::vector<float>& sums) {
+void sum_certainties(const ForestIndex& index, const RunLeaves& seen, std::vector<float>& sums) {
+  const std::vector<LeafHead>& heads = index.leaf_heads();
   sums.assign(seen.count, 0.0F);
   const std::int32_t* leaves = seen.leaves;
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {
-    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += forest.leaf_heads[leaves[i]].certainty;
+  for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {
+    for (std::size_t i = 0; i < seen.count; ++i) sums[i] += heads[leaves[i]].certainty;
   }
 }
 
@@ -23,46 +24,47 @@ struct Known {
   const LeafClass* end;
 };
 
-Known known_to(const Forest& forest, std::int32_t leaf) {
-  const LeafHead* head = &forest.leaf_heads[static_cast<std::size_t>(leaf)];
-  return {forest.leaf_classes.data() + head[0].first_class, forest.leaf_classes.data() + head[1].first_class};
+Known known_to(const ForestIndex& index, std::int32_t leaf) {
+  const LeafHead* head = &index.leaf_heads()[static_cast<std::size_t>(leaf)];
+  const LeafClass* classes = index.forest().leaf_classes.data();
+  return {classes + head[0].first_class, classes + head[1].first_class};
 }
 
 /// Sums over the trees of p(class | leaf) for some of the patches of a run: element [i * classes + class].
-void sum_by_class(const Forest& forest, const std::vector<std::uint32_t>& some, const RunLeaves& seen,
+void sum_by_class(const ForestIndex& index, const std::vector<std::uint32_t>& some, const RunLeaves& seen,
                   std::vector<float>& sums) {
   constexpr std::size_t kAhead = 16;  // patches, so that their cache misses overlap
-  const std::size_t classes = forest.classes.size();
+  const std::size_t classes = index.forest().classes.size();
   sums.assign(some.size() * classes, 0.0F);
   const std::int32_t* leaves = seen.leaves;
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
+  for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree, leaves += seen.count) {  // stays in the cache
     float* sums_of_patch = sums.data();
     for (std::size_t i = 0; i < some.size(); ++i, sums_of_patch += classes) {
-      if (i + kAhead < some.size()) hwy::Prefetch(known_to(forest, leaves[some[i + kAhead]]).begin);
-      const Known known = known_to(forest, leaves[some[i]]);
+      if (i + kAhead < some.size()) hwy::Prefetch(known_to(index, leaves[some[i + kAhead]]).begin);
+      const Known known = known_to(index, leaves[some[i]]);
       for (const LeafClass* of = known.begin; of != known.end; ++of) sums_of_patch[of->class_index] += of->probability;
     }
   }
 }
 
 /// What the leaves of a run's patch number `i` know of a class.
-void append_entries(const Forest& forest, std::size_t class_index, std::size_t i, const RunLeaves& seen,
+void append_entries(const ForestIndex& index, std::size_t class_index, std::size_t i, const RunLeaves& seen,
                     std::vector<std::uint32_t>& entries) {
-  for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
-    const Known known = known_to(forest, seen.leaves[tree * seen.count + i]);
+  for (std::size_t tree = 0; tree < index.forest().roots.size(); ++tree) {
+    const Known known = known_to(index, seen.leaves[tree * seen.count + i]);
     const auto is_it = [&](const LeafClass& of) { return of.class_index == class_index; };
     const LeafClass* found = std::find_if(known.begin, known.end, is_it);
-    if (found != known.end) entries.push_back(static_cast<std::uint32_t>(found - forest.leaf_classes.data()));
+    if (found != known.end) entries.push_back(static_cast<std::uint32_t>(found - index.forest().leaf_classes.data()));
   }
 }
 
 }  // namespace
 
-void PatchPosteriors::reset(const Forest& forest, std::size_t runs, float least_share, int threads) {
-  forest_ = &forest;
+void PatchPosteriors::reset(const ForestIndex& index, std::size_t runs, float least_share, int threads) {
+  index_ = &index;
   least_share_ = least_share;
   workers_.make_room(threads);
-  supporters_.resize(runs * forest.classes.size());
+  supporters_.resize(runs * index.forest().classes.size());
   for (Supporters& supporters : supporters_) {
     supporters.patches.clear();
     supporters.ends.clear();
@@ -72,20 +74,20 @@ void PatchPosteriors::reset(const Forest& forest, std::size_t runs, float least_
 
 void PatchPosteriors::note(const RunLeaves& seen) {
   auto& [sums, some] = workers_[seen.worker];
-  const std::size_t classes = forest_->classes.size();
-  const auto trees = static_cast<float>(forest_->roots.size());
-  sum_certainties(*forest_, seen, sums);
+  const std::size_t classes = index_->forest().classes.size();
+  const auto trees = static_cast<float>(index_->forest().roots.size());
+  sum_certainties(*index_, seen, sums);
   some.clear();
   for (std::uint32_t i = 0; i < seen.count; ++i) {
     if (sums[i] / trees >= least_share_) some.push_back(i);
   }
-  sum_by_class(*forest_, some, seen, sums);
+  sum_by_class(*index_, some, seen, sums);
   for (std::size_t i = 0; i < some.size(); ++i) {
     for (std::size_t c = 0; c < classes; ++c) {
       if (sums[i * classes + c] / trees < least_share_) continue;
       Supporters& supporters = supporters_[seen.run * classes + c];
       supporters.patches.push_back(seen.patches[some[i]]);
-      append_entries(*forest_, c, some[i], seen, supporters.entries);
+      append_entries(*index_, c, some[i], seen, supporters.entries);
       supporters.ends.push_back(static_cast<std::uint32_t>(supporters.entries.size()));
     }
   }
@@ -96,8 +98,8 @@ void find_posteriors(const PosteriorInput& input, const Engine& engine, LeafMemo
   std::vector<PatchRun>& runs = memory.runs;
   list_runs(input.patches, runs);
   const EarlyEnd early_end{input.settings.first_trees, input.settings.min_first_share};
-  posteriors.reset(input.forest, runs.size(), input.settings.min_class_share, input.threads);
-  engine.leaves({input.forest, input.features, input.patches, runs, early_end}, input.threads, memory,
+  posteriors.reset(input.index, runs.size(), input.settings.min_class_share, input.threads);
+  engine.leaves({input.index, input.features, input.patches, runs, early_end}, input.threads, memory,
                 [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 

@@ -5,7 +5,7 @@
 
 #include "detector/engine.hpp"
 #include "detector/features/feature_image.hpp"
-#include "detector/forest/forest.hpp"
+#include "detector/forest/forest_index.hpp"
 #include "detector/forest/traversal.hpp"
 
 namespace houghstream {
@@ -22,10 +22,10 @@ struct Supporters {
 class PatchPosteriors {
  public:
   PatchPosteriors() = default;
-  /// A patch votes for a class from a posterior of `least_share` on. The forest must outlive this.
-  PatchPosteriors(const Forest& forest, std::size_t runs, float least_share) { reset(forest, runs, least_share, 1); }
+  /// A patch votes for a class from a posterior of `least_share` on. The index must outlive this.
+  PatchPosteriors(const ForestIndex& index, std::size_t runs, float least_share) { reset(index, runs, least_share, 1); }
   /// As if made anew, for so many workers, but the memory is used again.
-  void reset(const Forest& forest, std::size_t runs, float least_share, int threads);
+  void reset(const ForestIndex& index, std::size_t runs, float least_share, int threads);
 
   /// Notes who votes among the patches of a run. Different workers may note different runs at the same time.
   void note(const RunLeaves& seen);
@@ -33,8 +33,8 @@ class PatchPosteriors {
   /// Calls visit(patch, entries, count) for every patch that votes for the class, in the grid's order.
   template <typename Visit>
   void for_supporters(int class_index, const Visit& visit) const {
-    if (forest_ == nullptr) return;
-    const std::size_t classes = forest_->classes.size();
+    if (index_ == nullptr) return;
+    const std::size_t classes = index_->forest().classes.size();
     for (std::size_t s = static_cast<std::size_t>(class_index); s < supporters_.size(); s += classes) {
       const Supporters& supporters = supporters_[s];
       std::uint32_t begin = 0;
@@ -51,7 +51,7 @@ class PatchPosteriors {
     std::vector<std::uint32_t> some;
   };
 
-  const Forest* forest_ = nullptr;
+  const ForestIndex* index_ = nullptr;
   float least_share_ = 0.0F;
   std::vector<Supporters> supporters_;  // [run * classes + class]
   PerWorker<Worker> workers_;
@@ -59,7 +59,7 @@ class PatchPosteriors {
 
 /// Of which patches posteriors are wanted.
 struct PosteriorInput {
-  const Forest& forest;
+  const ForestIndex& index;
   const std::vector<FeatureImage>& features;  ///< one image for each level
   const PatchGrid& patches;
   const LeafSettings& settings;

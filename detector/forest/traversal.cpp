@@ -8,22 +8,22 @@ namespace houghstream {
 namespace {
 
 /// Leaves of patches of one level in some of the trees.
-void walk_trees(const Forest& forest, const WalkingPatches& walking, TreeRange trees, std::int32_t* leaves) {
-  if (walk_wide(forest, trees, walking, leaves)) return;
+void walk_trees(const ForestIndex& index, const WalkingPatches& walking, TreeRange trees, std::int32_t* leaves) {
+  if (walk_wide(index.packed(), trees, walking, leaves)) return;
   for (std::size_t tree = trees.first; tree < trees.last; ++tree, leaves += walking.count) {
     for (int p = 0; p < walking.count; ++p) {
       const PatchView patch = walking.image->patch(walking.x[p], walking.y[p], walking.scale[p]);
-      leaves[p] = find_leaf(forest, static_cast<int>(tree), patch);
+      leaves[p] = find_leaf(index.forest(), static_cast<int>(tree), patch);
     }
   }
 }
 
 /// Gives patches up and closes the gaps that they leave in the leaves of the first trees.
-void give_up(const Forest& forest, const EarlyEnd& early_end, const PatchRun& run, LeafMemory::Worker& own) {
+void give_up(const ForestIndex& index, const EarlyEnd& early_end, const PatchRun& run, LeafMemory::Worker& own) {
   own.sums.assign(run.count, 0.0F);
   const std::int32_t* leaves = own.leaves.data();
   for (int tree = 0; tree < early_end.trees; ++tree, leaves += run.count) {
-    for (std::size_t i = 0; i < run.count; ++i) own.sums[i] += forest.leaf_heads[leaves[i]].certainty;
+    for (std::size_t i = 0; i < run.count; ++i) own.sums[i] += index.leaf_heads()[leaves[i]].certainty;
   }
   own.patches.clear();
   for (std::size_t i = 0; i < run.count; ++i) {
@@ -51,24 +51,24 @@ WalkingPatches gather_left(const FeatureImage& image, const PatchGrid& patches, 
 
 /// Leaves of one run.
 void walk_run(const LeafInput& input, const PatchRun& run, LeafMemory::Worker& own) {
-  const Forest& forest = input.forest;
+  const ForestIndex& index = input.index;
   const PatchGrid& patches = input.patches;
   const FeatureImage& image = input.features[patches.level[run.first]];
-  const std::size_t trees = forest.roots.size();
-  const bool may_end = input.early_end.is_used(forest);
+  const std::size_t trees = index.forest().roots.size();
+  const bool may_end = input.early_end.is_used(index.forest());
   const std::size_t first = may_end ? static_cast<std::size_t>(input.early_end.trees) : trees;
   own.leaves.resize(run.count * trees);
   const WalkingPatches all{&image, patches.x.data() + run.first, patches.y.data() + run.first,
                            patches.scale.data() + run.first, static_cast<int>(run.count)};
-  walk_trees(forest, all, {0, first}, own.leaves.data());
+  walk_trees(index, all, {0, first}, own.leaves.data());
   if (!may_end) {
     own.patches.resize(run.count);
     std::iota(own.patches.begin(), own.patches.end(), static_cast<std::uint32_t>(run.first));
     return;
   }
-  give_up(forest, input.early_end, run, own);
+  give_up(index, input.early_end, run, own);
   const WalkingPatches left = gather_left(image, patches, own);
-  walk_trees(forest, left, {first, trees}, own.leaves.data() + first * own.patches.size());
+  walk_trees(index, left, {first, trees}, own.leaves.data() + first * own.patches.size());
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "detector/features/feature_image.hpp"
-#include "detector/forest/forest.hpp"
+#include "detector/forest/forest_index.hpp"
 #include "detector/forest/patch_grid.hpp"
 #include "pipeline/base/parallel.hpp"
 
@@ -23,7 +23,7 @@ struct EarlyEnd {
 
 /// Which patches walk down which trees.
 struct LeafInput {
-  const Forest& forest;
+  const ForestIndex& index;
   const std::vector<FeatureImage>& features;  ///< one image for each level
   const PatchGrid& patches;
   const std::vector<PatchRun>& runs;

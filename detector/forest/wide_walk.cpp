@@ -10,8 +10,6 @@
 #include <array>
 #include <numeric>
 
-#include "detector/forest/packed_trees.hpp"
-
 HWY_BEFORE_NAMESPACE();
 namespace houghstream::HWY_NAMESPACE {
 
@@ -193,10 +191,10 @@ namespace houghstream {
 
 HWY_EXPORT(walk);
 
-bool walk_wide(const Forest& forest, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves) {
+bool walk_wide(const PackedTrees& packed, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves) {
   const auto rows = static_cast<std::int64_t>(patches.image->height()) + 2 * FeatureImage::kPad;
-  if (rows * patches.image->row_stride() > INT32_MAX || forest.packed.nodes.empty()) return false;
-  HWY_DYNAMIC_DISPATCH(walk)(forest.packed, trees, patches, leaves);
+  if (rows * patches.image->row_stride() > INT32_MAX || packed.nodes.empty()) return false;
+  HWY_DYNAMIC_DISPATCH(walk)(packed, trees, patches, leaves);
   return true;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "detector/features/feature_image.hpp"
-#include "detector/forest/forest.hpp"
+#include "detector/forest/packed_trees.hpp"
 
 namespace houghstream {
 
@@ -22,8 +22,8 @@ struct TreeRange {
   std::size_t last = 0;  ///< not among them
 };
 
-/// Leaf of each patch, tree by tree, many patches a step. Returns false, having done nothing, where the forest is not
-/// packed or the image is too large for 32-bit offsets. The leaves are those of find_leaf.
-bool walk_wide(const Forest& forest, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves);
+/// Leaf of each patch, tree by tree, many patches a step. Returns false, having done nothing, where nothing is packed
+/// or the image is too large for 32-bit offsets. The leaves are those of find_leaf.
+bool walk_wide(const PackedTrees& packed, TreeRange trees, const WalkingPatches& patches, std::int32_t* leaves);
 
 }  // namespace houghstream

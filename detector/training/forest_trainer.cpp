@@ -8,7 +8,6 @@
 #include <set>
 
 #include "detector/extensions.hpp"
-#include "detector/forest/packed_trees.hpp"
 #include "detector/training/calibration.hpp"
 #include "detector/training/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
@@ -197,9 +196,6 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   forest.classes = set.classes;
   forest.views = set.views;
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
-  note_leaf_heads(forest);
-  note_view_neighbours(forest);
-  pack_trees(forest);
   calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
   if (learns_scores(settings)) learn_scores(rooms, profile, progress, forest);
   return forest;
@@ -227,9 +223,6 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
     forest.views.push_back(view);
   }
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
-  note_leaf_heads(forest);
-  note_view_neighbours(forest);
-  pack_trees(forest);
   carry_masses(old, forest);
   calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
   if (learns_scores(profile.training)) learn_scores(rooms, profile, progress, forest);

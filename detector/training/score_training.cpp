@@ -114,7 +114,7 @@ std::string described(const ScoreTerms& weights) {
 
 /// What the forest offers in a frame, by the stages of Detector::detect up to the evidence.
 std::vector<Candidate> search_frame(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
-  if (search.forest.features.handling == ScaleHandling::kScaleSpace) {
+  if (search.forest().features.handling == ScaleHandling::kScaleSpace) {
     StageClock clock;
     return extensions().search_scale_space(search, frame, clock);
   }
@@ -143,6 +143,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
                                                const Profile& profile, const Forest& forest) {
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
+  const ForestIndex index(forest);
   const int threads = profile.training.threads;
   std::vector<ScoreExamples> by_frame(static_cast<std::size_t>(source.count));
   PerWorker<DetectorWorkspace> workspaces;
@@ -154,7 +155,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
       if (object.view) shown.push_back(*object.view);
     }
     for (std::uint32_t& view : shown) view += first_view;
-    const Search search{forest, detection, fast_engine(), shown};
+    const Search search{index, detection, fast_engine(), shown};
     by_frame[static_cast<std::size_t>(f)] =
         judge(search_frame(search, validation.frame, workspaces[worker]), validation);
   });

@@ -107,6 +107,11 @@ const Forest& forest() {
   return forest;
 }
 
+const ForestIndex& forest_index() {
+  static const ForestIndex index(forest());
+  return index;
+}
+
 Profile quick_profile() {
   Profile profile = make_profile("realtime");
   training::TrainingSettings& settings = profile.training;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "detector/forest/forest.hpp"
+#include "detector/forest/forest_index.hpp"
 #include "detector/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 
@@ -23,6 +23,9 @@ std::vector<TrainingView> training_views();
 
 /// Taught those views by quick_profile, once in a process.
 const Forest& forest();
+
+/// What a search needs of it.
+const ForestIndex& forest_index();
 
 /// The default profile with training settings that take a second.
 Profile quick_profile();

@@ -35,7 +35,7 @@ DetectionSettings curious() {
 
 /// The stages up to the leaves.
 void see(const RgbdFrame& frame, const DetectionSettings& settings, DetectorWorkspace& workspace) {
-  const Search search{toy::forest(), settings};
+  const Search search{toy::forest_index(), settings};
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
   find_posteriors(search, workspace);
@@ -62,7 +62,7 @@ TEST(WantedTiles, LeavesInWantedTilesAreThoseInWholeImages) {
     see(frame, settings, workspace);
     LeafMemory memory;
     PatchPosteriors expected;
-    find_posteriors({toy::forest(), whole, workspace.patches, settings.leaves, threads}, fast_engine(), memory,
+    find_posteriors({toy::forest_index(), whole, workspace.patches, settings.leaves, threads}, fast_engine(), memory,
                     expected);
     for (int c = 0; c < 2; ++c) {
       const std::vector<ListedVoter> wanted = voters_for(c, expected);

@@ -37,7 +37,8 @@ const Forest& scale_space_forest() {
 
 cv::Mat image_of(const Forest& forest, int class_index, const RgbdFrame& frame) {
   const DetectionSettings settings = detection_settings(forest);
-  return hough_image({forest, settings}, class_index, frame);
+  const ForestIndex index(forest);
+  return hough_image({index, settings}, class_index, frame);
 }
 
 cv::Point strongest(const cv::Mat& image) {

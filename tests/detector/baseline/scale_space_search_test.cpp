@@ -52,7 +52,8 @@ Scene tile_at(int kind, double u_px, double v_px, double distance) {
 std::vector<Candidate> search(const RgbdFrame& frame, const DetectionSettings& settings,
                               const Engine& engine = fast_engine()) {
   StageClock clock;
-  return search_scale_space({toy_forest(), settings, engine}, frame, clock);
+  static const ForestIndex index(toy_forest());
+  return search_scale_space({index, settings, engine}, frame, clock);
 }
 
 const Candidate& strongest(const std::vector<Candidate>& candidates) {
@@ -124,7 +125,8 @@ TEST(ScaleSpaceSearch, TheReferenceEngineFindsTheSameCandidates) {
 TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
   const Scene scene = tile_at(0, 120, 110, 0.7 * 1.66);
   const DetectionSettings settings = quick_settings();
-  const std::vector<cv::Mat> images = scale_space_hough_images({toy_forest(), settings}, 0, scene.frame);
+  const ForestIndex index(toy_forest());
+  const std::vector<cv::Mat> images = scale_space_hough_images({index, settings}, 0, scene.frame);
   constexpr std::array<float, 3> kSizes = {0.66F, 1.0F, 1.66F};
   ASSERT_EQ(images.size(), kSizes.size());
   std::array<double, 3> peaks{};

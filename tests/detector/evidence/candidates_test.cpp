@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 
 #include "detector/stages.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 std::vector<Candidate> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
                                   const std::vector<std::uint32_t>& excluded_views = {}) {
-  const Search search{toy::forest(), settings, fast_engine(), excluded_views};
+  const Search search{toy::forest_index(), settings, fast_engine(), excluded_views};
   DetectorWorkspace workspace;
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);
@@ -83,15 +84,16 @@ Evidence evidence_among(std::size_t views, const RgbdFrame& frame) {
   forest.classes.emplace_back().radius = 0.08F;
   forest.views = {toy::remembered_view(), middle_part()};
   forest.views.resize(views);
-  forest.view_neighbours.resize(views);
-  for (std::uint32_t v = 0; v < views; ++v) forest.view_neighbours[v].fill(v);
+  std::vector<std::uint32_t> without_appearance(views - 2);
+  std::iota(without_appearance.begin(), without_appearance.end(), 2U);
+  const ForestIndex index(forest);
   Hypothesis hypothesis;
   hypothesis.centre_camera = {0.0F, 0.0F, toy::kDistance};
   hypothesis.mass = 1.0F;
   hypothesis.weight = 1.0F;
   hypothesis.views = {{0, 0.5F}, {1, 0.5F}};
   EvidenceMemory memory;
-  const EvidenceInput input{forest, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, {}};
+  const EvidenceInput input{index, toy::lab_frame(frame, frame.colour, 1.0F), {}, {}, without_appearance};
   return weigh_evidence(input, {hypothesis}, 1, memory).front().evidence;
 }
 

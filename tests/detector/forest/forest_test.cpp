@@ -47,26 +47,6 @@ TEST(PixelTest, AloneItComparesOnePixelOnly) {
   EXPECT_EQ(test_value(test, image.patch(10, 10, 256)), 200);
 }
 
-TEST(LeafHeads, TellWhatALeafKnowsBestAndWhereItsClassesBegin) {
-  Forest forest;
-  forest.classes.resize(2);
-  forest.leaves = {0, 2, 2, 3};
-  forest.leaf_classes.resize(3);
-  forest.leaf_classes[0].probability = 0.2F;
-  forest.leaf_classes[1].probability = 0.7F;
-  forest.leaf_classes[1].class_index = 1;
-  forest.leaf_classes[2].probability = 0.1F;
-  note_leaf_heads(forest);
-  std::vector<float> certainties;
-  std::vector<std::uint32_t> firsts;
-  for (const LeafHead& head : forest.leaf_heads) {
-    certainties.push_back(head.certainty);
-    firsts.push_back(head.first_class);
-  }
-  EXPECT_EQ(certainties, (std::vector<float>{0.7F, 0.0F, 0.1F, 0.0F}));
-  EXPECT_EQ(firsts, forest.leaves);
-}
-
 TEST(FindLeaf, WalksRightFromTheThresholdOn) {
   Forest forest;
   forest.roots = {0};

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <utility>
-
 #include "tests/detector/forest/random_forest.hpp"
 
 namespace houghstream {
@@ -14,16 +12,16 @@ Forest one_node(const PixelTest& test) {
   Forest forest;
   forest.roots = {0};
   forest.nodes.push_back({test, -1, -2});
-  pack_trees(forest);
   return forest;
 }
 
 TEST(PackedTrees, HoldEveryNodeAndLeafOnce) {
   Random random(21);
   const Forest forest = chance::random_forest(32, random);
-  EXPECT_EQ(forest.packed.nodes.size(), forest.roots.size() + 2 * forest.nodes.size());
-  std::vector<int> seen(forest.packed.nodes.size() - forest.nodes.size());
-  for (const PackedNode& node : forest.packed.nodes) {
+  const PackedTrees trees = pack_trees(forest);
+  EXPECT_EQ(trees.nodes.size(), forest.roots.size() + 2 * forest.nodes.size());
+  std::vector<int> seen(trees.nodes.size() - forest.nodes.size());
+  for (const PackedNode& node : trees.nodes) {
     if (node.test == packed::kLeaf) ++seen.at(static_cast<std::size_t>(node.way));
   }
   EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
@@ -31,8 +29,8 @@ TEST(PackedTrees, HoldEveryNodeAndLeafOnce) {
 
 TEST(PackedTrees, StepsThatAreTooLongDoNotFit) {
   const auto is_packed = [](std::int8_t step) {
-    return !one_node({step, 0, 0, 0, 0, 0, 0}).packed.nodes.empty() &&
-           !one_node({0, 0, 0, step, 0, 0, 0}).packed.nodes.empty();
+    return !pack_trees(one_node({step, 0, 0, 0, 0, 0, 0})).nodes.empty() &&
+           !pack_trees(one_node({0, 0, 0, step, 0, 0, 0})).nodes.empty();
   };
   EXPECT_TRUE(is_packed(15));
   EXPECT_TRUE(is_packed(-15));
@@ -47,19 +45,17 @@ TEST(PackedTrees, NodesWithSeveralParentsDoNotFit) {
   constexpr std::int32_t kNodes = 60;  // 2^60 paths
   for (std::int32_t n = 1; n < kNodes; ++n) forest.nodes.push_back({{}, n, n});
   forest.nodes.push_back({{}, -1, -2});
-  pack_trees(forest);
-  EXPECT_TRUE(forest.packed.nodes.empty());
+  EXPECT_TRUE(pack_trees(forest).nodes.empty());
 }
 
-TEST(PackedTrees, AreMadeAnew) {
+TEST(PackedTrees, OneStepThatIsTooLongLeavesAllTreesUnpacked) {
   Random random(22);
   Forest forest = chance::random_forest(32, random);
-  const std::size_t before = forest.packed.nodes.size();
-  pack_trees(forest);
-  EXPECT_EQ(forest.packed.nodes.size(), before);
+  ASSERT_FALSE(pack_trees(forest).nodes.empty());
   forest.nodes[0].test.dx1 = 100;
-  pack_trees(forest);
-  EXPECT_TRUE(forest.packed.nodes.empty());
+  const PackedTrees trees = pack_trees(forest);
+  EXPECT_TRUE(trees.nodes.empty());
+  EXPECT_TRUE(trees.roots.empty());
 }
 
 TEST(PackedTrees, NodesAndPixelsAreFetched) {

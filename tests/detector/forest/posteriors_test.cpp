@@ -22,15 +22,15 @@ Forest three_leaves() {
   forest.leaf_classes[1].class_index = 1;
   forest.leaf_classes[2].probability = 0.6F;
   forest.leaf_classes[2].class_index = 1;
-  note_leaf_heads(forest);
   return forest;
 }
 
 TEST(Posteriors, APatchVotesByTheMeanOfItsTrees) {
   const Forest forest = three_leaves();
+  const ForestIndex index(forest);
   const std::vector<std::int32_t> first = {0, 0, 2, 1, 2, 2};  // tree by tree: patches see (0,1), (0,2) and (2,2)
   const std::vector<std::int32_t> second = {0, 0};             // (0,0)
-  PatchPosteriors posteriors(forest, 2, 0.35F);
+  PatchPosteriors posteriors(index, 2, 0.35F);
   const std::vector<std::uint32_t> patches = {0, 1, 2, 3};
   posteriors.note({1, 1, &patches[3], second.data()});
   posteriors.note({0, 3, patches.data(), first.data()});
@@ -49,22 +49,24 @@ TEST(Posteriors, APatchVotesByTheMeanOfItsTrees) {
 
 TEST(Posteriors, AShareThatIsJustReachedIsEnough) {
   const Forest forest = three_leaves();
+  const ForestIndex index(forest);
   const std::vector<std::int32_t> leaves = {0, 2};
   const float share = 0.8F / 2.0F;
-  PatchPosteriors posteriors(forest, 1, share);
+  PatchPosteriors posteriors(index, 1, share);
   const std::uint32_t patch = 0;
   posteriors.note({0, 1, &patch, leaves.data()});
   EXPECT_EQ(voters_for(0, posteriors).size(), 1U);
-  PatchPosteriors stricter(forest, 1, std::nextafter(share, 1.0F));
+  PatchPosteriors stricter(index, 1, std::nextafter(share, 1.0F));
   stricter.note({0, 1, &patch, leaves.data()});
   EXPECT_TRUE(voters_for(0, stricter).empty());
 }
 
 TEST(Posteriors, PatchesThatWereGivenUpLeaveGaps) {
   const Forest forest = three_leaves();
+  const ForestIndex index(forest);
   const std::vector<std::uint32_t> patches = {5, 9};
   const std::vector<std::int32_t> leaves = {0, 0, 0, 1};
-  PatchPosteriors posteriors(forest, 1, 0.4F);
+  PatchPosteriors posteriors(index, 1, 0.4F);
   posteriors.note({0, 2, patches.data(), leaves.data()});
   const std::vector<ListedVoter> found = voters_for(0, posteriors);
   ASSERT_EQ(found.size(), 2U);
@@ -74,11 +76,12 @@ TEST(Posteriors, PatchesThatWereGivenUpLeaveGaps) {
 
 TEST(Posteriors, EndWithTheNextFrame) {
   const Forest forest = three_leaves();
+  const ForestIndex index(forest);
   const std::uint32_t patch = 0;
   const std::vector<std::int32_t> leaves = {0, 0};
-  PatchPosteriors posteriors(forest, 1, 0.4F);
+  PatchPosteriors posteriors(index, 1, 0.4F);
   posteriors.note({0, 1, &patch, leaves.data()});
-  posteriors.reset(forest, 2, 0.4F, 1);
+  posteriors.reset(index, 2, 0.4F, 1);
   EXPECT_TRUE(voters_for(0, posteriors).empty());
   posteriors.note({1, 1, &patch, leaves.data()});
   EXPECT_EQ(voters_for(0, posteriors).size(), 1U);

@@ -4,7 +4,6 @@
 
 #include "detector/features/feature_image.hpp"
 #include "detector/forest/forest.hpp"
-#include "detector/forest/packed_trees.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream::chance {
@@ -50,7 +49,6 @@ inline Forest random_forest(int planes, Random& random) {
       forest.nodes.push_back(node);
     }
   }
-  pack_trees(forest);
   return forest;
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 /// All leaves of a grid, patch by patch, as find_leaves and, with a number of threads below 0, the reference engine
 /// tell them. -1 for patches that were given up.
-std::vector<std::int32_t> leaves_of(const Forest& forest, const std::vector<FeatureImage>& features,
+std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<FeatureImage>& features,
                                     const PatchGrid& patches, int threads, const EarlyEnd& early_end = {}) {
-  const std::size_t trees = forest.roots.size();
+  const std::size_t trees = index.forest().roots.size();
   std::vector<PatchRun> runs;
   list_runs(patches, runs);
   std::vector<std::int32_t> leaves(patches.size() * trees, -1);
@@ -34,14 +34,15 @@ std::vector<std::int32_t> leaves_of(const Forest& forest, const std::vector<Feat
   };
   const Engine& engine = threads > 0 ? fast_engine() : baseline::reference_engine();
   LeafMemory memory;
-  engine.leaves({forest, features, patches, runs, early_end}, std::abs(threads), memory, visit);
+  engine.leaves({index, features, patches, runs, early_end}, std::abs(threads), memory, visit);
   return leaves;
 }
 
-void expect_leaves_of_find_leaf(const Forest& forest, const std::vector<FeatureImage>& features,
+void expect_leaves_of_find_leaf(const ForestIndex& index, const std::vector<FeatureImage>& features,
                                 const PatchGrid& patches) {
+  const Forest& forest = index.forest();
   for (const int threads : {-2, -1, 1, 2}) {
-    const std::vector<std::int32_t> leaves = leaves_of(forest, features, patches, threads);
+    const std::vector<std::int32_t> leaves = leaves_of(index, features, patches, threads);
     for (std::size_t p = 0; p < patches.size(); ++p) {
       for (std::size_t tree = 0; tree < forest.roots.size(); ++tree) {
         const FeatureImage& image = features[patches.level[p]];
@@ -62,11 +63,11 @@ class Traversal : public ::testing::Test {
   void expect_given_up_after(int trees, float share, const std::vector<FeatureImage>& features,
                              const PatchGrid& patches) const {
     const std::size_t all = forest.roots.size();
-    std::vector<std::int32_t> expected = leaves_of(forest, features, patches, 1);
+    std::vector<std::int32_t> expected = leaves_of(index, features, patches, 1);
     std::size_t given_up = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       float sum = 0.0F;
-      for (int tree = 0; tree < trees; ++tree) sum += forest.leaf_heads[expected[p * all + tree]].certainty;
+      for (int tree = 0; tree < trees; ++tree) sum += index.leaf_heads()[expected[p * all + tree]].certainty;
       if (sum >= share * static_cast<float>(trees)) continue;
       ++given_up;
       std::fill_n(expected.begin() + static_cast<std::ptrdiff_t>(p * all), all, -1);
@@ -74,7 +75,7 @@ class Traversal : public ::testing::Test {
     EXPECT_EQ(given_up > 0, share > 0.0F);
     EXPECT_LT(given_up, patches.size());
     for (const int threads : {-3, -1, 1, 2, 3}) {
-      EXPECT_EQ(leaves_of(forest, features, patches, threads, {trees, share}), expected) << threads << " threads";
+      EXPECT_EQ(leaves_of(index, features, patches, threads, {trees, share}), expected) << threads << " threads";
     }
   }
 
@@ -88,6 +89,7 @@ class Traversal : public ::testing::Test {
   }
 
   const Forest forest = training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {});
+  const ForestIndex index{forest};
   RgbdFrame room = toy::room(5);
 };
 
@@ -96,7 +98,7 @@ TEST_F(Traversal, ManyPatchesAtOnceReachTheLeavesOfOneAtATime) {
   PatchGrid patches;
   look_at_room(2, features, patches);
   ASSERT_GT(patches.size(), 4000U);
-  expect_leaves_of_find_leaf(forest, features, patches);
+  expect_leaves_of_find_leaf(index, features, patches);
   for (const float share : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, share, features, patches);
 }
 
@@ -110,7 +112,7 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelAndThoseWithGaps) {
   for (const int stride : {1, 3}) {
     PatchGrid patches;
     add_patches_everywhere(frame, level, pixels, stride, patches);
-    expect_leaves_of_find_leaf(forest, features, patches);
+    expect_leaves_of_find_leaf(index, features, patches);
     expect_given_up_after(1, 0.02F, features, patches);
   }
 }
@@ -120,7 +122,7 @@ TEST_F(Traversal, SoDoPatchesAtEveryPixelWithDepth) {
   std::vector<FeatureImage> features;
   PatchGrid patches;
   look_at_room(1, features, patches);
-  expect_leaves_of_find_leaf(forest, features, patches);
+  expect_leaves_of_find_leaf(index, features, patches);
   for (const float share : {0.0F, 0.02F, 0.3F}) expect_given_up_after(2, share, features, patches);
 }
 

@@ -39,7 +39,7 @@ bool walks_like_find_leaf(const Forest& forest, TreeRange trees, const FeatureIm
   std::vector<std::int32_t> leaves((trees.last - trees.first) * count + 1, kNobody);
   const WalkingPatches walking{&image, patches.x.data(), patches.y.data(), patches.scale.data(),
                                static_cast<int>(count)};
-  const bool walked = walk_wide(forest, trees, walking, leaves.data());
+  const bool walked = walk_wide(pack_trees(forest), trees, walking, leaves.data());
   std::vector<std::int32_t> expected(leaves.size(), kNobody);
   for (std::size_t i = 0; walked && i + 1 < expected.size(); ++i) {
     const std::size_t p = i % count;
@@ -100,7 +100,6 @@ TEST_F(WideWalk, TreesMayBeLeaves) {
   const FeatureImage image = chance::random_image(21, 13, 32, random);
   Forest forest;
   forest.roots = {-1, -2};
-  pack_trees(forest);
   EXPECT_TRUE(walks_like_find_leaf(forest, image, random_patches(image, 20, random)));
 }
 
@@ -108,7 +107,7 @@ TEST_F(WideWalk, AForestThatIsNotPackedIsLeftToOthers) {
   Random random(14);
   const FeatureImage image = chance::random_image(21, 13, 32, random);
   Forest forest = chance::random_forest(32, random);
-  forest.packed = {};
+  forest.nodes[0].test.dx1 = 100;  // farther than a packed node can look
   EXPECT_FALSE(walks_like_find_leaf(forest, image, random_patches(image, 20, random)));
 }
 

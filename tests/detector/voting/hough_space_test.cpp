@@ -21,7 +21,6 @@ Forest one_leaf(const Eigen::Vector3f& offset, float probability) {
   entry.vote_count = 1;
   forest.leaf_classes.push_back(entry);
   forest.votes.push_back({offset, 1.0F});
-  note_leaf_heads(forest);
   return forest;
 }
 
@@ -30,7 +29,8 @@ HoughSpace vote(const Forest& forest, const std::vector<Eigen::Vector3f>& points
   patches.point_camera = points;
   patches.x.resize(points.size());
   const std::vector<std::int32_t> leaves(points.size() * forest.roots.size(), 0);
-  PatchPosteriors posteriors(forest, 1, least_share);
+  const ForestIndex index(forest);
+  PatchPosteriors posteriors(index, 1, least_share);
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0U);
   posteriors.note({0, all.size(), all.data(), leaves.data()});
@@ -105,7 +105,8 @@ TEST(HoughSpace, ASpaceIsUsedAgain) {
   patches.x.resize(1);
   const std::uint32_t patch = 0;
   const std::int32_t leaf = 0;
-  PatchPosteriors posteriors(forest, 1, 0.0F);
+  const ForestIndex index(forest);
+  PatchPosteriors posteriors(index, 1, 0.0F);
   posteriors.note({0, 1, &patch, &leaf});
   CastMemory memory;
   cast_votes({forest, patches, posteriors, kHundredWide, {}}, 0, memory, space);

@@ -23,7 +23,6 @@ Forest centre_forest() {
   forest.leaf_classes.push_back(entry);
   forest.votes.push_back({Eigen::Vector3f::Zero(), 1.0F});
   forest.leaf_views = {{0, 0.25F}, {1, 0.75F}};
-  note_leaf_heads(forest);
   return forest;
 }
 
@@ -38,9 +37,9 @@ void add_cluster(const Eigen::Vector3f& centre, float area, PatchGrid& patches) 
   }
 }
 
-PatchPosteriors all_voting(const Forest& forest, const PatchGrid& patches) {
+PatchPosteriors all_voting(const ForestIndex& index, const PatchGrid& patches) {
   const std::vector<std::int32_t> leaves(patches.size(), 0);
-  PatchPosteriors posteriors(forest, 1, 0.0F);
+  PatchPosteriors posteriors(index, 1, 0.0F);
   std::vector<std::uint32_t> all(patches.size());
   std::iota(all.begin(), all.end(), 0U);
   posteriors.note({0, all.size(), all.data(), leaves.data()});
@@ -50,7 +49,8 @@ PatchPosteriors all_voting(const Forest& forest, const PatchGrid& patches) {
 std::vector<Hypothesis> find(const PatchGrid& patches, float least_mass) {
   Forest forest = centre_forest();
   forest.classes[0].expected_mass = 1.0F;
-  const PatchPosteriors posteriors = all_voting(forest, patches);
+  const ForestIndex index(forest);
+  const PatchPosteriors posteriors = all_voting(index, patches);
   VotingSettings settings;
   settings.min_mass_share = least_mass;
   const VotingInput input{forest, patches, posteriors, toy::kSmallCamera, settings};
@@ -98,7 +98,8 @@ TEST(Hypotheses, WhatIsFarIsNotPassedOverForWhatHasMorePatches) {
   for (int i = 0; i < 2; ++i) add_cluster(near, 0.0001F, patches);
   add_cluster(far, 0.0004F, patches);
   const Forest forest = centre_forest();
-  const PatchPosteriors posteriors = all_voting(forest, patches);
+  const ForestIndex index(forest);
+  const PatchPosteriors posteriors = all_voting(index, patches);
   VotingSettings settings;
   settings.min_mass_share = 0.0F;
   settings.candidates_per_class = 1;

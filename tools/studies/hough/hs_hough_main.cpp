@@ -45,7 +45,8 @@ std::vector<NamedBox> true_boxes(const EvaluatedFrame& frame, const Forest& fore
 
 std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const SearchOptions& options) {
   const DetectionSettings settings = options.settings_for(forest);
-  const Search by{forest, settings, options.engine()};
+  const ForestIndex index(forest);
+  const Search by{index, settings, options.engine()};
   const Detections found = Detector(forest, settings, by.engine).detect(frame);
   std::vector<HoughPanel> panels;
   for (std::size_t c = 0; c < forest.classes.size(); ++c) {

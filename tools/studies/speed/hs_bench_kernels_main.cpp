@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
     SearchOptions search;
     search.threads = 1;
     const DetectionSettings settings = search.settings_for(forest);
-    register_kernels(frame, forest, settings);
+    const ForestIndex index(forest);
+    register_kernels(frame, index, settings);
     benchmark::RunSpecifiedBenchmarks();
   });
 }

@@ -51,25 +51,25 @@ void see(const Search& search, const RgbdFrame& frame, DetectorWorkspace& worksp
   find_posteriors(search, workspace);
 }
 
-void register_search(const RgbdFrame& frame, const Forest& forest, const DetectionSettings& settings) {
+void register_search(const RgbdFrame& frame, const ForestIndex& index, const DetectionSettings& settings) {
   static DetectorWorkspace workspace;  // whose memory is kept, as the detector's is
-  add("resize_features_leaves", [&frame, &forest, &settings] { see({forest, settings}, frame, workspace); });
+  add("resize_features_leaves", [&frame, &index, &settings] { see({index, settings}, frame, workspace); });
   static DetectorWorkspace seen;
-  see({forest, settings}, frame, seen);
-  add("votes", [&forest, &settings] {
+  see({index, settings}, frame, seen);
+  add("votes", [&index, &settings] {
     static VotingMemory::Worker own;
-    const VotingInput input = voting_input({forest, settings}, seen);
-    for (std::size_t c = 0; c < forest.classes.size(); ++c) {
+    const VotingInput input = voting_input({index, settings}, seen);
+    for (std::size_t c = 0; c < index.forest().classes.size(); ++c) {
       cast_votes(input, static_cast<int>(c), own.casting, own.space);
     }
   });
-  static std::vector<VotingMemory::Worker> by_class(forest.classes.size());
-  const VotingInput input = voting_input({forest, settings}, seen);
+  static std::vector<VotingMemory::Worker> by_class(index.forest().classes.size());
+  const VotingInput input = voting_input({index, settings}, seen);
   for (std::size_t c = 0; c < by_class.size(); ++c) {
     cast_votes(input, static_cast<int>(c), by_class[c].casting, by_class[c].space);
   }
-  add("hypotheses", [&forest, &settings] {
-    const VotingInput again = voting_input({forest, settings}, seen);
+  add("hypotheses", [&index, &settings] {
+    const VotingInput again = voting_input({index, settings}, seen);
     for (std::size_t c = 0; c < by_class.size(); ++c) {
       benchmark::DoNotOptimize(class_hypotheses(again, c, by_class[c]));
     }
@@ -78,10 +78,10 @@ void register_search(const RgbdFrame& frame, const Forest& forest, const Detecti
 
 }  // namespace
 
-void register_kernels(const RgbdFrame& frame, const Forest& forest, const DetectionSettings& settings) {
+void register_kernels(const RgbdFrame& frame, const ForestIndex& index, const DetectionSettings& settings) {
   register_codecs(frame);
-  register_features(frame, forest);
-  register_search(frame, forest, settings);
+  register_features(frame, index.forest());
+  register_search(frame, index, settings);
 }
 
 }  // namespace houghstream

@@ -72,7 +72,8 @@ terms::Group study(const StudyOptions& options, const SceneGroup& scenes, const 
   require(forest.scoring == Scoring::kEvidence && forest.features.handling != ScaleHandling::kScaleSpace,
           "{}: scores by votes alone, expected one that weighs evidence", forest_file);
   const DetectionSettings settings = settings_of(options, forest);
-  const Search search{forest, settings};
+  const ForestIndex index(forest);
+  const Search search{index, settings};
   NamedSide known{"the forest " + forest_file, {}};
   terms::ModelsByClass models;
   for (const ObjectClass& object : forest.classes) {

@@ -29,7 +29,8 @@ TEST(Kernels, EachOneRuns) {
   toy::put_tile(0, 159.5, 119.5, 0.7, frame);
   DetectionSettings settings;
   settings.threads = 1;
-  register_kernels(frame, forest, settings);
+  const ForestIndex index(forest);
+  register_kernels(frame, index, settings);
   std::string program = "kernels_test";
   std::string briefly = "--benchmark_min_time=0.0001";
   char* arguments[] = {program.data(), briefly.data(), nullptr};

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "detector/forest/forest.hpp"
+#include "detector/forest/packed_trees.hpp"
+
+namespace houghstream {
+
+/// What detection asks of every leaf it meets, side by side: one cache miss instead of two.
+struct LeafHead {
+  float certainty = 0.0F;         ///< the largest p(class | leaf)
+  std::uint32_t first_class = 0;  ///< as Forest::leaves
+};
+
+/// The views of the same class that look at it from nearest by, nearest first; itself where there are no more.
+using ViewNeighbours = std::array<std::uint32_t, 6>;
+
+/// A forest with what a search needs of it beyond its file, which the constructor derives. The forest must outlive the
+/// index and stay as it is: a forest that was changed gets another index.
+class ForestIndex {
+ public:
+  explicit ForestIndex(const Forest& forest);
+  explicit ForestIndex(Forest&&) = delete;
+
+  const Forest& forest() const { return *forest_; }
+  const std::vector<LeafHead>& leaf_heads() const { return leaf_heads_; }  ///< number of leaves + 1
+  const PackedTrees& packed() const { return packed_; }
+  const std::vector<ViewNeighbours>& view_neighbours() const { return view_neighbours_; }  ///< per view
+
+ private:
+  const Forest* forest_;
+  std::vector<LeafHead> leaf_heads_;
+  PackedTrees packed_;
+  std::vector<ViewNeighbours> view_neighbours_;
+};
+
+}  // namespace houghstream

@@ -1,0 +1,58 @@
+#include "detector/forest/forest_index.hpp"
+
+#include <gtest/gtest.h>
+
+namespace houghstream {
+namespace {
+
+TEST(ForestIndex, LeafHeadsTellWhatALeafKnowsBestAndWhereItsClassesBegin) {
+  Forest forest;
+  forest.classes.resize(2);
+  forest.leaves = {0, 2, 2, 3};
+  forest.leaf_classes.resize(3);
+  forest.leaf_classes[0].probability = 0.2F;
+  forest.leaf_classes[1].probability = 0.7F;
+  forest.leaf_classes[1].class_index = 1;
+  forest.leaf_classes[2].probability = 0.1F;
+  const ForestIndex index(forest);
+  std::vector<float> certainties;
+  std::vector<std::uint32_t> firsts;
+  for (const LeafHead& head : index.leaf_heads()) {
+    certainties.push_back(head.certainty);
+    firsts.push_back(head.first_class);
+  }
+  EXPECT_EQ(certainties, (std::vector<float>{0.7F, 0.0F, 0.1F, 0.0F}));
+  EXPECT_EQ(firsts, forest.leaves);
+}
+
+/// A view of the class, turned by so many radians.
+TrainedView turned_view(std::uint32_t class_index, float angle_rad) {
+  TrainedView view;
+  view.class_index = class_index;
+  view.R_ray_object = Eigen::AngleAxisf(angle_rad, Eigen::Vector3f::UnitY());
+  return view;
+}
+
+TEST(ForestIndex, ViewsHaveTheNearestOfTheirClassAsNeighbours) {
+  Forest forest;
+  forest.classes.resize(2);
+  for (const float angle_rad : {0.0F, 0.5F, 0.2F}) forest.views.push_back(turned_view(0, angle_rad));
+  forest.views.push_back(turned_view(1, 0.1F));
+  const ForestIndex index(forest);
+  const std::vector<ViewNeighbours>& neighbours = index.view_neighbours();
+  ASSERT_EQ(neighbours.size(), 4U);
+  EXPECT_EQ(neighbours[0], (ViewNeighbours{2, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(neighbours[1], (ViewNeighbours{2, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(neighbours[3], (ViewNeighbours{3, 3, 3, 3, 3, 3}));
+}
+
+TEST(ForestIndex, AForestWithoutLeavesHasNoHeads) {
+  const Forest forest;
+  const ForestIndex index(forest);
+  EXPECT_TRUE(index.leaf_heads().empty());
+  EXPECT_TRUE(index.packed().nodes.empty());
+  EXPECT_TRUE(index.view_neighbours().empty());
+}
+
+}  // namespace
+}  // namespace houghstream
