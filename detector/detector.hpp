@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "detector/detection_settings.hpp"
-#include "detector/engine.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/types/detection.hpp"
 #include "pipeline/types/frame.hpp"
@@ -18,7 +17,7 @@ struct DetectorWorkspace;
 class Detector {
  public:
   /// Throws InputError where the forest needs what this program does not have, see extensions.hpp.
-  Detector(Forest forest, DetectionSettings settings, const Engine& engine = fast_engine());
+  Detector(Forest forest, DetectionSettings settings);
   ~Detector();
   Detector(Detector&&) noexcept;
 

@@ -10,7 +10,6 @@
 namespace houghstream {
 
 struct Candidate;
-struct Engine;
 struct Search;
 struct WorkingFrame;
 
@@ -24,7 +23,6 @@ struct Extensions {
   /// All candidates of a frame by a forest of ScaleHandling::kScaleSpace; closes the stages "detect.*" up to evidence.
   std::vector<Candidate> (*search_scale_space)(const Search& search, const RgbdFrame& frame,
                                                StageClock& clock) = nullptr;
-  const Engine* reference_engine = nullptr;
 };
 
 /// Not to be called while other threads use the detector.

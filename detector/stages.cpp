@@ -1,11 +1,29 @@
 #include "detector/stages.hpp"
 
-namespace houghstream {
+#include <algorithm>
+#include <utility>
 
-const Engine& fast_engine() {
-  static constexpr Engine kFast = {compute_features, find_leaves};
-  return kFast;
+namespace houghstream {
+namespace {
+
+/// Those that are likely enough; of overlapping ones the stronger (Section 2). Weaker ones that a pose may confirm
+/// stand behind, and never suppress any of them.
+std::vector<Detection> suppress(std::vector<Candidate>& candidates, const DetectionSettings& settings) {
+  const EvidenceSettings& evidence = settings.evidence;
+  std::vector<Detection> likely;
+  for (Candidate& candidate : candidates) {
+    Detection& detection = candidate.detection;
+    detection.reported = detection.score >= evidence.threshold;
+    if (detection.reported || detection.score >= evidence.candidates_from) likely.push_back(std::move(detection));
+  }
+  std::vector<Detection> kept = suppress_overlaps(std::move(likely), settings.suppression);
+  const auto reported = std::count_if(kept.begin(), kept.end(), [](const Detection& it) { return it.reported; });
+  const auto most = static_cast<std::size_t>(reported + evidence.max_candidates);
+  if (kept.size() > most) kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(most), kept.end());
+  return kept;
 }
+
+}  // namespace
 
 void make_working_images(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   make_working_images(frame, search.forest().features, search.settings.threads, workspace.images);
@@ -17,15 +35,15 @@ void compute_features(const Search& search, DetectorWorkspace& workspace) {
   place_patches(workspace.images, {search.forest().patch, search.settings.spacing}, workspace.patches);
   workspace.features.resize(frames.size());
   for (std::size_t level = 0; level < frames.size(); ++level) {
-    search.engine.features({frames[level], settings, workspace.patches.tiles[level]}, search.settings.threads,
-                           workspace.feature_memory, workspace.features[level]);
+    compute_features({frames[level], settings, workspace.patches.tiles[level]}, search.settings.threads,
+                     workspace.feature_memory, workspace.features[level]);
   }
 }
 
 void find_posteriors(const Search& search, DetectorWorkspace& workspace) {
   const DetectionSettings& settings = search.settings;
   find_posteriors({search.index, workspace.features, workspace.patches, settings.leaves, settings.threads},
-                  search.engine, workspace.leaf_memory, workspace.posteriors);
+                  workspace.leaf_memory, workspace.posteriors);
 }
 
 VotingInput voting_input(const Search& search, const DetectorWorkspace& workspace) {
@@ -42,6 +60,17 @@ std::vector<Candidate> weigh_evidence(const Search& search, const RgbdFrame& fra
   const LabFrame in_lab{frame, workspace.images.lab, workspace.images.levels.at(0).scale};
   return weigh_evidence({search.index, in_lab, workspace.patches, search.settings.evidence, search.excluded_views},
                         hypotheses, search.settings.threads, workspace.evidence_memory);
+}
+
+Detections report_detections(const Search& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,
+                             StageClock& clock) {
+  Detections out;
+  out.frame = frame.id;
+  out.detections = suppress(candidates, search.settings);
+  clock.mark("detect.suppression");
+  out.stages = frame.stages;
+  out.stages.insert(out.stages.end(), clock.times().begin(), clock.times().end());
+  return out;
 }
 
 }  // namespace houghstream

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "detector/detection_settings.hpp"
-#include "detector/engine.hpp"
 #include "detector/evidence/candidates.hpp"
 #include "detector/features/features.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/posteriors.hpp"
 #include "detector/voting/hypotheses.hpp"
+#include "pipeline/types/detection.hpp"
+#include "pipeline/types/frame.hpp"
 
 namespace houghstream {
 
@@ -20,7 +21,6 @@ namespace houghstream {
 struct Search {
   const ForestIndex& index;
   const DetectionSettings& settings;
-  const Engine& engine = fast_engine();
   /// Into Forest::views: not compared with the frame. A picture composed for training must not be recognised by the
   /// very views that it shows.
   std::vector<std::uint32_t> excluded_views = {};
@@ -57,6 +57,11 @@ std::vector<Hypothesis> find_hypotheses(const Search& search, DetectorWorkspace&
 /// What speaks for each hypothesis, and its score.
 std::vector<Candidate> weigh_evidence(const Search& search, const RgbdFrame& frame,
                                       const std::vector<Hypothesis>& hypotheses, DetectorWorkspace& workspace);
+
+/// What is likely enough, and weaker candidates for a pose to confirm; of overlapping boxes the stronger (Section 2).
+/// It closes the stage "detect.suppression"; the clock's times follow those of the frame.
+Detections report_detections(const Search& search, const RgbdFrame& frame, std::vector<Candidate>& candidates,
+                             StageClock& clock);
 
 /// What votes of the workspace are cast of.
 VotingInput voting_input(const Search& search, const DetectorWorkspace& workspace);

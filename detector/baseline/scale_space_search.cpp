@@ -25,7 +25,8 @@ struct SeenLevel {
 };
 
 /// Classifies the patches of a level; closes its stages on the clock.
-SeenLevel see_level(const Search& search, const RgbdFrame& frame, const FeatureLevel& level, StageClock& clock) {
+SeenLevel see_level(const Search& search, Way way, const RgbdFrame& frame, const FeatureLevel& level,
+                    StageClock& clock) {
   const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
   const WorkingFrame working = make_working_frame(frame, level, forest.features);
@@ -34,7 +35,7 @@ SeenLevel see_level(const Search& search, const RgbdFrame& frame, const FeatureL
   everywhere.want_all(working.colour.size());
   FeatureMemory feature_memory;
   std::vector<FeatureImage> features(1);
-  search.engine.features({working, forest.features, everywhere}, settings.threads, feature_memory, features[0]);
+  compute_features_by(way, {working, forest.features, everywhere}, settings.threads, feature_memory, features[0]);
   clock.mark("detect.features");
   SeenLevel seen;
   seen.camera = working.camera;
@@ -42,8 +43,8 @@ SeenLevel see_level(const Search& search, const RgbdFrame& frame, const FeatureL
   seen.px_per_offset = static_cast<float>(frame.camera.fx) * forest.features.image_scale;
   add_patches_everywhere(working, level, forest.patch, settings.spacing.stride, seen.grid);
   LeafMemory leaf_memory;
-  find_posteriors({search.index, features, seen.grid, settings.leaves, settings.threads}, search.engine, leaf_memory,
-                  seen.posteriors);
+  find_posteriors_by(way, {search.index, features, seen.grid, settings.leaves, settings.threads}, leaf_memory,
+                     seen.posteriors);
   clock.mark("detect.leaves");
   return seen;
 }
@@ -213,11 +214,11 @@ std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
   return candidates;
 }
 
-std::vector<Candidate> search_scale_space(const Search& search, const RgbdFrame& frame, StageClock& clock) {
+std::vector<Candidate> search_scale_space(const Search& search, Way way, const RgbdFrame& frame, StageClock& clock) {
   std::vector<ScalePeak> all;
   int sizes = 0;
   for (const FeatureLevel& level : feature_levels(search.forest().features)) {
-    SeenLevel seen = see_level(search, frame, level, clock);
+    SeenLevel seen = see_level(search, way, frame, level, clock);
     seen.size = sizes++;
     std::vector<std::vector<ScalePeak>> by_class(search.forest().classes.size());
     parallel_for(search.settings.threads, static_cast<int>(by_class.size()),
@@ -232,7 +233,7 @@ std::vector<cv::Mat> scale_space_hough_images(const Search& search, int class_in
   std::vector<cv::Mat> images;
   StageClock clock;
   for (const FeatureLevel& level : feature_levels(search.forest().features)) {
-    images.push_back(hough_image(search, class_index, see_level(search, frame, level, clock)));
+    images.push_back(hough_image(search, class_index, see_level(search, Way::kFast, frame, level, clock)));
   }
   return images;
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "detector/baseline/reference_stages.hpp"
 #include "detector/stages.hpp"
 
 namespace houghstream::baseline {
@@ -11,7 +12,7 @@ namespace houghstream::baseline {
 /// its own; candidates are the maxima over place and size, see maxima_over_sizes. Boxes by back-projection of all
 /// supporting patches. A candidate's centre has no depth: centre_camera is NaN. Same result for any number of threads.
 /// Closes the stages "detect.resize", "detect.features", "detect.leaves" and "detect.votes" on the clock.
-std::vector<Candidate> search_scale_space(const Search& search, const RgbdFrame& frame, StageClock& clock);
+std::vector<Candidate> search_scale_space(const Search& search, Way way, const RgbdFrame& frame, StageClock& clock);
 
 /// The Hough images of one class before maxima are taken, one per size, CV_32FC1: vote mass as a share of what a wholly
 /// visible object is expected to have.

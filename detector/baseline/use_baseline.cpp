@@ -1,6 +1,5 @@
 #include "detector/baseline/use_baseline.hpp"
 
-#include "detector/baseline/reference_engine.hpp"
 #include "detector/baseline/scale_space_search.hpp"
 #include "detector/baseline/surface_curvature.hpp"
 #include "detector/baseline/surface_histograms.hpp"
@@ -22,7 +21,9 @@ std::vector<cv::Mat> surface_planes(FeatureFamily family, const WorkingFrame& fr
 }
 
 void use_baseline() {
-  extend_detector({surface_planes, search_scale_space, &reference_engine()});
+  extend_detector({surface_planes, [](const Search& search, const RgbdFrame& frame, StageClock& clock) {
+                     return search_scale_space(search, Way::kFast, frame, clock);
+                   }});
 }
 
 }  // namespace houghstream::baseline

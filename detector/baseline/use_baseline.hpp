@@ -8,8 +8,8 @@
 
 namespace houghstream::baseline {
 
-/// Gives the program all that this folder has: the search of a scale space, the surface features and the reference
-/// engine, see extensions.hpp. The first line of main, before any thread starts.
+/// Gives the program the search of a scale space and the surface features, see extensions.hpp. The first line of main,
+/// before any thread starts.
 void use_baseline();
 
 /// The planes of a surface family before minimum and maximum, CV_8UC1; none of the other families.

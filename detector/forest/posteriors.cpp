@@ -93,14 +93,13 @@ void PatchPosteriors::note(const RunLeaves& seen) {
   }
 }
 
-void find_posteriors(const PosteriorInput& input, const Engine& engine, LeafMemory& memory,
-                     PatchPosteriors& posteriors) {
+void find_posteriors(const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
   std::vector<PatchRun>& runs = memory.runs;
   list_runs(input.patches, runs);
   const EarlyEnd early_end{input.settings.first_trees, input.settings.min_first_share};
   posteriors.reset(input.index, runs.size(), input.settings.min_class_share, input.threads);
-  engine.leaves({input.index, input.features, input.patches, runs, early_end}, input.threads, memory,
-                [&](const RunLeaves& seen) { posteriors.note(seen); });
+  find_leaves({input.index, input.features, input.patches, runs, early_end}, input.threads, memory,
+              [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 
 }  // namespace houghstream

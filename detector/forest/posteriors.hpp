@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "detector/engine.hpp"
 #include "detector/features/feature_image.hpp"
 #include "detector/forest/forest_index.hpp"
 #include "detector/forest/traversal.hpp"
@@ -68,7 +67,6 @@ struct PosteriorInput {
 
 /// Walks the patches down the forest and notes for which classes they vote. What `posteriors` held is overwritten and
 /// its memory used again.
-void find_posteriors(const PosteriorInput& input, const Engine& engine, LeafMemory& memory,
-                     PatchPosteriors& posteriors);
+void find_posteriors(const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors);
 
 }  // namespace houghstream

@@ -155,7 +155,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
       if (object.view) shown.push_back(*object.view);
     }
     for (std::uint32_t& view : shown) view += first_view;
-    const Search search{index, detection, fast_engine(), shown};
+    const Search search{index, detection, shown};
     by_frame[static_cast<std::size_t>(f)] =
         judge(search_frame(search, validation.frame, workspaces[worker]), validation);
   });

@@ -5,7 +5,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/baseline/reference_engine.hpp"
+#include "detector/baseline/study_detector.hpp"
 #include "detector/stages.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/same_detections.hpp"
@@ -121,7 +121,7 @@ TEST(Detector, NothingIsFoundWhereThereIsNoDepth) {
   EXPECT_TRUE(detect(frame, 1).detections.empty());
 }
 
-TEST(Detector, AnyNumberOfThreadsAndTheReferenceEngineGiveTheSameDetections) {
+TEST(Detector, AnyNumberOfThreadsAndTheReferenceWayGiveTheSameDetections) {
   RgbdFrame frame = toy::room(80);
   toy::put_tile(0, 90, 100, 0.7, frame);
   toy::put_tile(1, 230, 120, 0.8, frame);
@@ -134,7 +134,7 @@ TEST(Detector, AnyNumberOfThreadsAndTheReferenceEngineGiveTheSameDetections) {
     settings.threads = threads;
     expect_same(Detector(toy::forest(), settings).detect(frame), serial);
   }
-  expect_same(Detector(toy::forest(), settings, baseline::reference_engine()).detect(frame), serial);
+  expect_same(baseline::StudyDetector(toy::forest(), settings, baseline::Way::kReference).detect(frame), serial);
 }
 
 TEST(Detector, StagesAreTimedInTheOrderOfThePage) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "detector/baseline/reference_engine.hpp"
+#include "detector/baseline/study_detector.hpp"
 #include "detector/detector.hpp"
 #include "detector/stages.hpp"
 #include "tests/detector/listed_voters.hpp"
@@ -62,8 +62,7 @@ TEST(WantedTiles, LeavesInWantedTilesAreThoseInWholeImages) {
     see(frame, settings, workspace);
     LeafMemory memory;
     PatchPosteriors expected;
-    find_posteriors({toy::forest_index(), whole, workspace.patches, settings.leaves, threads}, fast_engine(), memory,
-                    expected);
+    find_posteriors({toy::forest_index(), whole, workspace.patches, settings.leaves, threads}, memory, expected);
     for (int c = 0; c < 2; ++c) {
       const std::vector<ListedVoter> wanted = voters_for(c, expected);
       EXPECT_GT(wanted.size(), 100U) << c;
@@ -109,7 +108,8 @@ TEST(WantedTiles, DetectionsInThemAreThoseInWholeImages) {
   DetectorWorkspace workspace;
   detector.detect(other_frame(), workspace);
   const Detections found = detector.detect(tile_in_a_room(), workspace);
-  const Detections expected = Detector(toy::forest(), settings, baseline::reference_engine()).detect(tile_in_a_room());
+  const Detections expected =
+      baseline::StudyDetector(toy::forest(), settings, baseline::Way::kReference).detect(tile_in_a_room());
   ASSERT_FALSE(expected.detections.empty());
   expect_same(found, expected);
 }

@@ -2,8 +2,6 @@
 
 #include <optional>
 
-#include "detector/engine.hpp"
-#include "detector/extensions.hpp"
 #include "detector/profiles.hpp"
 #include "tools/common/command_line.hpp"
 
@@ -20,7 +18,6 @@ struct SearchOptions {
   std::optional<float> min_mass_share;
   float candidates_from = 1.0F;  ///< none
   int threads = 2;
-  bool reference = false;  ///< by the reference engine, where the program has one
 
   DetectionSettings settings_for(const Forest& forest) const {
     DetectionSettings settings = detection_settings(forest);
@@ -32,8 +29,6 @@ struct SearchOptions {
     settings.threads = threads;
     return settings;
   }
-
-  const Engine& engine() const { return reference ? *extensions().reference_engine : fast_engine(); }
 };
 
 inline void add_search_options(CommandLine& app, SearchOptions& options) {
@@ -42,8 +37,6 @@ inline void add_search_options(CommandLine& app, SearchOptions& options) {
   app.add_option("--stride", options.stride,
                  "patch offset, working pixels, whatever the distance; default: the profile's")
       .range(1, 64);
-  if (extensions().reference_engine == nullptr) return;
-  app.add_flag("--reference", options.reference, "by the slow reference engine; the same detections");
 }
 
 }  // namespace houghstream

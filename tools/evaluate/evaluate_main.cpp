@@ -15,7 +15,6 @@
 #include "tools/evaluate/bop_results.hpp"
 #include "tools/evaluate/bop_targets.hpp"
 #include "tools/evaluate/class_names.hpp"
-#include "tools/evaluate/in_process.hpp"
 #include "tools/evaluate/metrics/search_times.hpp"
 #include "tools/evaluate/report.hpp"
 #include "tools/evaluate/scene_figures.hpp"
@@ -36,6 +35,7 @@ struct EvaluateOptions {
   std::vector<std::string> classes;
   EvaluationRules rules;
   SearchOptions search;
+  MakeSearch make_search;
   std::optional<float> min_quality;
   int every = 1;
 };
@@ -102,7 +102,7 @@ float search_in_process(const EvaluateOptions& options, Forest forest, const std
   if (!options.operating_score) rules.candidates_from = kCandidatesFrom;
   rules.pose = options.pose;
   const DetectionSettings settings = options.search.settings_for(forest);
-  InProcess process(std::move(forest), settings, options.search.engine(), meshes, rules);
+  InProcess process(std::move(forest), settings, options.make_search, meshes, rules);
   for (OpenScene& it : scenes) process.run(it.scene, it.frames);
   return process.ranked_from();
 }
@@ -226,10 +226,12 @@ static EvaluateOptions with_store(EvaluateOptions options) {
   return options;
 }
 
-int evaluate_main(int argc, char** argv, const std::string& name) {
+int evaluate_main(int argc, char** argv, const std::string& name, const EvaluateSearch& search) {
   CommandLine app("Compares detections and poses with the truth of a scene", name);
   EvaluateOptions options;
+  options.make_search = search.make;
   add_options(app, options);
+  search.add_options(app);
   app.add_example(name + " --scene SCENE --objects my.store --out RESULTS");
   return run_tool(app, argc, argv, [&] { run(with_store(options)); });
 }

@@ -1,10 +1,20 @@
 #pragma once
 
+#include <functional>
 #include <string>
+
+#include "tools/common/command_line.hpp"
+#include "tools/evaluate/in_process.hpp"
 
 namespace houghstream {
 
-/// hs-evaluate, and under another name hs-study-evaluate, which is linked with detector/baseline.
-int evaluate_main(int argc, char** argv, const std::string& name);
+/// How a program searches a forest in-process.
+struct EvaluateSearch {
+  MakeSearch make = detector_search;
+  std::function<void(CommandLine& app)> add_options = [](CommandLine&) {};  ///< its own, beside those of all searches
+};
+
+/// hs-evaluate, and under another name, with a search of its own, hs-study-evaluate.
+int evaluate_main(int argc, char** argv, const std::string& name, const EvaluateSearch& search = {});
 
 }  // namespace houghstream

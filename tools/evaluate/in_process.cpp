@@ -1,7 +1,7 @@
 #include "tools/evaluate/in_process.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 #include <utility>
 
 #include "detector/stages.hpp"
@@ -60,18 +60,25 @@ void add_unpublished(const Detections& all, ObjectPoses& published) {
 }  // namespace
 
 struct InProcess::State {
-  Detector detector;
-  std::optional<Detector> publishing;  ///< where `detector` finds more than is sent
+  State(const std::map<std::string, Mesh>& models, const PublishingRules& published, int threads)
+      : has_models(!models.empty()),
+        estimator(make_estimator(models, published.pose, threads)),
+        withholding_none(make_estimator(models, houghstream::withholding_none(published.pose), threads)),
+        rules(published) {}
+
+  float ranked_from = 0.0F;
+  int max_candidates = 0;
+  FrameSearch search;
+  FrameSearch publishing;  ///< where `search` finds more than is sent
   bool has_models;
   PoseEstimator estimator;
   PoseEstimator withholding_none;
   PublishingRules rules;
-  DetectorWorkspace workspace;
 
-  Detections detect(const RgbdFrame& frame) {
-    if (!publishing) return detector.detect(frame, workspace);
-    const Detections timed = publishing->detect(frame, workspace);
-    Detections all = detector.detect(frame, workspace);
+  Detections detect(const RgbdFrame& frame) const {
+    if (!publishing) return search(frame);
+    const Detections timed = publishing(frame);
+    Detections all = search(frame);
     all.stages = timed.stages;
     return all;
   }
@@ -95,24 +102,27 @@ struct InProcess::State {
   }
 };
 
-InProcess::InProcess(Forest forest, const DetectionSettings& settings, const Engine& engine,
+FrameSearch detector_search(Forest forest, const DetectionSettings& settings) {
+  const auto detector = std::make_shared<const Detector>(std::move(forest), settings);
+  const auto workspace = std::make_shared<DetectorWorkspace>();
+  return [detector, workspace](const RgbdFrame& frame) { return detector->detect(frame, *workspace); };
+}
+
+InProcess::InProcess(Forest forest, const DetectionSettings& settings, const MakeSearch& make_search,
                      const std::map<std::string, Mesh>& models, const PublishingRules& rules)
-    : state_(std::make_unique<State>(State{Detector(std::move(forest), finding_all(settings, rules), engine),
-                                           std::nullopt,
-                                           !models.empty(),
-                                           make_estimator(models, rules.pose, settings.threads),
-                                           make_estimator(models, withholding_none(rules.pose), settings.threads),
-                                           rules,
-                                           {}})) {
-  const float least = std::min(rules.score, rules.candidates_from);
-  if (models.empty() || state_->detector.settings().evidence.threshold >= least) return;
-  state_->publishing.emplace(state_->detector.forest(), as_published(settings, rules), engine);
+    : state_(std::make_unique<State>(models, rules, settings.threads)) {
+  const DetectionSettings all = finding_all(settings, rules);
+  state_->ranked_from = all.evidence.threshold;
+  state_->max_candidates = all.evidence.max_candidates;
+  if (!models.empty() && all.evidence.threshold < std::min(rules.score, rules.candidates_from))
+    state_->publishing = make_search(forest, as_published(settings, rules));
+  state_->search = make_search(std::move(forest), all);
 }
 
 InProcess::~InProcess() = default;
 
 float InProcess::ranked_from() const {
-  return state_->detector.settings().evidence.threshold;
+  return state_->ranked_from;
 }
 
 void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) {
@@ -123,8 +133,7 @@ void InProcess::run(const BopScene& scene, std::vector<EvaluatedFrame>& frames) 
     const PublishingRules& rules = state_->rules;
     for (Detection& detection : all.detections) detection.reported = detection.score >= rules.score;
     if (state_->has_models) {
-      const int max_candidates = state_->detector.settings().evidence.max_candidates;
-      ObjectPoses published = state_->estimator.estimate(frame, sent_of(all, rules, max_candidates));
+      ObjectPoses published = state_->estimator.estimate(frame, sent_of(all, rules, state_->max_candidates));
       add_unpublished(all, published);
       out.poses_nothing_withheld = state_->estimate_all(frame, all, published);
       out.poses = std::move(published);

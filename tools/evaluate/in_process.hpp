@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,6 +14,15 @@
 
 namespace houghstream {
 
+/// Finds the objects in a frame, with memory of its own that it uses again. For one frame at a time.
+using FrameSearch = std::function<Detections(const RgbdFrame&)>;
+
+/// Makes a search of a forest: detector_search, or what a study puts in its place.
+using MakeSearch = std::function<FrameSearch(Forest forest, const DetectionSettings& settings)>;
+
+/// A search by Detector.
+FrameSearch detector_search(Forest forest, const DetectionSettings& settings);
+
 /// What would be published of what is found.
 struct PublishingRules {
   float score = 0.0F;            ///< least of a detection that is reported by itself
@@ -25,7 +35,7 @@ class InProcess {
  public:
   /// `settings` may find detections of lower score than those that would be published, to rank and judge them too.
   /// Models by class name.
-  InProcess(Forest forest, const DetectionSettings& settings, const Engine& engine,
+  InProcess(Forest forest, const DetectionSettings& settings, const MakeSearch& make_search,
             const std::map<std::string, Mesh>& models, const PublishingRules& rules);
   ~InProcess();
 

@@ -8,8 +8,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/baseline/reference_engine.hpp"
-#include "detector/detector.hpp"
+#include "detector/baseline/study_detector.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "tests/detector/baseline/with_baseline.hpp"
 #include "tests/detector/toy_data.hpp"
@@ -49,11 +48,10 @@ Scene tile_at(int kind, double u_px, double v_px, double distance) {
   return scene;
 }
 
-std::vector<Candidate> search(const RgbdFrame& frame, const DetectionSettings& settings,
-                              const Engine& engine = fast_engine()) {
+std::vector<Candidate> search(const RgbdFrame& frame, const DetectionSettings& settings, Way way = Way::kFast) {
   StageClock clock;
   static const ForestIndex index(toy_forest());
-  return search_scale_space({index, settings, engine}, frame, clock);
+  return search_scale_space({index, settings}, way, frame, clock);
 }
 
 const Candidate& strongest(const std::vector<Candidate>& candidates) {
@@ -115,11 +113,11 @@ TEST(ScaleSpaceSearch, AnyNumberOfThreadsGivesTheSameCandidates) {
   }
 }
 
-TEST(ScaleSpaceSearch, TheReferenceEngineFindsTheSameCandidates) {
+TEST(ScaleSpaceSearch, TheReferenceWayFindsTheSameCandidates) {
   const Scene scene = tile_at(1, 150, 120, 0.7);
   const DetectionSettings settings = quick_settings();
   const std::vector<Candidate> fast = search(scene.frame, settings);
-  expect_same(fast, search(scene.frame, settings, reference_engine()));
+  expect_same(fast, search(scene.frame, settings, Way::kReference));
 }
 
 TEST(ScaleSpaceSearch, EachSizeHasAHoughImageThatPeaksWhereTheObjectFits) {
@@ -155,7 +153,7 @@ TEST(ScaleSpaceSearch, AnObjectBetweenTwoSizesIsOneCandidate) {
 
 TEST(ScaleSpaceSearch, TheDetectorReportsTheStrongestOfAllSizes) {
   const Scene scene = tile_at(0, 120, 110, 0.7);
-  const Detections found = Detector(toy_forest(), quick_settings()).detect(scene.frame);
+  const Detections found = StudyDetector(toy_forest(), quick_settings()).detect(scene.frame);
   ASSERT_FALSE(found.detections.empty());
   EXPECT_EQ(found.detections[0].score, strongest(search(scene.frame, quick_settings())).detection.score);
   for (std::size_t i = 1; i < found.detections.size(); ++i) {

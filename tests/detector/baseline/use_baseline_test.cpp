@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "detector/baseline/reference_engine.hpp"
 #include "detector/baseline/surface_curvature.hpp"
 #include "detector/baseline/surface_histograms.hpp"
 #include "detector/baseline/surface_honv.hpp"
@@ -49,7 +48,6 @@ TEST(UseBaseline, GivesTheProgramWhatTheProfilesAndFeaturesNeed) {
   FeatureSettings all = make_profile("gall").features;
   all.families = 255;
   EXPECT_NO_THROW(require_extensions(all, "a.forest"));
-  EXPECT_EQ(extensions().reference_engine, &reference_engine());
 }
 
 }  // namespace

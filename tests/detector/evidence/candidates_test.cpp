@@ -16,7 +16,7 @@ namespace {
 
 std::vector<Candidate> candidates(const RgbdFrame& frame, const DetectionSettings& settings = {},
                                   const std::vector<std::uint32_t>& excluded_views = {}) {
-  const Search search{toy::forest_index(), settings, fast_engine(), excluded_views};
+  const Search search{toy::forest_index(), settings, excluded_views};
   DetectorWorkspace workspace;
   make_working_images(search, frame, workspace);
   compute_features(search, workspace);

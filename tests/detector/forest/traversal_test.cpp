@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 
-#include "detector/baseline/reference_engine.hpp"
-#include "detector/engine.hpp"
+#include "detector/baseline/reference_stages.hpp"
 #include "detector/features/features.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "tests/detector/toy_data.hpp"
@@ -15,7 +13,7 @@
 namespace houghstream {
 namespace {
 
-/// All leaves of a grid, patch by patch, as find_leaves and, with a number of threads below 0, the reference engine
+/// All leaves of a grid, patch by patch, as find_leaves and, with a number of threads below 0, reference_leaves
 /// tell them. -1 for patches that were given up.
 std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<FeatureImage>& features,
                                     const PatchGrid& patches, int threads, const EarlyEnd& early_end = {}) {
@@ -32,9 +30,13 @@ std::vector<std::int32_t> leaves_of(const ForestIndex& index, const std::vector<
       }
     }
   };
-  const Engine& engine = threads > 0 ? fast_engine() : baseline::reference_engine();
+  const LeafInput input{index, features, patches, runs, early_end};
   LeafMemory memory;
-  engine.leaves({index, features, patches, runs, early_end}, std::abs(threads), memory, visit);
+  if (threads > 0) {
+    find_leaves(input, threads, memory, visit);
+  } else {
+    baseline::reference_leaves(input, -threads, visit);
+  }
   return leaves;
 }
 

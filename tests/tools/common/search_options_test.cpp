@@ -47,21 +47,6 @@ TEST(SearchOptions, WhatIsAskedForReplacesTheProfilesOwn) {
   EXPECT_EQ(settings.voting.min_mass_share, 0.07F);
 }
 
-TEST(SearchOptions, TheReferenceEngineIsOfferedWhereTheProgramHasOne) {
-  EXPECT_EQ(&parsed({}).engine(), &fast_engine());
-  SearchOptions options;
-  CommandLine without("words", "name");
-  add_search_options(without, options);
-  EXPECT_NE(without.parse({"--reference"}).value_or(0), 0);
-  static constexpr Engine kOther = {nullptr, nullptr};
-  Extensions some;
-  some.reference_engine = &kOther;
-  extend_detector(some);
-  EXPECT_EQ(&parsed({"--reference"}).engine(), &kOther);
-  EXPECT_EQ(&parsed({}).engine(), &fast_engine());
-  extend_detector({});
-}
-
 TEST(SearchOptions, AbsurdValuesAreRefused) {
   const std::vector<std::vector<std::string>> absurd = {
       {"--stride", "0"},    {"--stride", "100"},   {"--threads", "0"},    {"--threshold", "high"},

@@ -1,7 +1,15 @@
 #include "detector/baseline/use_baseline.hpp"
 #include "tools/evaluate/evaluate_main.hpp"
+#include "tools/studies/baseline/study_search.hpp"
 
 int main(int argc, char** argv) {
-  houghstream::baseline::use_baseline();
-  return houghstream::evaluate_main(argc, argv, "hs-study-evaluate");
+  using namespace houghstream;
+  baseline::use_baseline();
+  bool reference = false;
+  EvaluateSearch search;
+  search.make = [&](Forest forest, const DetectionSettings& settings) {
+    return study_search(std::move(forest), settings, reference);
+  };
+  search.add_options = [&](CommandLine& app) { add_reference_option(app, reference); };
+  return evaluate_main(argc, argv, "hs-study-evaluate", search);
 }

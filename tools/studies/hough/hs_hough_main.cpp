@@ -2,7 +2,6 @@
 
 #include "detector/baseline/hough_images.hpp"
 #include "detector/baseline/use_baseline.hpp"
-#include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
@@ -10,6 +9,7 @@
 #include "tools/common/search_options.hpp"
 #include "tools/common/tool_main.hpp"
 #include "tools/evaluate/metrics/detection_metrics.hpp"
+#include "tools/studies/baseline/study_search.hpp"
 #include "tools/studies/hough/hough_panels.hpp"
 #include "tools/view/drawing/overlay.hpp"
 
@@ -23,6 +23,7 @@ struct HoughOptions {
   std::string out;
   int frame = 0;
   SearchOptions search;
+  bool reference = false;
 };
 
 /// A class is drawn in one colour, whatever number the scene knows it by; one that was not taught is grey.
@@ -43,11 +44,12 @@ std::vector<NamedBox> true_boxes(const EvaluatedFrame& frame, const Forest& fore
   return boxes;
 }
 
-std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const SearchOptions& options) {
-  const DetectionSettings settings = options.settings_for(forest);
+std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const HoughOptions& options) {
+  const DetectionSettings settings = options.search.settings_for(forest);
   const ForestIndex index(forest);
-  const Search by{index, settings, options.engine()};
-  const Detections found = Detector(forest, settings, by.engine).detect(frame);
+  const Search by{index, settings};
+  const baseline::Way way = way_of(options.reference);
+  const Detections found = baseline::StudyDetector(forest, settings, way).detect(frame);
   std::vector<HoughPanel> panels;
   for (std::size_t c = 0; c < forest.classes.size(); ++c) {
     const ObjectClass& object = forest.classes[c];
@@ -72,7 +74,7 @@ void run(const HoughOptions& options) {
   const EvaluatedFrame truth = read_truth(scene, find_bop_names(options.scene))[index];
   const Forest forest = load_forest(options.forest);
   const RgbdFrame frame = scene.read_frame(index);
-  const std::vector<HoughPanel> panels = search(forest, frame, options.search);
+  const std::vector<HoughPanel> panels = search(forest, frame, options);
   write_png(draw_hough_panels(frame.colour, true_boxes(truth, forest), panels), options.out);
 }
 
@@ -88,6 +90,7 @@ int main(int argc, char** argv) {
   app.add_option("--frame", options.frame, "position in the scene, from 0").required();
   app.add_option("--out", options.out, "picture to write, PNG").required();
   add_search_options(app, options.search);
+  add_reference_option(app, options.reference);
   app.add_example("hs-hough --forest my.forest --scene SCENE --frame 0 --out votes.png");
   return houghstream::run_tool(app, argc, argv, [&] { run(options); });
 }

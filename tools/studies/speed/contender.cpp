@@ -4,15 +4,13 @@
 #include <hwy/targets.h>
 
 #include <charconv>
-#include <memory>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
-#include "detector/detector.hpp"
 #include "detector/forest/forest_file.hpp"
-#include "detector/stages.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
+#include "tools/studies/baseline/study_search.hpp"
 
 namespace houghstream {
 namespace {
@@ -20,6 +18,7 @@ namespace {
 struct Wishes {
   SearchOptions search;
   int trees = 0;  // 0 = all
+  bool reference = false;
 };
 
 double positive_number(const std::string& text, const std::string& of) {
@@ -58,7 +57,7 @@ void grant(const std::string& wish, const std::string& text, Wishes& wishes, Con
   const std::string name = wish.substr(0, equals);
   const std::string value = wish.substr(std::min(equals + 1, wish.size()));
   if (wish == "reference") {
-    wishes.search.reference = true;
+    wishes.reference = true;
   } else if (name == "threads") {
     wishes.search.threads = positive_count(value, text);
   } else if (name == "trees") {
@@ -96,9 +95,7 @@ Contender parse_contender(const std::string& text) {
   require(trees <= forest.roots.size(), "{}: the forest has {} trees", text, forest.roots.size());
   if (trees > 0) forest.roots.resize(trees);
   const DetectionSettings settings = wishes.search.settings_for(forest);
-  const auto detector = std::make_shared<const Detector>(std::move(forest), settings, wishes.search.engine());
-  const auto workspace = std::make_shared<DetectorWorkspace>();
-  contender.detect = [detector, workspace](const RgbdFrame& frame) { return detector->detect(frame, *workspace); };
+  contender.detect = study_search(std::move(forest), settings, wishes.reference);
   return contender;
 }
 

@@ -1,19 +1,12 @@
-#include "detector/baseline/reference_engine.hpp"
+#include "detector/baseline/reference_stages.hpp"
 
 #include <vector>
 
 #include "detector/baseline/reference_features.hpp"
-#include "detector/features/features.hpp"
-#include "detector/forest/traversal.hpp"
 
 namespace houghstream::baseline {
-namespace {
 
-void compute_whole_features(const FeatureInput& input, int, FeatureMemory&, FeatureImage& image) {
-  image = reference_features(input.frame, input.settings);
-}
-
-void find_leaves_one_by_one(const LeafInput& input, int threads, LeafMemory&, const LeafVisitor& visit) {
+void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& visit) {
   const Forest& forest = input.index.forest();
   const PatchGrid& patches = input.patches;
   const EarlyEnd& early_end = input.early_end;
@@ -39,11 +32,18 @@ void find_leaves_one_by_one(const LeafInput& input, int threads, LeafMemory&, co
   });
 }
 
-}  // namespace
+void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image) {
+  if (way == Way::kFast) return compute_features(input, threads, memory, image);
+  image = reference_features(input.frame, input.settings);
+}
 
-const Engine& reference_engine() {
-  static constexpr Engine kReference = {compute_whole_features, find_leaves_one_by_one};
-  return kReference;
+void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {
+  if (way == Way::kFast) return find_posteriors(input, memory, posteriors);
+  list_runs(input.patches, memory.runs);
+  const EarlyEnd early_end{input.settings.first_trees, input.settings.min_first_share};
+  posteriors.reset(input.index, memory.runs.size(), input.settings.min_class_share, input.threads);
+  reference_leaves({input.index, input.features, input.patches, memory.runs, early_end}, input.threads,
+                   [&](const RunLeaves& seen) { posteriors.note(seen); });
 }
 
 }  // namespace houghstream::baseline

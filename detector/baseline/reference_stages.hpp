@@ -1,0 +1,22 @@
+#pragma once
+
+#include "detector/features/features.hpp"
+#include "detector/forest/posteriors.hpp"
+
+namespace houghstream::baseline {
+
+/// By which functions features and leaves are computed. Both ways find the same, bit for bit.
+enum class Way {
+  kFast,       ///< those of the product: compute_features and find_posteriors
+  kReference,  ///< slow ones to hold these against: features plane by plane (reference_features), leaves patch by patch
+               ///< and tree by tree (find_leaf), with one thread for each run of patches
+};
+
+void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image);
+
+void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors);
+
+/// The leaves of find_leaves, by find_leaf alone.
+void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& visit);
+
+}  // namespace houghstream::baseline

@@ -1,0 +1,54 @@
+#include "detector/baseline/study_detector.hpp"
+
+#include <utility>
+
+#include "detector/baseline/scale_space_search.hpp"
+
+namespace houghstream::baseline {
+namespace {
+
+/// The stages of Detector::detect up to the evidence, two of them in the way that is asked for.
+std::vector<Candidate> search_normalised(const Search& search, Way way, const RgbdFrame& frame,
+                                         DetectorWorkspace& workspace, StageClock& clock) {
+  const DetectionSettings& settings = search.settings;
+  make_working_images(search, frame, workspace);
+  clock.mark("detect.resize");
+  place_patches(workspace.images, {search.forest().patch, settings.spacing}, workspace.patches);
+  const std::vector<WorkingFrame>& frames = workspace.images.frames;
+  workspace.features.resize(frames.size());
+  for (std::size_t level = 0; level < frames.size(); ++level) {
+    compute_features_by(way, {frames[level], search.forest().features, workspace.patches.tiles[level]},
+                        settings.threads, workspace.feature_memory, workspace.features[level]);
+  }
+  clock.mark("detect.features");
+  find_posteriors_by(way, {search.index, workspace.features, workspace.patches, settings.leaves, settings.threads},
+                     workspace.leaf_memory, workspace.posteriors);
+  clock.mark("detect.leaves");
+  const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
+  clock.mark("detect.votes");
+  std::vector<Candidate> candidates = weigh_evidence(search, frame, hypotheses, workspace);
+  clock.mark("detect.evidence");
+  return candidates;
+}
+
+}  // namespace
+
+StudyDetector::StudyDetector(Forest forest, const DetectionSettings& settings, Way way)
+    : forest_(std::move(forest)), index_(forest_), settings_(settings), way_(way) {}
+
+Detections StudyDetector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace) const {
+  const Search search{index_, settings_};
+  check_frame(frame, "detector");
+  StageClock clock;
+  const bool in_scale_space = forest_.features.handling == ScaleHandling::kScaleSpace;
+  std::vector<Candidate> candidates = in_scale_space ? search_scale_space(search, way_, frame, clock)
+                                                     : search_normalised(search, way_, frame, workspace, clock);
+  return report_detections(search, frame, candidates, clock);
+}
+
+Detections StudyDetector::detect(const RgbdFrame& frame) const {
+  DetectorWorkspace workspace;
+  return detect(frame, workspace);
+}
+
+}  // namespace houghstream::baseline
