@@ -24,7 +24,8 @@ class Worlds:
 
     def __init__(self, file):
         self.file = file
-        self.logger = subprocess.Popen(["lcm-logger", "-f", "-q", "--flush-interval=1", "-l", bus(HEARD), "-c", "HOUGHSTREAM_OBJECTS", str(file)],
+        self.logger = subprocess.Popen(["lcm-logger", "-f", "-q", "--flush-interval=1", f"--lcm-url={bus(HEARD)}", "-c", "HOUGHSTREAM_OBJECTS",
+                                        str(file)],
                                        stderr=subprocess.DEVNULL)  # fmt: skip
 
     def stop(self):
