@@ -27,10 +27,11 @@ def all_faults(options, out):
     from studies.soak.clock_faults import ClockFaults
     from studies.soak.frame_faults import FrameFaults
     from studies.soak.page_faults import PageFaults
+    from studies.soak.recording_faults import RecordingFaults
     from studies.soak.store_faults import StoreFaults
     from studies.soak.stream_faults import StreamFaults
 
-    kinds = (FrameFaults, ClockFaults, StreamFaults, StoreFaults, BusFaults, PageFaults)
+    kinds = (FrameFaults, ClockFaults, StreamFaults, RecordingFaults, StoreFaults, BusFaults, PageFaults)
     return [(name, fault) for kind in kinds for name, fault in kind(options, out).all() if options.only in name]
 
 
