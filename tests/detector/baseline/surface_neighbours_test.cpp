@@ -1,9 +1,10 @@
+#include "detector/baseline/surface_neighbours.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "detector/baseline/surface_histograms.hpp"
 #include "tests/detector/baseline/surface_scene.hpp"
 
 namespace houghstream::baseline {
