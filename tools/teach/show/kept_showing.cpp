@@ -19,7 +19,7 @@
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/folder_exchange.hpp"
 #include "pipeline/base/html_text.hpp"
-#include "pose/reconstruction/take_merging.hpp"
+#include "pose/reconstruction/take_model.hpp"
 #include "tools/fuse/model_picture.hpp"
 #include "tools/teach/contact_sheet.hpp"
 

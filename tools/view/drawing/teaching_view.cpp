@@ -17,10 +17,10 @@ constexpr int kMargin_px = 6;
 constexpr int kLine_px = 18;
 const cv::Scalar kSeen(110, 200, 60);
 const cv::Scalar kUnseen(95, 90, 86);
-const cv::Scalar kWarning(80, 170, 255);
+const cv::Scalar kNotFollowed(80, 170, 255);
 
 cv::Scalar colour_of(TeachingState state) {
-  return state == TeachingState::kLost || state == TeachingState::kFailed ? kWarning : kSeen;
+  return state == TeachingState::kLost || state == TeachingState::kFailed ? kNotFollowed : kSeen;
 }
 
 bool is_of(const Teaching& teaching, const FrameId& frame) {
