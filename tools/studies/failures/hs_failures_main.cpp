@@ -53,7 +53,7 @@ std::vector<cv::Mat> failures_in(const std::string& folder, const Detector& dete
 void run(const FailureOptions& options) {
   Forest forest = load_forest(options.known.forest);
   const DetectionSettings settings = options.search.settings_for(forest);
-  const Detector detector(std::move(forest), settings, options.search.engine());
+  const Detector detector(std::move(forest), settings);
   std::vector<cv::Mat> tiles;
   for (const std::string& scene : options.scenes) {
     for (const cv::Mat& tile : failures_in(scene, detector, options)) tiles.push_back(tile);
