@@ -9,7 +9,7 @@
 namespace houghstream::openni {
 namespace {
 
-constexpr std::chrono::seconds kPatience(5);
+constexpr std::chrono::seconds kImageTimeout(5);
 using Sensor = SensorImage::Sensor;
 
 std::filesystem::path recorded_file(const VirtualCamera& camera, int images, bool jpeg) {
@@ -18,7 +18,7 @@ std::filesystem::path recorded_file(const VirtualCamera& camera, int images, boo
   options.record = (camera.folder() / "recorded.oni").string();
   options.record_jpeg = jpeg;
   const auto device = OpenniDevice::open_camera("houghstream-virtual://1", options);
-  for (int i = 0; i < images; ++i) EXPECT_TRUE(device->wait(kPatience).has_value());
+  for (int i = 0; i < images; ++i) EXPECT_TRUE(device->wait(kImageTimeout).has_value());
   return options.record;
 }
 
@@ -27,7 +27,7 @@ std::map<Sensor, std::map<std::int64_t, cv::Mat>> images_of(const std::filesyste
   const auto device = OpenniDevice::open_file(file.string());
   std::map<Sensor, std::map<std::int64_t, cv::Mat>> images;
   while (!device->ended()) {
-    const std::optional<SensorImage> image = device->wait(kPatience);
+    const std::optional<SensorImage> image = device->wait(kImageTimeout);
     if (image) images[image->sensor][static_cast<std::int64_t>(image->device_us)] = image->image;
   }
   return images;
@@ -102,7 +102,7 @@ TEST(OpenniRecording, EndsWhileImagesCome) {
   options.record = (camera.folder() / "recorded.oni").string();
   for (int i = 0; i < 40; ++i) {
     const auto device = OpenniDevice::open_camera("houghstream-virtual://1", options);
-    for (int k = 0; k < 5 + i % 10; ++k) EXPECT_TRUE(device->wait(kPatience).has_value());
+    for (int k = 0; k < 5 + i % 10; ++k) EXPECT_TRUE(device->wait(kImageTimeout).has_value());
   }
 }
 

@@ -274,7 +274,7 @@ pid_t open_without_route(AtStart at_start) {
   if (child != 0) return child;
   if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) _exit(kNoNetworks);
   try {
-    LcmBus bus("udpm://239.255.76.67:7667?ttl=1", "", at_start);
+    LcmBus bus("udpm://239.255.76.67:7667?ttl=1", "", Existing::kReplaced, at_start);
   } catch (const InputError&) {
     _exit(kRefused);
   }

@@ -183,7 +183,7 @@ double deviation(const cv::Mat& values) {
 }
 
 /// Of pixels side by side, over that of all pixels: 1.41 where they know nothing of each other.
-double contrast(const cv::Mat& values) {
+double contrast_of(const cv::Mat& values) {
   cv::Mat difference = values.colRange(1, values.cols) - values.colRange(0, values.cols - 1) + 0.7;
   return deviation(difference) / deviation(values);
 }
@@ -196,8 +196,8 @@ TEST(FarNoise, AddsWhatTheLargerDistanceHasMore) {
 }
 
 TEST(FarNoise, IsAsCoarseAsThePicturesOfThatDistanceEnlarged) {
-  EXPECT_LT(contrast(noisy(1.2)), 0.9);
-  EXPECT_LT(contrast(noisy(2.4)), 0.6 * contrast(noisy(1.2)));
+  EXPECT_LT(contrast_of(noisy(1.2)), 0.9);
+  EXPECT_LT(contrast_of(noisy(2.4)), 0.6 * contrast_of(noisy(1.2)));
 }
 
 TEST(FarNoise, NothingIsAddedAtTheOwnDistanceAndNothingMissingIsMadeUp) {
