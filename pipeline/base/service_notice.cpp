@@ -26,13 +26,15 @@ void notify_service(const std::string& words) {
   close(to);
 }
 
-StillFinishing::StillFinishing() {
+StillFinishing::StillFinishing(From from) {
   const BlockStopSignals block;
-  thread_ = std::thread([this] {
+  thread_ = std::thread([this, from] {
     const std::string words =
         "EXTEND_TIMEOUT_USEC=" + std::to_string(std::chrono::microseconds(kExtension).count()) + "\nSTOPPING=1";
-    const auto end = std::chrono::steady_clock::now() + kLongest;
     std::unique_lock<std::mutex> lock(mutex_);
+    while (!has_ended_ && from == From::kStopSignal && !stop_requested())
+      ends_.wait_for(lock, std::chrono::milliseconds(20));
+    const auto end = std::chrono::steady_clock::now() + kLongest;
     while (!has_ended_ && std::chrono::steady_clock::now() < end) {
       notify_service(words);
       ends_.wait_for(lock, std::chrono::seconds(1));

@@ -22,7 +22,12 @@ class StillFinishing {
   static constexpr std::chrono::seconds kExtension{5};
   static constexpr std::chrono::minutes kLongest{10};
 
-  StillFinishing();
+  enum class From {
+    kNow,
+    kStopSignal  ///< as soon as one has come: who works at a low priority notices it itself much later
+  };
+
+  explicit StillFinishing(From from = From::kNow);
   ~StillFinishing();
   StillFinishing(const StillFinishing&) = delete;
   StillFinishing& operator=(const StillFinishing&) = delete;

@@ -132,13 +132,13 @@ class Recordings(unittest.TestCase):
         view.wait_until_ready()
         return view
 
-    def test_a_killed_video(self):
+    def test_a_video(self):
         video = self.folder / "take.mp4"
         capture = Process(self.folder, self.tools / "hs-capture", "--source", f"bop:{self.made / 'scene'}", "--loop", "--rate", 10)
         try:
-            kill_when(self.start_view("--video", video), self.folder / "take.mp4.partial.mkv", 1)
+            (self.folder / "take.mp4.partial.mkv").write_bytes(b"of a killed one")
             view = self.start_view("--video", video)
-            wait_for_bytes(self.folder / "take.mp4.partial.mkv", 0)
+            wait_for_bytes(self.folder / "take.interrupted-1.mkv", 1)
             view.stop(SECONDS)
             second = self.start_view("--video", video)
             wait_for_bytes(self.folder / "take_2.mp4.partial.mkv", 0)
@@ -157,10 +157,11 @@ class Recordings(unittest.TestCase):
         for wanted in (r"\d+\.jpg", r"\d+_2\.jpg"):
             before = {name: digest(pictures / name) for name in names(pictures, "")}
             view = self.start_view("--pictures", pictures)
+            run(*send)
             end = time.monotonic() + SECONDS
             while not any(re.fullmatch(wanted, name) for name in names(pictures, "")):
                 assert time.monotonic() < end, f"no {wanted} in {names(pictures, '')}"
-                run(*send)
+                time.sleep(0.1)
             view.stop(SECONDS)
             self.assertEqual(before, {name: digest(pictures / name) for name in before})
 

@@ -162,10 +162,11 @@ void Supervisor::note_deaf() {
   last_step_ = Clock::now();
 }
 
-std::string Supervisor::names_of_running() {
+std::string Supervisor::names_of_writing() {
   std::string names;
   for (Member& member : members_) {
-    if (member.child && !member.child->ending()) names += (names.empty() ? "" : ", ") + member.plan.name;
+    const bool is_writing = member.child && !member.child->ending() && member.child->needs_time();
+    if (is_writing) names += (names.empty() ? "" : ", ") + member.plan.name;
   }
   return names;
 }
@@ -183,7 +184,7 @@ std::vector<std::string> Supervisor::stop() {
   bool has_said = false;
   while (std::any_of(members_.begin(), members_.end(), is_awaited)) {
     if (Clock::now() - begun > settings_.patience && !std::exchange(has_said, true))
-      say_(fmt::format("waiting for {}, which writes the end of a file", names_of_running()));
+      say_(fmt::format("waiting for the end of a file that is being written: {}", names_of_writing()));
     std::this_thread::sleep_for(milliseconds(10));
   }
   std::vector<std::string> killed;

@@ -97,7 +97,7 @@ class Supervisor {
   void look_for_hang(Member& member, Clock::duration listened);
   void plan_restart(Member& member, const std::string& words);
   void restart_if_due(Member& member);
-  std::string names_of_running();
+  std::string names_of_writing();
 
   std::vector<Member> members_;
   bool source_has_ended_ = false;  // by itself

@@ -40,6 +40,9 @@ void run_viewer(const ViewerSettings& settings) {
   match.rate_hz = settings.show.outputs.rate_hz;
   LcmBus bus(settings.lcm_url);
   BusWatcher watcher(bus, settings.frame_channels, match, waiting_frames(settings.show));
+  // On a busy machine, and with a long video, the end takes longer than who started this program would wait.
+  std::optional<StillFinishing> finishing;
+  if (settings.show.writes()) finishing.emplace(StillFinishing::From::kStopSignal);
   step_back();
   log_info("ready: watching {}", settings.frame_channels);
 
@@ -49,9 +52,6 @@ void run_viewer(const ViewerSettings& settings) {
     if (const auto matched = watcher.next(std::chrono::milliseconds(20))) frame_show.show(*matched, watcher);
     if (!frame_show.handle_keys(watcher)) break;
   }
-  // On a busy machine, and with a long video, the end takes longer than who started this program would wait.
-  std::optional<StillFinishing> finishing;
-  if (settings.show.writes()) finishing.emplace();
   watcher.stop();
   while (const auto matched = watcher.next(std::chrono::milliseconds(0))) frame_show.show(*matched, watcher);
   frame_show.finish();  // before the last word, which a bus that is gone does not take: a video must be whole

@@ -5,8 +5,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+
+#include "pipeline/base/stop_signal.hpp"
 
 namespace houghstream {
 namespace {
@@ -52,6 +55,25 @@ TEST(StillFinishing, AsksForTimeWhileItLives) {
   }
   usleep(1'200'000);
   EXPECT_LT(recv(manager, heard, sizeof heard, 0), 0) << "it has ended";
+  unsetenv("NOTIFY_SOCKET");
+  close(manager);
+  unlink(path.c_str());
+}
+
+TEST(StillFinishing, AsksForTimeAsSoonAsAStopSignalHasCome) {
+  const std::string path = testing::TempDir() + "/still_finishing_signal_" + std::to_string(getpid());
+  const int manager = open_manager(path);
+  catch_stop_signals();
+  char heard[64] = {};
+  {
+    const StillFinishing finishing(StillFinishing::From::kStopSignal);
+    usleep(200'000);
+    EXPECT_LT(recv(manager, heard, sizeof heard, 0), 0) << "it works on";
+    raise(SIGTERM);
+    for (int i = 0; i < 1000 && recv(manager, heard, sizeof heard, 0) < 0; ++i) usleep(10'000);
+    EXPECT_STREQ(heard, "EXTEND_TIMEOUT_USEC=5000000\nSTOPPING=1");
+  }
+  release_stop_signals();
   unsetenv("NOTIFY_SOCKET");
   close(manager);
   unlink(path.c_str());
