@@ -30,12 +30,9 @@ void add_lcm_url_option(CommandLine& line, std::string& url) {
 }
 
 void add_replace_option(CommandLine& line, bool& replace, const std::string& recordings) {
-  line.add_flag(
-      "--replace", replace,
-      fmt::format("with {}: a file of that name that is there is replaced; without, it stays, and the new one "
-                  "takes the next number: NAME_2, NAME_3, ... What a killed program has recorded stays in any "
-                  "case, as NAME.interrupted-1",
-                  recordings));
+  line.add_flag("--replace", replace,
+                fmt::format("with {}: replaces what is there; without, it stays and the new one is NAME_2, NAME_3, ...",
+                            recordings));
 }
 
 CommandOption add_frame_channels_option(CommandLine& line, std::string& channels) {

@@ -16,20 +16,17 @@ void add_options(houghstream::CommandLine& app, houghstream::view::ViewerSetting
                  "object store of hs-teach with the models; it may be made, and changed, while this runs");
   houghstream::add_model_options(app, show.models, show.model_unit_m);
   app.add_option("--snapshot", outputs.snapshot, "write one picture to this file (.png or .jpg)");
-  app.add_option("--after", outputs.snapshot_after, "the snapshot is the so-manieth picture drawn")
+  app.add_option("--after", outputs.snapshot_after, "the snapshot is the Nth picture drawn")
       .capture_default_str()
       .positive();
   app.add_option("--video", outputs.video, "write a video to this file (.mp4)");
   app.add_option("--pictures", outputs.pictures, "write every picture drawn to this folder");
   houghstream::add_replace_option(app, outputs.replace, "--video or --pictures");
-  app.add_flag("--preview", show.preview,
-               "send pictures as JPEG below 100 kB on HOUGHSTREAM_PREVIEW, for lcm-spy and others with small buffers");
+  app.add_flag("--preview", show.preview, "send JPEGs below 100 kB on HOUGHSTREAM_PREVIEW");
   app.add_option("--http", show.http,
                  "serve a page for browsers at [ADDRESS:]PORT; without an address for this machine only");
-  app.add_option(
-      "--http-host", show.http_hosts,
-      "a name by which the page may be asked for, beside this machine's own name and addresses: of a proxy, or "
-      "in somebody's DNS; may be given again");
+  app.add_option("--http-host", show.http_hosts,
+                 "a further name that the page is served for, beside this machine's names and addresses; repeatable");
   app.add_option("--rate", outputs.rate_hz, "pictures drawn per second, at most")
       .capture_default_str()
       .range(0.1, 100.0);
