@@ -13,8 +13,8 @@ constexpr std::int64_t kWrapToleranceUs = 1'000'000;  // between the device's in
 
 std::int64_t DeviceClock::utime(std::uint64_t device_us, std::int64_t host_us) {
   const std::int64_t device = unwrapped(device_us, host_us);
-  // By the slower of the two clocks: what jumps is no interval.
-  const std::int64_t interval = last_device_us_ ? std::min(device - *last_device_us_, host_us - last_host_us_) : 0;
+  std::int64_t interval = last_device_us_ ? device - *last_device_us_ : 0;
+  if (interval - (host_us - last_host_us_) > kSlewUs) interval = 0;  // one of the clocks has jumped
   const std::int64_t offset = filtered_offset({host_us, host_us - device});
   last_device_us_ = device;
   last_host_us_ = host_us;
