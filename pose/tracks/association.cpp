@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pose/tracks/assignment.hpp"
+#include "pose/motion/assignment.hpp"
 
 namespace houghstream::tracks {
 

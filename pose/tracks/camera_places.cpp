@@ -13,7 +13,7 @@
 #include "pipeline/base/printable.hpp"
 #include "pipeline/base/yaml_text.hpp"
 #include "pipeline/types/frame_id.hpp"
-#include "pose/tracks/motion_filter.hpp"
+#include "pose/motion/motion_filter.hpp"
 
 namespace houghstream::tracks {
 namespace {

@@ -16,8 +16,8 @@
 #include "pipeline/types/frame.hpp"
 #include "pipeline/types/object_pose.hpp"
 #include "pipeline/types/tracked_object.hpp"
+#include "pose/motion/motion_filter.hpp"
 #include "pose/seen/region.hpp"
-#include "pose/tracks/motion_filter.hpp"
 
 namespace houghstream::tracks {
 

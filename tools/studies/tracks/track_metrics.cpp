@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "pose/model/symmetry.hpp"
-#include "pose/tracks/assignment.hpp"
-#include "pose/tracks/motion_filter.hpp"
+#include "pose/motion/assignment.hpp"
+#include "pose/motion/motion_filter.hpp"
 
 namespace houghstream::studies {
 namespace {

@@ -1,4 +1,4 @@
-#include "pose/following/motion.hpp"
+#include "pose/motion/smoothed_velocity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pose/tracks/motion_filter.hpp"
+#include "pose/motion/motion_filter.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "pose/tracks/assignment.hpp"
+#include "pose/motion/assignment.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "pose/tracks/motion_filter.hpp"
+#include "pose/motion/motion_filter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/base/random.hpp"
-#include "pose/tracks/assignment.hpp"
+#include "pose/motion/assignment.hpp"
 
 namespace houghstream::tracks {
 namespace {
