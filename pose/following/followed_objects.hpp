@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pose/following/follow.hpp"
+#include "pose/motion/smoothed_velocity.hpp"
 
 namespace houghstream {
 
@@ -37,10 +38,9 @@ struct FollowedObject {
   double log_odds = 0.0;                                              ///< of its detections' scores
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
   std::int64_t clock_us = 0;                                          ///< of the frame in which it was there
-  Eigen::Vector3d speed = Eigen::Vector3d::Zero();                    ///< m/s
-  Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();                ///< rad/s
-  std::int64_t valid_us = 0;                                          ///< of its last valid pose
-  std::int64_t found_us = 0;                                          ///< of its last detection
+  SmoothedVelocity velocity;
+  std::int64_t valid_us = 0;    ///< of its last valid pose
+  std::int64_t found_us = 0;    ///< of its last detection
   std::int64_t doubted_us = 0;  ///< when it was last looked for as if it were not followed
   int failures = 0;
   std::optional<Verification> verified;  ///< of the last rendering

@@ -86,7 +86,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
     expected.push_back({object.class_id,
                         object.class_name,
                         probability(object.log_odds),
-                        {moved_on(object.T_camera_object, used * object.speed, used * object.turn_rate)},
+                        {object.velocity.predict(object.T_camera_object, used)},
                         settle,
                         false,
                         true,
@@ -118,7 +118,7 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
     const std::optional<Eigen::Isometry3d> carried = carried_along(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
     // What stands was expected there the first time too, and it has been told whether it is hidden there.
-    again.tell_hidden = carried || !object.speed.isZero(0.0) || !object.turn_rate.isZero(0.0);
+    again.tell_hidden = carried || !object.velocity.is_zero();
     expected.push_back(std::move(again));
   }
   std::vector<FollowedPose> found = follow_objects(estimator, settings_.follow, frame, expected);
@@ -140,14 +140,9 @@ void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_
   const bool valid = result.pose.status == PoseStatus::kValid;
   const bool kept = valid || result.pose.quality >= settings_.least_kept_quality;
   const double dt = seconds_between(object.clock_us, clock_us);
-  if (valid && dt > 0.0) {
-    const Eigen::Vector3d speed = (result.T_camera_object.translation() - object.T_camera_object.translation()) / dt;
-    const Eigen::Vector3d turn_rate =
-        turn_of(result.T_camera_object.linear() * object.T_camera_object.linear().transpose()) / dt;
-    object.speed += settings_.speed_gain * (speed - object.speed);
-    object.turn_rate += settings_.speed_gain * (turn_rate - object.turn_rate);
-  }
-  if (!kept) object.speed = object.turn_rate = Eigen::Vector3d::Zero();
+  if (valid && dt > 0.0)
+    object.velocity.update(object.T_camera_object, result.T_camera_object, dt, settings_.speed_gain);
+  if (!kept) object.velocity.reset();
   object.failures = kept || result.pose.status == PoseStatus::kOccluded ? 0 : object.failures + 1;
   object.T_camera_object = result.T_camera_object;
   object.verified = result.verified;

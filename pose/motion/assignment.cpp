@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace houghstream::tracks {
+namespace houghstream {
 namespace {
 
 // Every row is given a column; there are as many columns as rows, or more. Rows and columns count from 1, 0 is none.
@@ -55,7 +55,7 @@ std::vector<int> assign_all(const Eigen::MatrixXd& costs) {
 
 }  // namespace
 
-std::vector<int> assign(const Eigen::MatrixXd& costs, double limit) {
+std::vector<int> solve_assignment(const Eigen::MatrixXd& costs, double limit) {
   const auto rows = costs.rows();
   const auto columns = costs.cols();
   if (rows == 0) return {};
@@ -69,4 +69,4 @@ std::vector<int> assign(const Eigen::MatrixXd& costs, double limit) {
   return given;
 }
 
-}  // namespace houghstream::tracks
+}  // namespace houghstream

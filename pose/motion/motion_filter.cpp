@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "pipeline/types/frame_id.hpp"
+#include "pose/motion/twist.hpp"
 
-namespace houghstream::tracks {
+namespace houghstream {
 namespace {
 
 Vector6 both(double translation, double rotation) {
@@ -16,24 +17,6 @@ Vector6 both(double translation, double rotation) {
 }
 
 }  // namespace
-
-Vector6 difference(const Eigen::Isometry3d& T_to, const Eigen::Isometry3d& T_from) {
-  const Eigen::AngleAxisd turn(Eigen::Quaterniond(T_to.linear() * T_from.linear().transpose()).normalized());
-  Vector6 out;
-  out << T_to.translation() - T_from.translation(), turn.angle() * turn.axis();
-  return out;
-}
-
-Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& by) {
-  Eigen::Quaterniond q(T.linear());
-  const double angle = by.tail<3>().norm();
-  if (angle > 0.0) q = Eigen::AngleAxisd(angle, by.tail<3>() / angle) * q;
-  return Eigen::Translation3d(T.translation() + by.head<3>()) * q.normalized();
-}
-
-Eigen::Isometry3d interpolated(const Eigen::Isometry3d& T_first, const Eigen::Isometry3d& T_second, double share) {
-  return moved(T_first, share * difference(T_second, T_first));
-}
 
 MotionFilter::MotionFilter(const PoseMeasurement& first, const MotionSettings& settings)
     : settings_(settings), utime_(first.utime), measured_utime_(first.utime), T_(first.T_world_object) {
@@ -58,7 +41,7 @@ void MotionFilter::predict(std::int64_t utime) {
     P_.diagonal().head<6>() += dt * drift.cwiseProduct(drift);
     return;
   }
-  T_ = moved(T_, coasts * velocity_);
+  T_ = retract_about_world(T_, coasts * velocity_);
   Matrix12 F = Matrix12::Identity();
   F.topRightCorner<6, 6>().diagonal().setConstant(dt);
   P_ = F * P_ * F.transpose();
@@ -74,8 +57,8 @@ void MotionFilter::update(const PoseMeasurement& measured) {
   measured_utime_ = std::max(measured_utime_, measured.utime);
   const Covariance6 S = P_.topLeftCorner<6, 6>() + measured.covariance;
   const Matrix12x6 gain = P_.leftCols<6>() * S.inverse();
-  const Eigen::Matrix<double, 12, 1> step = gain * difference(measured.T_world_object, T_);
-  T_ = moved(T_, step.head<6>());
+  const Eigen::Matrix<double, 12, 1> step = gain * local_coordinates_about_world(measured.T_world_object, T_);
+  T_ = retract_about_world(T_, step.head<6>());
   const Covariance6 unlike = common_error(measured) - common_.topRows<6>();
   common_ += gain * unlike;
   P_ -= gain * P_.topRows<6>();
@@ -107,4 +90,4 @@ void MotionFilter::stop() {
   common_.bottomRows<6>().setZero();
 }
 
-}  // namespace houghstream::tracks
+}  // namespace houghstream

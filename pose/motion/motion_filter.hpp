@@ -5,19 +5,7 @@
 
 #include "pipeline/types/tracked_object.hpp"
 
-namespace houghstream::tracks {
-
-// Differences of poses have six parts: translation along the world's axes, metres, and rotation about them, radians, of
-// the left perturbation: R_to = exp(rotation) R_from (Sola, Deray and Atchuthan 2018, "A micro Lie theory").
-
-/// What leads from one pose to another.
-Vector6 difference(const Eigen::Isometry3d& T_to, const Eigen::Isometry3d& T_from);
-
-/// The pose from which `by` leads away from T.
-Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& by);
-
-/// Between two poses: the first at share 0, the second at 1, at constant speed.
-Eigen::Isometry3d interpolated(const Eigen::Isometry3d& T_first, const Eigen::Isometry3d& T_second, double share);
+namespace houghstream {
 
 /// A measured pose of an object in the world.
 struct PoseMeasurement {
@@ -38,7 +26,8 @@ struct MotionSettings {
   double common_share = 0.1;
 };
 
-/// The pose of one object over time: a Kalman filter on the group of motions (error state, as above). What stands is
+/// The pose of one object over time: a Kalman filter on the group of motions (error state: twists
+/// about the world's axes, twist.hpp). What stands is
 /// averaged: its pose wanders hardly at all, and it has no velocity. What moves goes on with constant velocity, under
 /// white acceleration (Bar-Shalom, Li and Kirubarajan 2001, section 6.2). Who holds it decides which.
 ///
@@ -89,4 +78,4 @@ class MotionFilter {
   Matrix12x6 common_ = Matrix12x6::Zero();  // what the common error is in the state, for one with unit covariance
 };
 
-}  // namespace houghstream::tracks
+}  // namespace houghstream

@@ -1,5 +1,7 @@
 #include "pose/motion/smoothed_velocity.hpp"
 
+#include "pose/motion/twist.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -7,23 +9,29 @@ bool is_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double kNear = 0.008;  // metres
   constexpr double kTurn = 0.04;   // radians
   return (a.translation() - b.translation()).norm() < kNear &&
-         turn_of(a.linear() * b.linear().transpose()).norm() < kTurn;
+         rotation_vector(a.linear() * b.linear().transpose()).norm() < kTurn;
 }
 
 }  // namespace
 
-Eigen::Vector3d turn_of(const Eigen::Matrix3d& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
+Eigen::Isometry3d SmoothedVelocity::predict(const Eigen::Isometry3d& T_camera_object, double seconds) const {
+  return retract_about_point(T_camera_object, seconds * speed_, seconds * turn_rate_);
 }
 
-Eigen::Isometry3d moved_on(const Eigen::Isometry3d& T_camera_object, const Eigen::Vector3d& shift,
-                           const Eigen::Vector3d& turn) {
-  Eigen::Isometry3d T = T_camera_object;
-  T.translation() += shift;
-  const double angle = turn.norm();
-  if (angle > 0.0) T.linear() = Eigen::AngleAxisd(angle, turn / angle) * T.linear();
-  return T;
+void SmoothedVelocity::update(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after, double seconds,
+                              double gain) {
+  const Eigen::Vector3d speed = (T_after.translation() - T_before.translation()) / seconds;
+  const Eigen::Vector3d turn_rate = rotation_vector(T_after.linear() * T_before.linear().transpose()) / seconds;
+  speed_ += gain * (speed - speed_);
+  turn_rate_ += gain * (turn_rate - turn_rate_);
+}
+
+void SmoothedVelocity::reset() {
+  speed_ = turn_rate_ = Eigen::Vector3d::Zero();
+}
+
+bool SmoothedVelocity::is_zero() const {
+  return speed_.isZero(0.0) && turn_rate_.isZero(0.0);
 }
 
 std::optional<Eigen::Isometry3d> carried_along(const Eigen::Isometry3d& T_camera_object,

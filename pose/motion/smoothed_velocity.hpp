@@ -6,12 +6,25 @@
 
 namespace houghstream {
 
-/// A rotation as axis times angle, radians.
-Eigen::Vector3d turn_of(const Eigen::Matrix3d& rotation);
+/// Velocity of an object in its camera's frame, about a point (twist.hpp): each measured step moves it by a fraction of
+/// the difference. It has no uncertainty, since each pose is measured anew; one that is estimated has a MotionFilter.
+class SmoothedVelocity {
+ public:
+  /// The pose after `seconds` at this velocity.
+  Eigen::Isometry3d predict(const Eigen::Isometry3d& T_camera_object, double seconds) const;
 
-/// The pose shifted (metres) and turned about its origin (axis times radians), both in the camera's frame.
-Eigen::Isometry3d moved_on(const Eigen::Isometry3d& T_camera_object, const Eigen::Vector3d& shift,
-                           const Eigen::Vector3d& turn);
+  /// Takes a step of `seconds`, more than 0. At gain 1 its velocity takes the place of the one before.
+  void update(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_after, double seconds, double gain);
+
+  /// From here on it stands.
+  void reset();
+
+  bool is_zero() const;
+
+ private:
+  Eigen::Vector3d speed_ = Eigen::Vector3d::Zero();      // m/s
+  Eigen::Vector3d turn_rate_ = Eigen::Vector3d::Zero();  // rad/s
+};
 
 /// Where the motion that two of these agree on (8 mm, 0.04 radians, at this pose) would bring it: the camera's own, as
 /// far as it can be told. Motions are of the camera's frame: T_after * T_before^-1 of other objects. Nothing where no

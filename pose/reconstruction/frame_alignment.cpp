@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pose/motion/twist.hpp"
+
 namespace houghstream::reconstruction {
 namespace {
 
@@ -177,23 +179,6 @@ Sums look(const std::vector<SurfacePoint>& points, const FrameLevel& frame, cons
 
 }  // namespace
 
-Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& xi) {
-  const double angle = xi.tail<3>().norm();
-  Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
-  if (angle > 0.0) step.linear() = Eigen::AngleAxisd(angle, xi.tail<3>() / angle).toRotationMatrix();
-  step.translation() = xi.head<3>();
-  Eigen::Isometry3d out = T * step;
-  out.linear() = Eigen::Quaterniond(out.linear()).normalized().toRotationMatrix();  // many steps keep it a rotation
-  return out;
-}
-
-Vector6 motion_of(const Eigen::Isometry3d& motion) {
-  const Eigen::AngleAxisd turn(motion.linear());
-  Vector6 xi;
-  xi << motion.translation(), turn.angle() * turn.axis();
-  return xi;
-}
-
 double bearing_error(const SeenCorner& corner, const Eigen::Isometry3d& T_camera_world) {
   const Eigen::Vector3d p = T_camera_world * corner.in_world;
   return p.z() > 0.0 ? bearing_error_at(p, corner) : std::numeric_limits<double>::infinity();
@@ -217,7 +202,7 @@ Alignment align_frame(const LevelPoints& points, const FrameLevels& frame, const
       damped.diagonal() += Vector6::Constant(1.0) + 1e-6 * sums.squares.diagonal();
       const Vector6 step = damped.ldlt().solve(-sums.slope);
       if (!step.allFinite() || step.norm() > 0.5) break;
-      out.T_camera_world = moved(out.T_camera_world, step);
+      out.T_camera_world = retract_about_body(out.T_camera_world, step);
       if (step.head<3>().norm() < limits.enough_m && step.tail<3>().norm() < 2.0 * limits.enough_m) break;
     }
   }

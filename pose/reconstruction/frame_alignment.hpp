@@ -9,13 +9,6 @@
 namespace houghstream::reconstruction {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-/// T * exp(xi): a small motion of the world, its shift (metres) before its turn (radians).
-Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6& xi);
-
-/// xi with motion = exp(xi), as moved() takes it.
-Vector6 motion_of(const Eigen::Isometry3d& motion);
 
 /// The table, where it is known to the camera: its height and slope hold three of six degrees of freedom.
 struct PlaneKnown {
@@ -50,7 +43,7 @@ struct AlignmentLimits {
 /// A frame laid on surface points, and what speaks for it.
 struct Alignment {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
-  Matrix6 information = Matrix6::Zero();  ///< of a motion of the world, as moved() has it, at the end
+  Matrix6 information = Matrix6::Zero();  ///< of a twist for retract_about_body(), at the end
   int pairs = 0;                          ///< points with a measured partner
   double inlier_share = 0.0;              ///< of the points in the image that nothing hides: those with a partner
   double seen_share = 0.0;                ///< of all points: those in the image, not hidden, with depth

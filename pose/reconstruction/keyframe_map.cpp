@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/base/parallel.hpp"
+#include "pose/motion/twist.hpp"
 
 namespace houghstream::reconstruction {
 namespace {
@@ -16,7 +17,7 @@ std::vector<Eigen::Isometry3d> poses_of(const std::vector<Keyframe>& keyframes) 
 }
 
 LoopGap gap_between(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) {
-  const Vector6 gap = motion_of(before.inverse() * after);
+  const Vector6 gap = local_coordinates_about_body(before.inverse() * after);
   return {gap.head<3>().norm(), gap.tail<3>().norm()};
 }
 

@@ -9,6 +9,7 @@
 #include "pipeline/base/random.hpp"
 #include "pose/model/object_model.hpp"
 #include "pose/model/surface_tree.hpp"
+#include "pose/motion/twist.hpp"
 #include "pose/reconstruction/frame_alignment.hpp"
 
 namespace houghstream::reconstruction {
@@ -101,7 +102,7 @@ Eigen::Isometry3d refine(const Target& a, const Points& b, Eigen::Isometry3d T, 
       squares += rest * rest * row * row.transpose();
       slope += rest * rest * hit.normal.dot(p - hit.point) * row;
     }
-    T = moved(T, squares.ldlt().solve(-slope));
+    T = retract_about_body(T, squares.ldlt().solve(-slope));
   }
   return T;
 }

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <deque>
 
+#include "pose/motion/twist.hpp"
+
 namespace houghstream::reconstruction {
 namespace {
 
@@ -29,7 +31,8 @@ void optimise_poses(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isome
     for (const PoseEdge& edge : edges) {
       const auto i = static_cast<std::size_t>(edge.from);
       const auto j = static_cast<std::size_t>(edge.to);
-      const Vector6 error = motion_of((edge.T_to_from * T_camera_world[i]).inverse() * T_camera_world[j]);
+      const Vector6 error =
+          local_coordinates_about_body((edge.T_to_from * T_camera_world[i]).inverse() * T_camera_world[j]);
       const Matrix6 weight = edge.information * (iteration < kPlainIterations ? 1.0 : trust(error));
       squares.block<6, 6>(6 * edge.from, 6 * edge.from) += weight;
       squares.block<6, 6>(6 * edge.to, 6 * edge.to) += weight;
@@ -44,7 +47,7 @@ void optimise_poses(const std::vector<PoseEdge>& edges, std::vector<Eigen::Isome
     if (!step.allFinite()) return;
     for (Eigen::Index k = 1; k < n; ++k) {
       Eigen::Isometry3d& T = T_camera_world[static_cast<std::size_t>(k)];
-      T = moved(T, step.segment<6>(6 * k));
+      T = retract_about_body(T, step.segment<6>(6 * k));
     }
     if (iteration >= kPlainIterations && step.lpNorm<Eigen::Infinity>() < kEnough) return;
   }

@@ -35,7 +35,7 @@ std::vector<int> assign_poses(const OfOneClass& one, const AssociationSettings& 
     }
   }
   constexpr double kLimit = 2.0;
-  return assign(costs, kLimit);
+  return solve_assignment(costs, kLimit);
 }
 
 bool is_crowded(const PoseMeasurement& measured, const OfOneClass& one, const AssociationSettings& how) {

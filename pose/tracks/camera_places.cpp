@@ -13,7 +13,7 @@
 #include "pipeline/base/printable.hpp"
 #include "pipeline/base/yaml_text.hpp"
 #include "pipeline/types/frame_id.hpp"
-#include "pose/motion/motion_filter.hpp"
+#include "pose/motion/twist.hpp"
 
 namespace houghstream::tracks {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::size_t kSamples = 2048;
 
 bool equal_places(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double kSame = 1e-6;
-  return difference(a, b).cwiseAbs().maxCoeff() < kSame;
+  return local_coordinates_about_world(a, b).cwiseAbs().maxCoeff() < kSame;
 }
 
 Eigen::Isometry3d rigid(const Eigen::Vector3d& translation, const Eigen::Vector4d& wxyz, const std::string& of) {
@@ -169,7 +169,7 @@ CameraPlace CameraPlaces::at(const std::string& camera, std::int64_t utime) cons
     return {
         std::nullopt, false,
         fmt::format("the transforms of {} about it are {:.3f} s apart, expected at most {} s", camera, gap, kMostGapS)};
-  return {interpolated(before.T_world_camera, after->T_world_camera, -seconds(before.utime) / gap), false, ""};
+  return {interpolate_pose(before.T_world_camera, after->T_world_camera, -seconds(before.utime) / gap), false, ""};
 }
 
 std::map<std::string, Eigen::Isometry3d> read_camera_places(const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pose/model/symmetry.hpp"
+#include "pose/motion/twist.hpp"
 #include "pose/verification/verification.hpp"
 
 namespace houghstream::tracks {
@@ -148,7 +149,8 @@ double PoseTrack::angle(const PoseMeasurement& measured, const Symmetries& symme
   double nearest = std::numeric_limits<double>::infinity();
   for (const Hypothesis& hypothesis : hypotheses_) {
     const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
-    nearest = std::min(nearest, difference(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm());
+    nearest = std::min(
+        nearest, local_coordinates_about_world(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm());
   }
   return nearest;
 }
@@ -160,7 +162,8 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
   double nearest = settings_.same_rotation_rad;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const Eigen::Isometry3d& T = hypotheses_[i].filter.T_world_object();
-    const double angle = difference(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm();
+    const double angle =
+        local_coordinates_about_world(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm();
     if (angle < settings_.same_rotation_rad && i == best_) return i;
     if (angle >= nearest) continue;
     nearest = angle;
@@ -216,7 +219,7 @@ void PoseTrack::update_standing(const SeenPose& pose, bool doubted, Hypothesis& 
   constexpr double kWithinS = 0.4;
   constexpr std::size_t kPlaces = 3;  // measured apart from where it stands
   constexpr std::size_t kTurns = 8;   // measured turned only
-  const Vector6 apart = difference(pose.measured.T_world_object, hypothesis.filter.T_world_object());
+  const Vector6 apart = local_coordinates_about_world(pose.measured.T_world_object, hypothesis.filter.T_world_object());
   const Covariance6& noise = pose.measured.covariance;
   const double place_gate = std::max(settings_.stands_m, 4.0 * std::sqrt(noise.topLeftCorner<3, 3>().trace() / 3.0));
   const double turn_gate = std::max(settings_.stands_rad, 4.0 * std::sqrt(noise(5, 5)));
@@ -234,7 +237,7 @@ void PoseTrack::update_standing(const SeenPose& pose, bool doubted, Hypothesis& 
   if (witness.apart.size() < needed || !may_tell_of_motion(pose.frame.channel, pose.frame.utime)) return;
   const PoseMeasurement& first = witness.apart.front();
   const double seconds = std::max(0.02, seconds_between(first.utime, pose.frame.utime));
-  Vector6 way = difference(pose.measured.T_world_object, first.T_world_object);
+  Vector6 way = local_coordinates_about_world(pose.measured.T_world_object, first.T_world_object);
   // The first may have been measured in the turn of another hypothesis: from one to the other nothing has turned.
   if (way.tail<3>().norm() > settings_.same_rotation_rad) way.tail<3>().setZero();
   hypothesis.filter.start_moving(pose.measured, way / seconds);
@@ -250,7 +253,8 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   // Another camera's frame may be a little older: from where it was then it has gone on.
   const double late_s = std::min(settings_.motion.coast_s, seconds_between(measured.utime, hypothesis.filter.utime()));
   PoseMeasurement now = measured;
-  if (late_s > 0.0) now.T_world_object = moved(measured.T_world_object, late_s * hypothesis.filter.velocity());
+  if (late_s > 0.0)
+    now.T_world_object = retract_about_world(measured.T_world_object, late_s * hypothesis.filter.velocity());
   hypothesis.filter.update(now);
   recent_.push_back(measured);
   while (seconds_between(recent_.front().utime, measured.utime) > kWithinS) recent_.pop_front();
@@ -260,7 +264,7 @@ void PoseTrack::update_moving(const PoseMeasurement& measured, Hypothesis& hypot
   std::array<Vector6, 2> means = {Vector6::Zero(), Vector6::Zero()};
   const std::size_t half = recent_.size() / 2;
   for (std::size_t i = 0; i < 2 * half; ++i)
-    means[i / half] += difference(recent_[i].T_world_object, T_middle) / static_cast<double>(half);
+    means[i / half] += local_coordinates_about_world(recent_[i].T_world_object, T_middle) / static_cast<double>(half);
   const Vector6 between = means[1] - means[0];
   if (between.head<3>().norm() < settings_.settles_m && between.tail<3>().norm() < settings_.settles_rad) {
     hypothesis.filter.stop();

@@ -18,14 +18,13 @@ Alignment FrameFollower::lay_on_map(const FrameLevels& levels, const Eigen::Isom
   return align_frame(map.local_map(T_start), levels, T_start, {map.settings().plane, corners_}, limits);
 }
 
-std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const FrameLevels& levels, const LastPoses& poses,
+std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step,
                                                Motion motion, KeyframeMap& map) {
   constexpr double kMostTurn = 0.15;     // radians a frame, from rest
   constexpr double kMostEver = 0.4;      // radians a frame
   constexpr double kMostShift_m = 0.02;  // a frame, of an object that turns where it stands
-  const auto& [T_last, T_before] = poses;
-  const Eigen::Isometry3d T_goes_on =
-      motion == Motion::kObject ? T_last * (T_before.inverse() * T_last) : T_last * T_before.inverse() * T_last;
+  const Eigen::Isometry3d& T_last = step.T_last;
+  const Eigen::Isometry3d T_goes_on = motion == Motion::kObject ? step.repeat_of_object() : step.repeat_of_camera();
   const int coarsest = map.settings().coarsest;
   const LevelPoints& points = map.local_map(T_last);
   const bool goes_on = agreement_of(compare_frame(points, levels, T_goes_on, coarsest)) >
@@ -46,7 +45,7 @@ std::optional<Alignment> FrameFollower::follow(const FlowFrame& now, const Frame
       if (agreement_of(other) > agreement_of(best)) best = other;
     }
   }
-  const double most = std::min(kMostTurn + 2.0 * map.difference(T_last, T_before), kMostEver);
+  const double most = std::min(kMostTurn + 2.0 * map.difference(T_last, step.T_before), kMostEver);
   const double shift = (T_last.inverse() * best.T_camera_world).translation().norm();
   const bool too_far = motion == Motion::kObject && shift > kMostShift_m;
   if (!map.is_good(best) || too_far || map.difference(T_last, best.T_camera_world) > most) return std::nullopt;

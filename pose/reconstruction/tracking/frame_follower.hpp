@@ -5,27 +5,23 @@
 #include <utility>
 #include <vector>
 
+#include "pose/motion/last_step.hpp"
 #include "pose/reconstruction/keyframe_map.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
 
 namespace houghstream::reconstruction {
 
-/// T_camera_world of the last frame that was placed, and of the one before it.
-struct LastPoses {
-  Eigen::Isometry3d T_last = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_before = Eigen::Isometry3d::Identity();
-};
-
 /// Lays each frame on a map of keyframes, from where the frame before was.
 class FrameFollower {
  public:
-  /// The frame of LastPoses::T_last, from which corners are followed; not asked for once the object turns.
+  /// The frame of LastStep::T_last, from which corners are followed; not asked for once the object turns.
   void set_last(FlowFrame frame) { last_flow_ = std::move(frame); }
 
-  /// The next frame's pose, from that of the frame before, whose corners say how the camera moved, or as it went on
-  /// until then; none where it does not fit or would have jumped. While the object turns (`motion`), `now` is empty.
-  std::optional<Alignment> follow(const FlowFrame& now, const FrameLevels& levels, const LastPoses& poses,
-                                  Motion motion, KeyframeMap& map);
+  /// The next frame's pose T_camera_world, from that of the frame before, whose corners say how the camera moved, or as
+  /// it went on until then; none where it does not fit or would have jumped. While the object turns (`motion`), `now`
+  /// is empty.
+  std::optional<Alignment> follow(const FlowFrame& now, const FrameLevels& levels, const LastStep& step, Motion motion,
+                                  KeyframeMap& map);
 
  private:
   Alignment lay_on_map(const FrameLevels& levels, const Eigen::Isometry3d& T_start, int coarsest,

@@ -48,15 +48,15 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
     if (motion_ != Motion::kObject) now = make_flow_frame(frame);
     take_.frames.back().left_out = !is_fit_for_model(levels.quality);
     std::optional<Alignment> found;
-    if (motion_ == Motion::kObject) lights_.mark_what_stays(object_pixels(levels.levels[0], chosen_, T_last_), levels);
-    if (state_.state == TrackState::kTracking)
-      found = follower_.follow(now, levels, {T_last_, T_before_}, motion_, map_);
+    if (motion_ == Motion::kObject)
+      lights_.mark_what_stays(object_pixels(levels.levels[0], chosen_, step_.T_last), levels);
+    if (state_.state == TrackState::kTracking) found = follower_.follow(now, levels, step_, motion_, map_);
     if (found && motion_ == Motion::kUnknown) {
       motion_ = judge_.judge(now, levels, found->T_camera_world);
       if (motion_ == Motion::kObject) {
         follow_object_only();
         levels = make_levels(frame, levels_);
-        found = follower_.follow(now, levels, {T_last_, T_before_}, motion_, map_);
+        found = follower_.follow(now, levels, step_, motion_, map_);
       }
     }
     KnownCorners corners;
@@ -86,7 +86,7 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   map_.settings().middle = {0.0, 0.0, 0.5 * chosen_.height_m};
   first_number_ = state_.frames - 1;
   FrameLevels levels = make_levels(frame, levels_);
-  T_last_ = T_before_ = chosen_.T_camera_stand;
+  step_.restart(chosen_.T_camera_stand);
   state_.state = TrackState::kTracking;
   round_.assign(36, false);
   judge_ = MotionJudge(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
@@ -116,39 +116,42 @@ bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
 std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
                                                    KnownCorners& corners) {
   // What is round or a box looks alike from several sides.
-  const LastPlace last{T_last_, motion_ == Motion::kObject ? 0.5 : 1e9};
+  const LastPlace last{step_.T_last, motion_ == Motion::kObject ? 0.5 : 1e9};
   if (std::optional<Alignment> found = find_by_views(map_, levels, last)) return found;
   if (motion_ == Motion::kObject) corners = {};  // they are of where the object is believed to be
-  if (!corners.seen) corners.seen = find_landmarks(frame, landmark_mask(frame, T_last_));
+  if (!corners.seen) corners.seen = find_landmarks(frame, landmark_mask(frame, step_.T_last));
   return by_corners_.find(map_, levels, last, everywhere, corners);
 }
 
 void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
   const bool was_lost = state_.state == TrackState::kLost;
   state_.state = TrackState::kTracking;
-  T_before_ = was_lost ? alignment.T_camera_world : T_last_;
-  T_last_ = alignment.T_camera_world;
+  if (was_lost) {
+    step_.restart(alignment.T_camera_world);
+  } else {
+    step_.advance(alignment.T_camera_world);
+  }
   FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
   const bool fit = !track.left_out;
-  const int nearest = map_.nearest(T_last_);
+  const int nearest = map_.nearest(step_.T_last);
   const double away =
-      nearest < 0 ? 1e9 : map_.difference(T_last_, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
+      nearest < 0 ? 1e9
+                  : map_.difference(step_.T_last, map_.keyframes()[static_cast<std::size_t>(nearest)].T_camera_world);
   if (nearest < 0 || (fit && away > settings_.keyframe_turn) || away > 2.0 * settings_.keyframe_turn) {
-    Landmarks landmarks = find_landmarks(frame, landmark_mask(frame, T_last_));
+    Landmarks landmarks = find_landmarks(frame, landmark_mask(frame, step_.T_last));
     Alignment held = alignment;
-    if (nearest >= 0) map_.local_map(T_last_);  // the keyframes that the new one is tied to
+    if (nearest >= 0) map_.local_map(step_.T_last);  // the keyframes that the new one is tied to
     if (nearest >= 0 && map_.settings().corners_hold) {
       held = map_.held_by_corners(levels, landmarks, alignment);
-      T_last_ = held.T_camera_world;
-      T_before_ = T_before_ * alignment.T_camera_world.inverse() * T_last_;
+      step_.correct(held.T_camera_world);
     }
-    add_keyframe({frame, number, std::move(levels), {}, std::move(landmarks), T_last_}, held);
+    add_keyframe({frame, number, std::move(levels), {}, std::move(landmarks), step_.T_last}, held);
   }
   track.tracked = true;
-  track.keyframe = map_.nearest(T_last_);
+  track.keyframe = map_.nearest(step_.T_last);
   track.T_camera_keyframe =
-      T_last_ * map_.keyframes()[static_cast<std::size_t>(track.keyframe)].T_camera_world.inverse();
-  const Eigen::Vector3d towards = T_last_.inverse().translation() - map_.settings().middle;
+      step_.T_last * map_.keyframes()[static_cast<std::size_t>(track.keyframe)].T_camera_world.inverse();
+  const Eigen::Vector3d towards = step_.T_last.inverse().translation() - map_.settings().middle;
   if (fit) mark_seen(towards, state_.seen);
   const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
   round_[at] = round_[at] || fit;
@@ -175,9 +178,9 @@ void ObjectTracker::follow_object_only() {
   map_ = KeyframeMap(map);
   tie_to_first_keyframe();
   state_.seen = {};
-  T_last_ = T_before_ = chosen_.T_camera_stand;
-  Landmarks landmarks = find_landmarks(first, landmark_mask(first, T_last_));
-  add_keyframe({first, first_number_, make_levels(first, levels_), {}, std::move(landmarks), T_last_}, {});
+  step_.restart(chosen_.T_camera_stand);
+  Landmarks landmarks = find_landmarks(first, landmark_mask(first, step_.T_last));
+  add_keyframe({first, first_number_, make_levels(first, levels_), {}, std::move(landmarks), step_.T_last}, {});
 }
 
 /// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
@@ -199,13 +202,13 @@ cv::Mat ObjectTracker::landmark_mask(const RgbdFrame& frame, const Eigen::Isomet
   return object_pixels({frame.camera, {}, frame.depth, {}}, chosen_, T_camera_world);
 }
 
-/// The keyframe of T_last_, which has no points yet.
+/// Adds the keyframe of step_.T_last, which has no points yet.
 void ObjectTracker::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   keyframe.points = motion_ == Motion::kObject ? points_of_object(keyframe, map_, chosen_, levels_.region_px)
                                                : points_of_scene(keyframe);
   const std::optional<LoopGap> gap = map_.add(std::move(keyframe), alignment);
   if (!gap) return;
-  T_last_ = T_before_ = map_.keyframes().back().T_camera_world;
+  step_.restart(map_.keyframes().back().T_camera_world);
   const auto seen_round = std::count(round_.begin(), round_.end(), true);
   constexpr int kNearlyRound = 30;  // of 36
   if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
@@ -218,7 +221,7 @@ void ObjectTracker::note_lost(const FrameLevels& levels) {
     take_.lost.back().to = number;
     return;
   }
-  const double speed = map_.difference(T_last_, T_before_);
+  const double speed = map_.difference(step_.T_last, step_.T_before);
   std::string why = "the picture jumped, or something hid what was followed";
   if (speed > kFast ||
       levels.quality.sharpness < settings_.least_sharpness * (sharpness_.empty() ? 0.0 : sharpness_.front()))
@@ -237,8 +240,8 @@ void ObjectTracker::describe() {
     state_.message = take_.lost.empty() ? "lost" : "lost: " + take_.lost.back().why + "; go back to where it was seen";
     return;
   }
-  state_.T_camera_object = T_last_;
-  state_.box_px = box_of(chosen_, judge_.first().frame.camera, T_last_);
+  state_.T_camera_object = step_.T_last;
+  state_.box_px = box_of(chosen_, judge_.first().frame.camera, step_.T_last);
   state_.message = describe_seen(state_.seen, chosen_.T_camera_stand.inverse().translation());
   if (state_.frames - first_number_ <= kTold)
     state_.message = describe_choice(chosen_) + "; move the camera once around it, or turn it";

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pose/motion/last_step.hpp"
 #include "pose/reconstruction/tracking/frame_follower.hpp"
 #include "pose/reconstruction/tracking/lost_frames.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
@@ -78,8 +79,7 @@ class ObjectTracker {
   FrameFollower follower_;
   cv::Size size_;  ///< of all frames, pixels
   int first_number_ = 0;
-  Eigen::Isometry3d T_last_ = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_before_ = Eigen::Isometry3d::Identity();
+  LastStep step_;  ///< T_camera_world of the last frame that was placed, and of the one before it
   std::vector<LostFrame> unplaced_;
   CornerSearch by_corners_;
   std::deque<double> sharpness_;

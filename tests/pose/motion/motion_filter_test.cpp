@@ -6,52 +6,43 @@
 #include <vector>
 
 #include "pipeline/base/random.hpp"
-#include "pose/motion/assignment.hpp"
+#include "pose/motion/twist.hpp"
 
-namespace houghstream::tracks {
+namespace houghstream {
 namespace {
 
-Eigen::Isometry3d pose(double x, double turn_rad) {
+Eigen::Isometry3d turned_at(double x, double turn_rad) {
   return Eigen::Translation3d(x, 0.2, 0.3) * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d(1, 2, 3).normalized());
 }
 
-PoseMeasurement measured(std::int64_t utime, const Eigen::Isometry3d& T) {
+PoseMeasurement measurement_of(std::int64_t utime, const Eigen::Isometry3d& T) {
   return {utime, T, 1e-6 * Covariance6::Identity()};
-}
-
-TEST(MotionFilter, DifferenceAndMovedAreEachOthersInverse) {
-  const Eigen::Isometry3d from = pose(0.1, 0.5);
-  const Eigen::Isometry3d to = pose(-0.4, 2.9);
-  EXPECT_TRUE(moved(from, difference(to, from)).isApprox(to, 1e-12));
-  EXPECT_TRUE(interpolated(from, to, 0.0).isApprox(from, 1e-12));
-  EXPECT_TRUE(interpolated(from, to, 1.0).isApprox(to, 1e-12));
-  EXPECT_NEAR(difference(interpolated(from, to, 0.25), from).tail<3>().norm(), 0.25 * 2.4, 1e-9);
 }
 
 TEST(MotionFilter, WhatStandsComesToTheMeanAndKnowsItBetterAndBetter) {
   Random random(3);
-  MotionFilter filter(measured(0, pose(0.003, 0.02)), {});
+  MotionFilter filter(measurement_of(0, turned_at(0.003, 0.02)), {});
   const double first = filter.covariance()(0, 0);
   for (int i = 1; i <= 60; ++i) {
     filter.predict(i * 33333);
-    filter.update(measured(i * 33333, pose(random.uniform(-0.003, 0.003), random.uniform(-0.02, 0.02))));
+    filter.update(measurement_of(i * 33333, turned_at(random.uniform(-0.003, 0.003), random.uniform(-0.02, 0.02))));
   }
-  EXPECT_LT(difference(filter.T_world_object(), pose(0, 0)).head<3>().norm(), 0.001);
+  EXPECT_LT(local_coordinates_about_world(filter.T_world_object(), turned_at(0, 0)).head<3>().norm(), 0.001);
   EXPECT_LT(filter.covariance()(0, 0), 0.15 * first);
   EXPECT_EQ(filter.velocity().norm(), 0.0);
 }
 
 TEST(MotionFilter, WhatAllFramesErrByIsWithinTwoDeviationsHoweverManyTheyAre) {
   // Three fifths of the deviation that a measurement is said to have, the same each time.
-  const Eigen::Isometry3d T_seen = Eigen::Translation3d(0.0006, 0.0, 0.0) * pose(0, 0);
+  const Eigen::Isometry3d T_seen = Eigen::Translation3d(0.0006, 0.0, 0.0) * turned_at(0, 0);
   const MotionSettings settings;
   for (const int rate_hz : {30, 90}) {
-    MotionFilter filter(measured(0, T_seen), settings);
+    MotionFilter filter(measurement_of(0, T_seen), settings);
     for (int i = 1; i <= 20 * rate_hz; ++i) {
       filter.predict(i * 1000000LL / rate_hz);
-      filter.update(measured(i * 1000000LL / rate_hz, T_seen));
+      filter.update(measurement_of(i * 1000000LL / rate_hz, T_seen));
     }
-    const Vector6 error = difference(filter.T_world_object(), pose(0, 0));
+    const Vector6 error = local_coordinates_about_world(filter.T_world_object(), turned_at(0, 0));
     EXPECT_LT(error.x(), 2.0 * std::sqrt(filter.covariance()(0, 0))) << rate_hz;
     for (int i = 0; i < 6; ++i) {
       EXPECT_GT(filter.covariance()(i, i), settings.common_share * 1e-6) << i;
@@ -63,8 +54,8 @@ TEST(MotionFilter, WhatAllFramesErrByIsWithinTwoDeviationsHoweverManyTheyAre) {
 TEST(MotionFilter, TheCommonErrorIsPartOfTheCovarianceAloneWhetherItMovesOrStands) {
   MotionSettings white;
   white.common_share = 0.0;
-  std::vector<MotionFilter> filters = {MotionFilter(measured(0, pose(0, 0)), {}),
-                                       MotionFilter(measured(0, pose(0, 0)), white)};
+  std::vector<MotionFilter> filters = {MotionFilter(measurement_of(0, turned_at(0, 0)), {}),
+                                       MotionFilter(measurement_of(0, turned_at(0, 0)), white)};
   const auto expect_common = [&] {
     EXPECT_EQ(filters[0].T_world_object().matrix(), filters[1].T_world_object().matrix());
     const Covariance6 more = filters[0].covariance() - filters[1].covariance();
@@ -73,26 +64,26 @@ TEST(MotionFilter, TheCommonErrorIsPartOfTheCovarianceAloneWhetherItMovesOrStand
   Vector6 velocity = Vector6::Zero();
   velocity.x() = 0.3;
   for (MotionFilter& filter : filters) {
-    filter.start_moving(measured(0, pose(0, 0)), velocity);
+    filter.start_moving(measurement_of(0, turned_at(0, 0)), velocity);
     for (int i = 1; i <= 60; ++i) {
       filter.predict(i * 33333);
-      filter.update(measured(i * 33333, pose(0.01 * i, 0)));
+      filter.update(measurement_of(i * 33333, turned_at(0.01 * i, 0)));
     }
   }
   expect_common();
   for (MotionFilter& filter : filters) {
     filter.stop();
     filter.predict(63 * 33333);
-    filter.update(measured(63 * 33333, pose(0.6, 0)));
+    filter.update(measurement_of(63 * 33333, turned_at(0.6, 0)));
   }
   expect_common();
 }
 
 TEST(MotionFilter, WhatMovesGoesOnForAWhileAndThenStays) {
-  MotionFilter filter(measured(0, pose(0, 0)), {});
+  MotionFilter filter(measurement_of(0, turned_at(0, 0)), {});
   Vector6 velocity = Vector6::Zero();
   velocity.x() = 0.6;
-  filter.start_moving(measured(0, pose(0, 0)), velocity);
+  filter.start_moving(measurement_of(0, turned_at(0, 0)), velocity);
   filter.predict(100000);
   EXPECT_NEAR(filter.T_world_object().translation().x(), 0.06, 1e-9);
   filter.predict(2000000);
@@ -100,15 +91,5 @@ TEST(MotionFilter, WhatMovesGoesOnForAWhileAndThenStays) {
   EXPECT_GT(filter.covariance()(0, 0), 0.01);
 }
 
-TEST(Assignment, TheSumIsLeastAndWhatCostsTooMuchIsNotGiven) {
-  Eigen::MatrixXd costs(2, 3);
-  costs << 1.0, 0.9, 9.0,  //
-      5.0, 1.0, 9.0;
-  EXPECT_EQ(assign(costs, 4.0), (std::vector<int>{0, 1}));  // one by one, the first would take column 1
-  EXPECT_EQ(assign(costs, 0.95), (std::vector<int>{1, -1}));
-  EXPECT_EQ(assign(Eigen::MatrixXd(2, 0), 1.0), (std::vector<int>{-1, -1}));
-  EXPECT_TRUE(assign(Eigen::MatrixXd(0, 2), 1.0).empty());
-}
-
 }  // namespace
-}  // namespace houghstream::tracks
+}  // namespace houghstream

@@ -10,7 +10,7 @@
 
 #include "pose/model/symmetry.hpp"
 #include "pose/motion/assignment.hpp"
-#include "pose/motion/motion_filter.hpp"
+#include "pose/motion/twist.hpp"
 
 namespace houghstream::studies {
 namespace {
@@ -93,7 +93,7 @@ std::vector<int> aligned_matches(const CountedFrame& frame, const Alignment& ali
   for (std::size_t i = 0; i < frame.instances.size(); ++i) {
     for (std::size_t j = 0; j < frame.ids.size(); ++j) costs(i, j) *= alignment.of({frame.instances[i], frame.ids[j]});
   }
-  return tracks::assign(costs, 0.0);
+  return solve_assignment(costs, 0.0);
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ std::vector<int> matches(const std::vector<TrueInstance>& truth, const std::vect
     for (std::size_t j = 0; j < objects.size(); ++j)
       costs(i, j) = std::min(kFar, apart_m(truth[i], objects[j], symmetries));
   }
-  return tracks::assign(costs, reach_m);
+  return solve_assignment(costs, reach_m);
 }
 
 namespace {
@@ -321,7 +321,7 @@ class Comparison {
     const auto same = std::find_if(before.begin(), before.end(),
                                    [&](const TrueInstance& other) { return other.instance == truth.instance; });
     return same != before.end() && same->T_world_object &&
-           tracks::difference(*truth.T_world_object, *same->T_world_object).norm() < 1e-9;
+           local_coordinates_about_world(*truth.T_world_object, *same->T_world_object).norm() < 1e-9;
   }
 
   void follow_presence(const TrueInstance& truth, const PublishedFrame& frame, Life& life) {
@@ -340,7 +340,8 @@ class Comparison {
   }
 
   void add_error(const TrueInstance& truth, const PublishedObject& object, bool stands, std::size_t index) {
-    const Vector6 error = tracks::difference(as_the_truth(object, truth, symmetries_), *truth.T_world_object);
+    const Vector6 error =
+        local_coordinates_about_world(as_the_truth(object, truth, symmetries_), *truth.T_world_object);
     (stands ? standing_ : moving_).add(error, object.deviation_m);
     if (stands) add_to_window(error, index, lives_[truth.instance]);
   }
