@@ -6,7 +6,6 @@
 #include "pipeline/types/frame_id.hpp"
 #include "pipeline/types/frame_results.hpp"
 #include "pipeline/types/shifted.hpp"
-#include "pose/following/motion.hpp"
 
 namespace houghstream {
 namespace {
@@ -19,8 +18,8 @@ float probability(double odds) {
   return static_cast<float>(logistic(odds));
 }
 
-/// Whether newer frames have overtaken this one on its way. Where the one before it seemed so too, and was older, it is
-/// the clock that was set back.
+/// Whether newer frames have overtaken this one on its way. Where the one
+/// before it seemed so too, and was older, it is the clock that was set back.
 bool is_overtaken(std::int64_t utime, FollowedCamera& camera) {
   if (camera.shown.empty()) return false;
   const double passed_s = seconds_between(camera.shown.back().utime, utime);
@@ -35,7 +34,8 @@ std::int64_t clock_of(std::int64_t utime, const FollowedCamera& camera) {
   return shifted(utime, camera.ahead_us);
 }
 
-/// Where utimes jump, the camera's clock advances as it did from the frame before to the last one.
+/// Where utimes jump, the camera's clock advances as it did from the frame
+/// before to the last one.
 void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   if (camera.shown.empty()) return;
   const ShownFrame& last = camera.shown.back();
@@ -45,6 +45,122 @@ void follow_clock(std::int64_t utime, FollowedCamera& camera) {
   } else {
     camera.ahead_us = microseconds_between(utime, shifted(last.clock_us, camera.interval_us));
   }
+}
+
+/// A frame's detections beside what was followed in it.
+struct DetectionLook {
+  ShownFrame shown;
+  std::vector<int> matches;  ///< each detection's followed object: its place in
+                             ///< `shown`, or -1
+  int doubted = -1;          ///< the place in `shown` of what is looked for as if it
+                             ///< were not followed
+
+  bool is_looked_for(std::size_t detection) const { return matches[detection] < 0 || matches[detection] == doubted; }
+};
+
+/// The object of a number; null where it is not followed any more.
+FollowedObject* find_followed(std::int64_t number, FollowedCamera& camera) {
+  const auto found = std::find_if(camera.objects.begin(), camera.objects.end(),
+                                  [&](const FollowedObject& one) { return one.number == number; });
+  return found == camera.objects.end() ? nullptr : &*found;
+}
+
+/// Each detection's place in `shown`, or -1. The nearest ones first, each pose
+/// of one detection; withheld ones are nobody's.
+std::vector<int> match_detections(const PoseEstimator& estimator, const Detections& detections, const ShownFrame& shown,
+                                  double reach_m) {
+  struct Pair {
+    double distance = 0.0;
+    std::size_t detection = 0;
+    std::size_t pose = 0;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t d = 0; d < detections.detections.size(); ++d) {
+    for (std::size_t p = 0; p < shown.poses.size(); ++p) {
+      const ObjectPose& pose = shown.poses[p].pose;
+      const Detection& detection = detections.detections[d];
+      if (!pose.T_camera_object || pose.class_name != detection.class_name) continue;
+      const Eigen::Vector3d centre = estimator.vote_centre({pose.class_name, *pose.T_camera_object});
+      const double distance = (centre - detection.centre_camera.cast<double>()).norm();
+      if (distance <= reach_m) pairs.push_back({distance, d, p});  // false for NaN
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  std::vector<int> matches(detections.detections.size(), -1);
+  std::vector<bool> taken(shown.poses.size());
+  for (const Pair& pair : pairs) {
+    if (matches[pair.detection] >= 0 || taken[pair.pose]) continue;
+    matches[pair.detection] = static_cast<int>(pair.pose);
+    taken[pair.pose] = true;
+  }
+  return matches;
+}
+
+/// What the look says of those that were there: found, with this score, or not
+/// found though in full view.
+void note_look(const Detections& detections, const DetectionLook& look, const FollowerSettings& settings,
+               FollowedCamera& camera) {
+  constexpr float kFullView = 0.7F;  // visible fraction
+  const ShownFrame& shown = look.shown;
+  for (std::size_t p = 0; p < shown.poses.size(); ++p) {
+    FollowedObject* object = find_followed(shown.numbers[p], camera);
+    if (object == nullptr) continue;
+    const auto found = std::find(look.matches.begin(), look.matches.end(), static_cast<int>(p));
+    double score = settings.missed_score;
+    if (found != look.matches.end()) {
+      score = detections.detections[static_cast<std::size_t>(found - look.matches.begin())].score;
+      object->found_us = shown.clock_us;
+    } else if (shown.poses[p].pose.visible_fraction < kFullView ||
+               seconds_between(object->found_us, shown.clock_us) < settings.missed_after_s) {
+      continue;
+    }
+    object->remembered_score += settings.score_gain * (log_odds(score) - object->remembered_score);
+  }
+}
+
+/// The place in `shown` of the detected object whose last doubt lies farthest
+/// back, if it is time; else -1.
+int choose_doubted(const DetectionLook& look, const FollowerSettings& settings, FollowedCamera& camera) {
+  const ShownFrame& shown = look.shown;
+  FollowedObject* chosen = nullptr;
+  int place = -1;
+  for (const int match : look.matches) {
+    FollowedObject* object =
+        match >= 0 ? find_followed(shown.numbers[static_cast<std::size_t>(match)], camera) : nullptr;
+    if (object == nullptr || seconds_between(object->doubted_us, shown.clock_us) < settings.doubted_after_s) continue;
+    if (chosen != nullptr && chosen->doubted_us <= object->doubted_us) continue;
+    chosen = object;
+    place = match;
+  }
+  if (chosen != nullptr) chosen->doubted_us = shown.clock_us;
+  return place;
+}
+
+/// What was followed in the frame of the detections, and which of them are of
+/// that. Notes in the camera's objects what the look says of them: found, with
+/// this score, or not found though in full view; and which one is doubted.
+DetectionLook look_at_detections(const PoseEstimator& estimator, const Detections& detections,
+                                 const FollowerSettings& settings, FollowedCamera& camera) {
+  DetectionLook look{{}, std::vector<int>(detections.detections.size(), -1), -1};
+  const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
+                                 [&](const ShownFrame& one) { return one.utime == detections.frame.utime; });
+  if (then == camera.shown.rend()) return look;
+  look.shown = *then;
+  look.matches = match_detections(estimator, detections, look.shown, settings.reach_m);
+  note_look(detections, look, settings, camera);
+  look.doubted = choose_doubted(look, settings, camera);
+  return look;
+}
+
+/// Where the pose of a detection is better than the followed one of that frame,
+/// the object goes on from it: what is between the two stays the same in the
+/// object's own frame.
+void settle_doubt(const ObjectPose& pose, const FollowedPose& followed, const FollowerSettings& settings,
+                  FollowedObject& object) {
+  constexpr double kMargin = 1e-6;  // of two poses of one object small differences count
+  const double better = log_odds(pose.quality, kMargin) - log_odds(followed.pose.quality, kMargin);
+  if (better < settings.better_log_odds) return;
+  object.T_camera_object = object.T_camera_object * followed.T_camera_object.inverse() * *pose.T_camera_object;
 }
 
 }  // namespace
@@ -73,11 +189,13 @@ std::optional<ObjectPoses> ObjectFollower::follow(const PoseEstimator& estimator
   return result;
 }
 
-/// Each from where it is expected at constant speed; those that are not found there once more.
+/// Each from where it is expected at constant speed; those that are not found
+/// there once more.
 std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estimator, const RgbdFrame& frame,
                                                      FollowedCamera& camera) const {
   constexpr double kLongest = 0.25;    // seconds; no speed says anything about a later frame
-  constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so many, not all objects in the same one
+  constexpr std::int64_t kSettle = 4;  // settled and rendered in one frame of so
+                                       // many, not all objects in the same one
   std::vector<ExpectedObject> expected;
   for (const FollowedObject& object : camera.objects) {
     const double dt = seconds_between(object.clock_us, clock_of(frame.id.utime, camera));
@@ -85,7 +203,7 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
     const bool settle = (camera.frames + object.number) % kSettle == 0;
     expected.push_back({object.class_id,
                         object.class_name,
-                        probability(object.log_odds),
+                        probability(object.remembered_score),
                         {object.velocity.predict(object.T_camera_object, used)},
                         settle,
                         false,
@@ -97,7 +215,8 @@ std::vector<FollowedPose> ObjectFollower::follow_all(const PoseEstimator& estima
   return poses;
 }
 
-/// Those without a valid pose from where they were last, and from where the camera's motion has brought them.
+/// Those without a valid pose from where they were last, and from where the
+/// camera's motion has brought them.
 void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFrame& frame, const FollowedCamera& camera,
                                   std::vector<FollowedPose>& poses) const {
   std::vector<Eigen::Isometry3d> motions;
@@ -113,11 +232,12 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
   std::vector<ExpectedObject> expected;
   for (const std::size_t i : failed) {
     const FollowedObject& object = camera.objects[i];
-    const float score = probability(object.log_odds);
+    const float score = probability(object.remembered_score);
     ExpectedObject again{object.class_id, object.class_name, score, {object.T_camera_object}, true, true, true, {}};
     const std::optional<Eigen::Isometry3d> carried = carried_along(object.T_camera_object, motions);
     if (carried) again.starts.insert(again.starts.begin(), *carried);
-    // What stands was expected there the first time too, and it has been told whether it is hidden there.
+    // What stands was expected there the first time too, and it has been told
+    // whether it is hidden there.
     again.tell_hidden = carried || !object.velocity.is_zero();
     expected.push_back(std::move(again));
   }
@@ -135,7 +255,8 @@ void ObjectFollower::follow_again(const PoseEstimator& estimator, const RgbdFram
   }
 }
 
-/// Goes on from the result; without evidence it stays where it was, or where the camera's motion has brought it.
+/// Goes on from the result; without evidence it stays where it was, or where
+/// the camera's motion has brought it.
 void ObjectFollower::note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const {
   const bool valid = result.pose.status == PoseStatus::kValid;
   const bool kept = valid || result.pose.quality >= settings_.least_kept_quality;
@@ -181,7 +302,11 @@ void ObjectFollower::give_up(const PoseEstimator& estimator, FollowedCamera& cam
 
 ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFrame& frame,
                                    const Detections& detections) {
-  const DetectionLook look = begin_look(estimator, detections);
+  DetectionLook look;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    look = look_at_detections(estimator, detections, settings_, cameras_[detections.frame.channel]);
+  }
   Detections looked_for{detections.frame, {}, detections.stages};
   for (std::size_t i = 0; i < detections.detections.size(); ++i) {
     if (look.is_looked_for(i)) looked_for.detections.push_back(detections.detections[i]);
@@ -208,20 +333,15 @@ ObjectPoses ObjectFollower::answer(const PoseEstimator& estimator, const RgbdFra
   return result;
 }
 
-DetectionLook ObjectFollower::begin_look(const PoseEstimator& estimator, const Detections& detections) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return look_at_detections(estimator, detections, settings_, cameras_[detections.frame.channel]);
-}
-
-/// Takes the place of one of its class that is withheld, or of one of another class that is less sure; is known where
-/// one of its class is followed there.
+/// Takes the place of one of its class that is withheld, or of one of another
+/// class that is less sure; is known where one of its class is followed there.
 void ObjectFollower::take_up(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose,
                              FollowedCamera& camera) {
   FollowedObject found;
   found.number = found_++;
   found.class_id = pose.class_id;
   found.class_name = pose.class_name;
-  found.log_odds = score_log_odds(pose.detection_score);
+  found.remembered_score = log_odds(pose.detection_score);
   found.T_camera_object = *pose.T_camera_object;
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
                                  [&](const ShownFrame& shown) { return shown.utime == frame.utime; });
@@ -240,7 +360,8 @@ void ObjectFollower::take_up(const PoseEstimator& estimator, const FrameId& fram
   camera.objects.push_back(std::move(found));
 }
 
-/// Moves what was found in an earlier frame as the camera has moved since, as far as that can be told.
+/// Moves what was found in an earlier frame as the camera has moved since, as
+/// far as that can be told.
 void ObjectFollower::bring_up_to_date(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found) {
   const auto then = std::find_if(camera.shown.rbegin(), camera.shown.rend(),
                                  [&](const ShownFrame& one) { return one.utime == utime; });

@@ -1,37 +1,102 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "pose/following/detection_look.hpp"
-#include "pose/following/followed_objects.hpp"
+#include "pose/following/follow.hpp"
+#include "pose/motion/smoothed_velocity.hpp"
 #include "pose/pose_estimator.hpp"
 
 namespace houghstream {
 
-/// What hs-pose --follow remembers: the objects of each camera that are followed from frame to frame by registration
-/// from where they are expected (constant velocity), each for as long as the evidence lasts. Detections, which come
-/// later and seldom, add objects, take the place of lost ones, and say how sure it is that those are there that are
-/// followed. Now and then one that is followed is looked for as if it were not, since registration from the last pose
-/// alone never leaves a wrong turn. Every function may be called from any thread; answer() keeps follow() waiting for
-/// short steps only.
+/// When what is followed is given up, and which detection is of it.
+struct FollowerSettings {
+  FollowSettings follow;            ///< how one object is found again in one frame
+  int most_failures = 3;            ///< frames one after the other without evidence: it is lost
+  float least_kept_quality = 0.3F;  ///< a pose that is withheld is followed on from this quality on
+  double longest_withheld_s = 1.0;  ///< but no longer without a valid pose
+  double longest_hidden_s = 2.0;    ///< the same while it is hidden
+  double reach_m = 0.07;            ///< between a detection's centre and a followed pose
+                                    ///< of its class: it is of that one
+  double apart = 0.5;               ///< of the smaller radius: closer together two objects are one
+  double score_gain = 0.3;          ///< how much one look moves the score's log odds
+  float missed_score = 0.3F;        ///< what a look is worth that does not find an
+                                    ///< object in full view...
+  double missed_after_s = 1.0;      ///< ...once none has found it for so long
+  double doubted_after_s = 0.15;    ///< a detection's pose is looked for anew,
+                                    ///< beside the followed one...
+  double better_log_odds = 0.3;     ///< ...and takes its place where its quality is so much better
+  double speed_gain = 0.5;          ///< how much the last step moves the speed
+};
+
+/// An object that is followed from frame to frame of one camera. Its times are
+/// on the camera's clock (FollowedCamera::ahead_us).
+struct FollowedObject {
+  std::int64_t number = 0;  ///< in the order in which they were found
+  int class_id = 0;
+  std::string class_name;
+  double remembered_score = 0.0;                                      ///< log odds of its detections' scores
+  Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();  ///< metres
+  std::int64_t clock_us = 0;                                          ///< of the frame in which it was there
+  SmoothedVelocity velocity;
+  std::int64_t valid_us = 0;    ///< of its last valid pose
+  std::int64_t found_us = 0;    ///< of its last detection
+  std::int64_t doubted_us = 0;  ///< when it was last looked for as if it were not followed
+  int failures = 0;
+  std::optional<Verification> verified;  ///< of the last rendering
+};
+
+/// A frame's poses, and whose they are.
+struct ShownFrame {
+  std::int64_t utime = 0;     ///< names it
+  std::int64_t clock_us = 0;  ///< when it was taken, on the camera's clock
+  std::vector<std::int64_t> numbers;
+  std::vector<FollowedPose> poses;
+};
+
+/// What is remembered of a camera.
+struct FollowedCamera {
+  std::vector<FollowedObject> objects;
+  std::deque<ShownFrame> shown;  ///< the last ones
+  std::int64_t frames = 0;
+  /// The camera's clock minus its frames' utimes, which jump where the host's
+  /// clock is set or a stamp is wrong. The camera's clock does not.
+  std::int64_t ahead_us = 0;
+  std::int64_t interval_us = 0;                 ///< from the frame before to the last one
+  std::optional<std::int64_t> overtaken_utime;  ///< of the last frame that came, where newer ones had
+                                                ///< overtaken it
+};
+
+/// What hs-pose --follow remembers: the objects of each camera that are
+/// followed from frame to frame by registration from where they are expected
+/// (constant velocity), each for as long as the evidence lasts. Detections,
+/// which come later and seldom, add objects, take the place of lost ones, and
+/// say how sure it is that those are there that are followed. Now and then one
+/// that is followed is looked for as if it were not, since registration from
+/// the last pose alone never leaves a wrong turn. Every function may be called
+/// from any thread; answer() keeps follow() waiting for short steps only.
 class ObjectFollower {
  public:
   explicit ObjectFollower(FollowerSettings settings = {}) : settings_(settings) {}
 
-  /// The followed objects in the newest frame of a camera, in the order in which they were found; each without a
-  /// detection, and with the reason where its pose is withheld. What is lost is told once more, with its reason, and
-  /// is gone from the next frame on. Nothing for a frame that newer ones have overtaken on its way. Where stamps jump
-  /// (a clock that is set, one wrong stamp) the objects are followed on. The stage's time, pose.following, is appended
-  /// to `stages` of the frame.
+  /// The followed objects in the newest frame of a camera, in the order in
+  /// which they were found; each without a detection, and with the reason where
+  /// its pose is withheld. What is lost is told once more, with its reason, and
+  /// is gone from the next frame on. Nothing for a frame that newer ones have
+  /// overtaken on its way. Where stamps jump (a clock that is set, one wrong
+  /// stamp) the objects are followed on. The stage's time, pose.following, is
+  /// appended to `stages` of the frame.
   std::optional<ObjectPoses> follow(const PoseEstimator& estimator, const RgbdFrame& frame);
 
-  /// The poses of the detections of a frame that follow() has had: of followed objects as they were then, of others
-  /// as PoseEstimator::estimate finds them. What is found is followed from the next frame on.
+  /// The poses of the detections of a frame that follow() has had: of followed
+  /// objects as they were then, of others as PoseEstimator::estimate finds
+  /// them. What is found is followed from the next frame on.
   ObjectPoses answer(const PoseEstimator& estimator, const RgbdFrame& frame, const Detections& detections);
 
  private:
@@ -42,7 +107,6 @@ class ObjectFollower {
   void note_result(const FollowedPose& result, std::int64_t clock_us, FollowedObject& object) const;
   bool is_lost(const FollowedObject& object, const FollowedPose& result, std::int64_t clock_us) const;
   void give_up(const PoseEstimator& estimator, FollowedCamera& camera, ShownFrame& shown) const;
-  DetectionLook begin_look(const PoseEstimator& estimator, const Detections& detections);
   void take_up(const PoseEstimator& estimator, const FrameId& frame, const ObjectPose& pose, FollowedCamera& camera);
   static void bring_up_to_date(std::int64_t utime, const FollowedCamera& camera, FollowedObject& found);
 
