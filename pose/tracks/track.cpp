@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pipeline/base/checks.hpp"
+#include "pipeline/base/log_odds.hpp"
 #include "pose/model/symmetry.hpp"
 #include "pose/motion/twist.hpp"
 #include "pose/verification/verification.hpp"
@@ -46,8 +47,8 @@ Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_wor
 }  // namespace
 
 double log_odds_of(double quality) {
-  const double q = std::clamp(quality, 0.02, 0.98);
-  return std::log(q / (1.0 - q));
+  constexpr double kMargin = 0.02;
+  return log_odds(quality, kMargin);
 }
 
 TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map<std::string, Symmetries>& symmetries) {

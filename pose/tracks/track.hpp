@@ -70,7 +70,7 @@ struct SeenPose {
 std::vector<SeenPose> seen_poses(const ObjectPoses& poses, const Eigen::Isometry3d& T_world_camera,
                                  const TrackModels& models);
 
-/// What a quality speaks for, the certain ones cut to 0.02 and 0.98.
+/// Log odds of a pose's quality, which is cut to 0.02 and 0.98.
 double log_odds_of(double quality);
 
 /// How the depth of a frame speaks for an object at a pose.
