@@ -17,14 +17,6 @@ constexpr std::size_t kHypotheses = 3;
 constexpr double kMostWeight = 6.0;
 constexpr double kForgetS = 3.0;
 
-/// The measured pose as the one of those that look the same that is nearest to the known one.
-PoseMeasurement aligned(const PoseMeasurement& measured, const Eigen::Isometry3d& T_known,
-                        const Symmetries& symmetries) {
-  PoseMeasurement out = measured;
-  out.T_world_object = nearest_equivalent(measured.T_world_object, T_known, symmetries);
-  return out;
-}
-
 Covariance6 covariance_of(const ObjectPose& pose, const Eigen::Isometry3d& T_world_camera,
                           const Eigen::Vector3d& centre, double radius_m) {
   constexpr double kAcross = 0.0015;  // metres a metre of distance, of an object of which all is seen
@@ -141,7 +133,8 @@ double PoseTrack::distance(const PoseMeasurement& measured, const Symmetries& sy
   double nearest = std::numeric_limits<double>::infinity();
   for (const Hypothesis& hypothesis : hypotheses_) {
     const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
-    nearest = std::min(nearest, (aligned(measured, T, symmetries).T_world_object * centre - T * centre).norm());
+    nearest =
+        std::min(nearest, (nearest_equivalent(measured.T_world_object, T, symmetries) * centre - T * centre).norm());
   }
   return nearest;
 }
@@ -151,7 +144,8 @@ double PoseTrack::angle(const PoseMeasurement& measured, const Symmetries& symme
   for (const Hypothesis& hypothesis : hypotheses_) {
     const Eigen::Isometry3d& T = hypothesis.filter.T_world_object();
     nearest = std::min(
-        nearest, local_coordinates_about_world(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm());
+        nearest,
+        local_coordinates_about_world(nearest_equivalent(measured.T_world_object, T, symmetries), T).tail<3>().norm());
   }
   return nearest;
 }
@@ -164,7 +158,7 @@ std::size_t PoseTrack::hypothesis_for(const PoseMeasurement& measured, const Sym
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const Eigen::Isometry3d& T = hypotheses_[i].filter.T_world_object();
     const double angle =
-        local_coordinates_about_world(aligned(measured, T, symmetries).T_world_object, T).tail<3>().norm();
+        local_coordinates_about_world(nearest_equivalent(measured.T_world_object, T, symmetries), T).tail<3>().norm();
     if (angle < settings_.same_rotation_rad && i == best_) return i;
     if (angle >= nearest) continue;
     nearest = angle;
@@ -192,7 +186,8 @@ void PoseTrack::take(const SeenPose& pose, const Symmetries& symmetries, bool do
   Hypothesis& hypothesis = hypotheses_[index];
   hypothesis.weight = std::min(kMostWeight, hypothesis.weight + std::max(0.1, log_odds_of(pose.quality)));
   SeenPose turned = pose;
-  turned.measured = aligned(pose.measured, hypothesis.filter.T_world_object(), symmetries);
+  turned.measured.T_world_object =
+      nearest_equivalent(pose.measured.T_world_object, hypothesis.filter.T_world_object(), symmetries);
   hypothesis.filter.predict(pose.frame.utime);
   if (hypothesis.filter.moving()) {
     update_moving(turned.measured, hypothesis);
