@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
-#include "pose/reconstruction/frame_levels.hpp"
+#include "pose/reconstruction/map/frame_levels.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

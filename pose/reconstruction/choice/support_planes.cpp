@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "pipeline/base/random.hpp"
-#include "pose/reconstruction/frame_levels.hpp"
+#include "pose/reconstruction/map/frame_levels.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pose/motion/last_step.hpp"
-#include "pose/reconstruction/keyframe_map.hpp"
+#include "pose/reconstruction/map/keyframe_map.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
 
 namespace houghstream::reconstruction {

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "pose/reconstruction/choice/object_choice.hpp"
-#include "pose/reconstruction/keyframe_map.hpp"
+#include "pose/reconstruction/map/keyframe_map.hpp"
 
 namespace houghstream::reconstruction {
 

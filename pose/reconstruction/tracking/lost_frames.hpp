@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "pose/reconstruction/keyframe_map.hpp"
+#include "pose/reconstruction/map/keyframe_map.hpp"
 
 namespace houghstream::reconstruction {
 

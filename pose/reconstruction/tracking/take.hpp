@@ -8,8 +8,8 @@
 
 #include "pipeline/types/frame_id.hpp"
 #include "pose/reconstruction/choice/object_choice.hpp"
-#include "pose/reconstruction/keyframe_map.hpp"
-#include "pose/reconstruction/sphere_of_directions.hpp"
+#include "pose/reconstruction/map/keyframe_map.hpp"
+#include "pose/reconstruction/map/sphere_of_directions.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "pose/reconstruction/frame_alignment.hpp"
+#include "pose/reconstruction/map/frame_alignment.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

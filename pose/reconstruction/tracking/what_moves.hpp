@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "pose/reconstruction/frame_levels.hpp"
-#include "pose/reconstruction/landmarks.hpp"
+#include "pose/reconstruction/map/frame_levels.hpp"
+#include "pose/reconstruction/map/landmarks.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
 
 namespace houghstream::reconstruction {

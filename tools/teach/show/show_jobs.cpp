@@ -10,7 +10,7 @@
 #include "drivers/store/store_build.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pose/fusion/grid_surface.hpp"
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/model/take_model.hpp"
 #include "pose/reconstruction/tracking/object_tracker.hpp"
 #include "tools/teach/show/camera_take.hpp"
 #include "tools/teach/show/kept_showing.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/model/take_model.hpp"
 
 namespace houghstream::teach {
 

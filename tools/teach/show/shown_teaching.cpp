@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/model/take_model.hpp"
 #include "tools/teach/mesh_checks.hpp"
 
 namespace houghstream::teach {

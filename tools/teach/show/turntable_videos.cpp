@@ -10,9 +10,9 @@
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
 #include "pose/fusion/fuse_views.hpp"
-#include "pose/reconstruction/model_registration.hpp"
-#include "pose/reconstruction/outline_placement.hpp"
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/model/model_registration.hpp"
+#include "pose/reconstruction/model/outline_placement.hpp"
+#include "pose/reconstruction/model/take_model.hpp"
 
 namespace houghstream::teach {
 namespace {

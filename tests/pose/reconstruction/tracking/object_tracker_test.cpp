@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/base/checks.hpp"
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/model/take_model.hpp"
 #include "tests/pose/reconstruction/shown_scene.hpp"
 
 namespace houghstream::reconstruction {

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/model_registration.hpp"
+#include "pose/reconstruction/model/model_registration.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "pose/model/object_model.hpp"
 #include "pose/model/surface_tree.hpp"
 #include "pose/motion/twist.hpp"
-#include "pose/reconstruction/frame_alignment.hpp"
+#include "pose/reconstruction/map/frame_alignment.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

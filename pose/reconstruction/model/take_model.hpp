@@ -5,7 +5,7 @@
 
 #include "pipeline/geometry/mesh.hpp"
 #include "pipeline/types/training_view.hpp"
-#include "pose/reconstruction/model_agreement.hpp"
+#include "pose/reconstruction/model/model_agreement.hpp"
 #include "pose/reconstruction/tracking/take.hpp"
 
 namespace houghstream::reconstruction {

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/keyframe_map.hpp"
+#include "pose/reconstruction/map/keyframe_map.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "pose/reconstruction/frame_alignment.hpp"
+#include "pose/reconstruction/map/frame_alignment.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/landmarks.hpp"
+#include "pose/reconstruction/map/landmarks.hpp"
 
 #include <gtest/gtest.h>
 

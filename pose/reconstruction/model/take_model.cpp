@@ -1,4 +1,4 @@
-#include "pose/reconstruction/take_model.hpp"
+#include "pose/reconstruction/model/take_model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "pose/fusion/grid_surface.hpp"
 #include "pose/fusion/surface_smoothing.hpp"
 #include "pose/fusion/view_colours.hpp"
-#include "pose/reconstruction/model_registration.hpp"
+#include "pose/reconstruction/model/model_registration.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

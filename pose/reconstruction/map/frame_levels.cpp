@@ -1,4 +1,4 @@
-#include "pose/reconstruction/frame_levels.hpp"
+#include "pose/reconstruction/map/frame_levels.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/sphere_of_directions.hpp"
+#include "pose/reconstruction/map/sphere_of_directions.hpp"
 
 #include <fmt/format.h>
 

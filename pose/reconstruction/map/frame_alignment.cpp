@@ -1,4 +1,4 @@
-#include "pose/reconstruction/frame_alignment.hpp"
+#include "pose/reconstruction/map/frame_alignment.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

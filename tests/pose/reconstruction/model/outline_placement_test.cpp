@@ -1,4 +1,4 @@
-#include "pose/reconstruction/outline_placement.hpp"
+#include "pose/reconstruction/model/outline_placement.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
+#include "pose/reconstruction/model/take_model.hpp"
+
 #include <gtest/gtest.h>
 
-#include "pose/reconstruction/take_model.hpp"
 #include "tests/pose/reconstruction/shown_scene.hpp"
 
 namespace houghstream::reconstruction {

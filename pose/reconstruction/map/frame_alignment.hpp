@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "pose/reconstruction/frame_levels.hpp"
+#include "pose/reconstruction/map/frame_levels.hpp"
 
 namespace houghstream::reconstruction {
 

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/landmarks.hpp"
+#include "pose/reconstruction/map/landmarks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "pipeline/base/random.hpp"
-#include "pose/reconstruction/frame_levels.hpp"
+#include "pose/reconstruction/map/frame_levels.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/pose_graph.hpp"
+#include "pose/reconstruction/map/pose_graph.hpp"
 
 #include <Eigen/Cholesky>
 #include <deque>

@@ -3,8 +3,8 @@
 #include <map>
 #include <vector>
 
-#include "pose/reconstruction/landmarks.hpp"
-#include "pose/reconstruction/pose_graph.hpp"
+#include "pose/reconstruction/map/landmarks.hpp"
+#include "pose/reconstruction/map/pose_graph.hpp"
 
 namespace houghstream::reconstruction {
 

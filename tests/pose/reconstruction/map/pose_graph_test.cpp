@@ -1,9 +1,9 @@
-#include "pose/reconstruction/pose_graph.hpp"
+#include "pose/reconstruction/map/pose_graph.hpp"
 
 #include <gtest/gtest.h>
 
 #include "pose/motion/twist.hpp"
-#include "pose/reconstruction/sphere_of_directions.hpp"
+#include "pose/reconstruction/map/sphere_of_directions.hpp"
 
 namespace houghstream::reconstruction {
 namespace {

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/model_agreement.hpp"
+#include "pose/reconstruction/model/model_agreement.hpp"
 
 #include <gtest/gtest.h>
 
