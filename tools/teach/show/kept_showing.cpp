@@ -19,11 +19,7 @@
 #include "pipeline/base/files.hpp"
 #include "pipeline/base/folder_exchange.hpp"
 #include "pipeline/base/html_text.hpp"
-<<<<<<< HEAD
-#include "pose/reconstruction/take_model.hpp"
-=======
 #include "pose/reconstruction/model/take_model.hpp"
->>>>>>> 36af6c97 (Reconstruction has rooms: the map of keyframes, and the models that are made of takes; pure moves)
 #include "tools/fuse/model_picture.hpp"
 #include "tools/teach/contact_sheet.hpp"
 
