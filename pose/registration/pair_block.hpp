@@ -47,7 +47,7 @@ struct PairSearch {
 };
 
 /// Fills in the gap from each of the block's points to the measured point nearest to it on its lattice. Written for
-/// vector units; pose/baseline/reference_pair_block.hpp has the same point by point.
+/// vector units; its test has the same point by point.
 void find_gaps(const RgbdFrame& frame, const PairSearch& search, PairBlock& block);
 
 /// Eight values of a pair; rows of a least-squares problem.

@@ -2,8 +2,101 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
+
+#include "pipeline/base/random.hpp"
+#include "tests/every_target.hpp"
+
 namespace houghstream {
 namespace {
+
+/// A rough wall 0.8 m away with holes; its rows lie apart in memory.
+RgbdFrame rough_wall(cv::Mat& memory) {
+  Random random(3);
+  RgbdFrame frame;
+  frame.camera = {80, 60, 70.0, 72.0, 39.5, 29.5};
+  memory.create(60, 96, CV_32FC1);
+  for (int y = 0; y < memory.rows; ++y) {
+    for (int x = 0; x < memory.cols; ++x) {
+      const bool hole = random.uniform() < 0.1;
+      memory.at<float>(y, x) =
+          hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(random.uniform(0.77, 0.83));
+    }
+  }
+  frame.depth = memory(cv::Rect(0, 0, 80, 60));
+  return frame;
+}
+
+/// Points about the wall, some outside the image or right before the camera.
+PairBlock points_about(std::size_t count) {
+  Random random(5);
+  PairBlock block;
+  block.count = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    block.x[i] = static_cast<float>(random.uniform(-0.55, 0.55));
+    block.y[i] = static_cast<float>(random.uniform(-0.45, 0.45));
+    block.z[i] = i % 11 == 5 ? 1e-12F : static_cast<float>(random.uniform(0.75, 0.85));
+    if (i % 22 == 5) block.x[i] = block.y[i] = 0.0F;
+  }
+  return block;
+}
+
+/// Pixels where a point's measured partner is looked for.
+struct PointLattice {
+  int u = 0;  ///< in the image
+  int v = 0;
+  int stride = 1;
+};
+
+/// Of point `k`.
+void find_one(const RgbdFrame& frame, const PairSearch& search, const PointLattice& at, std::size_t k,
+              PairBlock& block) {
+  const PixelRays rays(frame);
+  for (int j = -search.steps; j <= search.steps; ++j) {
+    const int y = at.v + j * at.stride;
+    for (int i = -search.steps; i <= search.steps; ++i) {
+      const int x = at.u + i * at.stride;
+      if (x < 0 || y < 0 || x >= rays.columns || y >= rays.rows) continue;
+      const float z = frame.depth.ptr<float>(y)[x];  // NaN fails the comparison below
+      const Eigen::Vector3f here(z * (rays.first.x() + rays.step.x() * static_cast<float>(x)) - block.x[k],
+                                 z * (rays.first.y() + rays.step.y() * static_cast<float>(y)) - block.y[k],
+                                 z - block.z[k]);
+      const float distance_sq = here.squaredNorm();
+      if (!(distance_sq < block.distance_sq[k])) continue;
+      block.distance_sq[k] = distance_sq;
+      block.gap_x[k] = here.x();
+      block.gap_y[k] = here.y();
+      block.gap_z[k] = here.z();
+    }
+  }
+}
+
+/// What find_gaps() does with vector units, point by point.
+void reference_find_gaps(const RgbdFrame& frame, const PairSearch& search, PairBlock& block) {
+  const PixelRays rays(frame);
+  for (std::size_t k = 0; k < block.count; ++k) {
+    block.distance_sq[k] = search.distance_m * search.distance_m;
+    block.gap_x[k] = block.gap_y[k] = block.gap_z[k] = 0.0F;
+    const Eigen::Vector3f point(block.x[k], block.y[k], block.z[k]);
+    const Eigen::Vector2f pixel = frame.camera.project_single(point) + Eigen::Vector2f::Constant(0.5F);
+    const bool inside = pixel.x() >= 0.5F && pixel.y() >= 0.5F && pixel.x() < static_cast<float>(rays.columns) &&
+                        pixel.y() < static_cast<float>(rays.rows);
+    if (!inside) continue;
+    const float stride = search.distance_m / (rays.step.x() * point.z() * static_cast<float>(search.steps));
+    const PointLattice at{static_cast<int>(pixel.x()), static_cast<int>(pixel.y()),
+                          std::max(1, static_cast<int>(std::min(stride, PixelRays::kWidest)))};
+    find_one(frame, search, at, k, block);
+  }
+}
+
+/// What add_products() does with vector units, row by row.
+void reference_add_products(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Map<const Eigen::Matrix<float, 8, 1>> row(rows[i].values.data());
+    sums += (weights[i] * row) * row.transpose();
+  }
+}
 
 TEST(PairBlock, FindsTheNearestPointOfAStep) {
   RgbdFrame frame;
@@ -32,6 +125,46 @@ TEST(PairBlock, NothingWithinReachIsNoGap) {
   for (std::size_t i = 0; i < block.count; ++i) {
     EXPECT_EQ(block.distance_sq[i], 0.05F * 0.05F);
     EXPECT_EQ(block.gap_z[i], 0.0F);
+  }
+}
+
+TEST(PairBlock, GapsAreThoseOfPointByPointOnEveryMachine) {
+  cv::Mat memory;
+  const RgbdFrame frame = rough_wall(memory);
+  for (const PairSearch search : {PairSearch{0.035F, 2}, PairSearch{0.008F, 1}, PairSearch{0.5F, 3}}) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{37}, PairBlock::kSize}) {
+      PairBlock expected = points_about(count);
+      reference_find_gaps(frame, search, expected);
+      simd::with_every_target([&] {
+        PairBlock fast = points_about(count);
+        find_gaps(frame, search, fast);
+        for (std::size_t i = 0; i < count; ++i) {
+          EXPECT_EQ(fast.distance_sq[i], expected.distance_sq[i]) << i;
+          EXPECT_EQ(fast.gap_x[i], expected.gap_x[i]) << i;
+          EXPECT_EQ(fast.gap_y[i], expected.gap_y[i]) << i;
+          EXPECT_EQ(fast.gap_z[i], expected.gap_z[i]) << i;
+        }
+      });
+    }
+  }
+}
+
+TEST(PairBlock, SumsAreThoseOfRowByRowOnEveryMachine) {
+  Random random(7);
+  PairRows rows;
+  PairBlock::Values weights;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (float& value : rows[i].values) value = static_cast<float>(random.uniform(-1.0, 1.0));
+    weights[i] = static_cast<float>(random.uniform());
+  }
+  for (const std::size_t count : {std::size_t{0}, std::size_t{5}, rows.size()}) {
+    PairSums expected = PairSums::Identity();
+    reference_add_products(rows, weights, count, expected);
+    simd::with_every_target([&] {
+      PairSums fast = PairSums::Identity();
+      add_products(rows, weights, count, fast);
+      EXPECT_EQ(fast, expected);
+    });
   }
 }
 
