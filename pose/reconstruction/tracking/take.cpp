@@ -2,7 +2,7 @@
 
 namespace houghstream::reconstruction {
 
-Eigen::Isometry3d Take::pose_of(const FrameTrack& frame) const {
+Eigen::Isometry3d Take::pose_of(const PlacedFrame& frame) const {
   return frame.T_camera_keyframe * keyframes[static_cast<std::size_t>(frame.keyframe)].T_camera_world;
 }
 

@@ -14,11 +14,11 @@
 namespace houghstream::reconstruction {
 
 /// What moves: the camera about the object, the object before a camera that stands still, or a turntable with
-/// known masks (not of the tracker).
+/// known masks (not of the placer).
 enum class Motion : std::uint8_t { kUnknown, kCamera, kObject, kTurntable };
 
 /// What became of a frame.
-struct FrameTrack {
+struct PlacedFrame {
   FrameId id;
   bool tracked = false;
   bool left_out = false;  ///< blurred or badly exposed: it is not used for the model
@@ -37,7 +37,7 @@ struct Take {
   ChosenObject chosen;  ///< in the first frame
   Motion motion = Motion::kUnknown;
   std::vector<Keyframe> keyframes;
-  std::vector<FrameTrack> frames;
+  std::vector<PlacedFrame> frames;
   std::vector<LostSpan> lost;
   std::optional<LoopGap> gap;  ///< of the loop that goes round, before it was closed
   SeenDirections seen{};
@@ -46,7 +46,7 @@ struct Take {
   double tracking_hz = 0.0;            ///< frames a second that tracking alone takes
 
   /// T_camera_world of a tracked frame.
-  Eigen::Isometry3d pose_of(const FrameTrack& frame) const;
+  Eigen::Isometry3d pose_of(const PlacedFrame& frame) const;
 };
 
 /// What is left of the take's lost spans, where frames of them have been placed since.

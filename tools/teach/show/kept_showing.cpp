@@ -27,8 +27,8 @@ namespace houghstream::teach {
 namespace {
 
 namespace fs = std::filesystem;
-using reconstruction::FrameTrack;
 using reconstruction::LostSpan;
+using reconstruction::PlacedFrame;
 using reconstruction::ShownView;
 using reconstruction::Take;
 
@@ -40,7 +40,7 @@ void write_poses(const Shown& shown, const fs::path& file) {
   const Eigen::Isometry3d T_world_object =
       take.keyframes[static_cast<std::size_t>(any.keyframe)].T_camera_world.inverse() * any.T_camera_object;
   for (std::size_t i = 0; i < take.frames.size(); ++i) {
-    const FrameTrack& frame = take.frames[i];
+    const PlacedFrame& frame = take.frames[i];
     out << fmt::format("{},{},{}", i, frame.id.utime, frame.tracked ? 1 : 0);
     const Eigen::Isometry3d T = frame.tracked ? take.pose_of(frame) * T_world_object : Eigen::Isometry3d::Identity();
     for (int row = 0; row < 3; ++row) {

@@ -11,7 +11,7 @@
 #include "pipeline/base/checks.hpp"
 #include "pose/fusion/grid_surface.hpp"
 #include "pose/reconstruction/model/take_model.hpp"
-#include "pose/reconstruction/tracking/object_tracker.hpp"
+#include "pose/reconstruction/tracking/take_placer.hpp"
 #include "tools/teach/show/camera_take.hpp"
 #include "tools/teach/show/kept_showing.hpp"
 #include "tools/teach/show/show_report.hpp"
@@ -24,9 +24,9 @@
 namespace houghstream::teach {
 namespace {
 
-using reconstruction::ObjectTracker;
 using reconstruction::ShownModel;
 using reconstruction::Take;
+using reconstruction::TakePlacer;
 
 /// Nobody can turn the object over between two takes of one camera that begin at once; videos have no second take.
 void check_second(const ShowOptions& options) {
@@ -96,17 +96,17 @@ Take follow(const TakeSource& source, const ShowOptions& options, Telling& telli
   constexpr int kAwake = 90;   // frames after which a camera has found its exposure
   constexpr int kAimed = 300;  // and in which somebody has pointed it at the object
   const bool live = is_live(source.name);
-  reconstruction::TrackerSettings settings;
+  reconstruction::TakePlacerSettings settings;
   if (live && !source.at) settings.most_frames_to_choose = kAimed;
   settings.choice.box_px = source.box;
   settings.choice.at_px = source.at;
   settings.choice.seed = options.seed;
   settings.map.threads = options.threads;
-  ObjectTracker tracker(settings);
+  TakePlacer placer(settings);
   int blank = 0;
   while (const std::optional<RgbdFrame> frame = source.frames()) {
-    if (tracker.state().frames == 0) {
-      reconstruction::TrackerState waiting;
+    if (placer.state().frames == 0) {
+      reconstruction::TakePlacerStatus waiting;
       waiting.message = lack_of(*frame);
       if (!waiting.message.empty()) {
         require(live && ++blank < kAwake, "{}", waiting.message);
@@ -114,10 +114,10 @@ Take follow(const TakeSource& source, const ShowOptions& options, Telling& telli
         continue;
       }
     }
-    telling.frame(frame->id, tracker.process(*frame));
+    telling.frame(frame->id, placer.process(*frame));
   }
   telling.step(ShowState::kFusing, 0.0, "all keyframes are laid on one another");
-  Take take = tracker.finish();
+  Take take = placer.finish();
   require(take.frames.size() >= kFewest, "{} frames, expected at least {}, of a whole turn", take.frames.size(),
           kFewest);
   return take;

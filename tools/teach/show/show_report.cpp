@@ -7,9 +7,9 @@
 namespace houghstream::teach {
 namespace {
 
-using reconstruction::FrameTrack;
 using reconstruction::LostSpan;
 using reconstruction::Motion;
+using reconstruction::PlacedFrame;
 using reconstruction::Take;
 
 int lost_frames(const Take& take) {
@@ -105,7 +105,7 @@ double second_of(const Take& take, int frame) {
 
 int tracked_frames(const Take& take) {
   return static_cast<int>(
-      std::count_if(take.frames.begin(), take.frames.end(), [](const FrameTrack& frame) { return frame.tracked; }));
+      std::count_if(take.frames.begin(), take.frames.end(), [](const PlacedFrame& frame) { return frame.tracked; }));
 }
 
 reconstruction::SeenDirections seen_by_all(const Shown& shown) {

@@ -10,12 +10,12 @@ Telling::Telling(const std::string& name, ShowObserver* observer) : observer_(ob
   now_.name = name;
 }
 
-void Telling::frame(const FrameId& id, const reconstruction::TrackerState& state) {
-  using reconstruction::TrackState;
+void Telling::frame(const FrameId& id, const reconstruction::TakePlacerStatus& state) {
+  using reconstruction::TakeState;
   now_.frame = id;
-  now_.state = state.state == TrackState::kTracking ? ShowState::kTracking
-               : state.state == TrackState::kLost   ? ShowState::kLost
-                                                    : ShowState::kChoosing;
+  now_.state = state.state == TakeState::kTracking ? ShowState::kTracking
+               : state.state == TakeState::kLost   ? ShowState::kLost
+                                                   : ShowState::kChoosing;
   now_.message = state.message;
   now_.seen = state.seen;
   now_.frames = state.frames;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "pipeline/types/frame_id.hpp"
-#include "pose/reconstruction/tracking/object_tracker.hpp"
+#include "pose/reconstruction/tracking/take_placer.hpp"
 #include "tools/teach/show/show_progress.hpp"
 
 namespace houghstream::teach {
@@ -16,7 +16,7 @@ class Telling {
   Telling(const std::string& name, ShowObserver* observer);
 
   /// After a frame of the take.
-  void frame(const FrameId& id, const reconstruction::TrackerState& state);
+  void frame(const FrameId& id, const reconstruction::TakePlacerStatus& state);
 
   /// A step after the takes; `progress` of all work, 0 to 1.
   void step(ShowState state, double progress, const std::string& message);

@@ -1,4 +1,4 @@
-#include "pose/reconstruction/tracking/object_tracker.hpp"
+#include "pose/reconstruction/tracking/take_placer.hpp"
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ cv::Rect box_of(const ChosenObject& object, const Camera& camera, const Eigen::I
 }  // namespace
 
 /// Masks, levels and boxes of the first frame are laid over all others.
-void ObjectTracker::require_same_size(const RgbdFrame& frame) {
+void TakePlacer::require_same_size(const RgbdFrame& frame) {
   const cv::Size size = frame.depth.size();
   if (take_.frames.empty()) size_ = size;
   require(size == size_ && frame.colour.size() == size_,
@@ -34,7 +34,7 @@ void ObjectTracker::require_same_size(const RgbdFrame& frame) {
           size_.height);
 }
 
-const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
+const TakePlacerStatus& TakePlacer::process(const RgbdFrame& frame) {
   constexpr std::size_t kMostUnplaced = 100;
   const auto begin = std::chrono::steady_clock::now();
   require_same_size(frame);
@@ -50,7 +50,7 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
     std::optional<Alignment> found;
     if (motion_ == Motion::kObject)
       lights_.mark_what_stays(object_pixels(levels.levels[0], chosen_, step_.T_last), levels);
-    if (state_.state == TrackState::kTracking) found = follower_.follow(now, levels, step_, motion_, map_);
+    if (state_.state == TakeState::kTracking) found = follower_.follow(now, levels, step_, motion_, map_);
     if (found && motion_ == Motion::kUnknown) {
       motion_ = judge_.judge(now, levels, found->T_camera_world);
       if (motion_ == Motion::kObject) {
@@ -75,7 +75,7 @@ const TrackerState& ObjectTracker::process(const RgbdFrame& frame) {
   return state_;
 }
 
-void ObjectTracker::choose(const RgbdFrame& frame) {
+void TakePlacer::choose(const RgbdFrame& frame) {
   Choice choice = choose_object(frame, settings_.choice);
   if (!choice.object) {
     state_.message = choice.reason;
@@ -87,7 +87,7 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   first_number_ = state_.frames - 1;
   FrameLevels levels = make_levels(frame, levels_);
   step_.restart(chosen_.T_camera_stand);
-  state_.state = TrackState::kTracking;
+  state_.state = TakeState::kTracking;
   round_.assign(36, false);
   judge_ = MotionJudge(make_flow_frame(frame), levels, object_pixels(levels.levels[0], chosen_, chosen_.T_camera_stand),
                        chosen_.T_camera_stand, settings_.map.fewest_corners);
@@ -97,7 +97,7 @@ void ObjectTracker::choose(const RgbdFrame& frame) {
   accept(static_cast<int>(take_.frames.size()) - 1, frame, std::move(levels), at_start);
 }
 
-bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
+bool TakePlacer::is_fit_for_model(const PictureQuality& quality) {
   constexpr std::size_t kAround = 31;
   std::vector<double> around(sharpness_.begin(), sharpness_.end());
   sharpness_.push_back(quality.sharpness);
@@ -113,8 +113,8 @@ bool ObjectTracker::is_fit_for_model(const PictureQuality& quality) {
   return !blurred;
 }
 
-std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
-                                                   KnownCorners& corners) {
+std::optional<Alignment> TakePlacer::find_again(const RgbdFrame& frame, const FrameLevels& levels, bool everywhere,
+                                                KnownCorners& corners) {
   // What is round or a box looks alike from several sides.
   const LastPlace last{step_.T_last, motion_ == Motion::kObject ? 0.5 : 1e9};
   if (std::optional<Alignment> found = find_by_views(map_, levels, last)) return found;
@@ -123,16 +123,16 @@ std::optional<Alignment> ObjectTracker::find_again(const RgbdFrame& frame, const
   return by_corners_.find(map_, levels, last, everywhere, corners);
 }
 
-void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
-  const bool was_lost = state_.state == TrackState::kLost;
-  state_.state = TrackState::kTracking;
+void TakePlacer::accept(int number, const RgbdFrame& frame, FrameLevels levels, const Alignment& alignment) {
+  const bool was_lost = state_.state == TakeState::kLost;
+  state_.state = TakeState::kTracking;
   if (was_lost) {
     step_.restart(alignment.T_camera_world);
   } else {
     step_.advance(alignment.T_camera_world);
   }
-  FrameTrack& track = take_.frames[static_cast<std::size_t>(number)];
-  const bool fit = !track.left_out;
+  PlacedFrame& placed = take_.frames[static_cast<std::size_t>(number)];
+  const bool fit = !placed.left_out;
   const int nearest = map_.nearest(step_.T_last);
   const double away =
       nearest < 0 ? 1e9
@@ -147,10 +147,10 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
     }
     add_keyframe({frame, number, std::move(levels), {}, std::move(landmarks), step_.T_last}, held);
   }
-  track.tracked = true;
-  track.keyframe = map_.nearest(step_.T_last);
-  track.T_camera_keyframe =
-      step_.T_last * map_.keyframes()[static_cast<std::size_t>(track.keyframe)].T_camera_world.inverse();
+  placed.tracked = true;
+  placed.keyframe = map_.nearest(step_.T_last);
+  placed.T_camera_keyframe =
+      step_.T_last * map_.keyframes()[static_cast<std::size_t>(placed.keyframe)].T_camera_world.inverse();
   const Eigen::Vector3d towards = step_.T_last.inverse().translation() - map_.settings().middle;
   if (fit) mark_seen(towards, state_.seen);
   const auto at = static_cast<std::size_t>((std::atan2(towards.y(), towards.x()) * kDegrees + 360.0) / 10.0) % 36;
@@ -159,7 +159,7 @@ void ObjectTracker::accept(int number, const RgbdFrame& frame, FrameLevels level
 
 /// The camera stands still and something happens to the object: from here on its own surface alone is followed, and the
 /// table, which does not move, holds it upright.
-void ObjectTracker::follow_object_only() {
+void TakePlacer::follow_object_only() {
   constexpr double kAround = 0.6;
   const RgbdFrame& first = judge_.first().frame;
   MapSettings& map = map_.settings();
@@ -185,7 +185,7 @@ void ObjectTracker::follow_object_only() {
 
 /// The frames of before were tied to keyframes of the surroundings, and the map now holds the first frame alone: all of
 /// them show the object as that one does. In the last of them it moved already, and nobody knows how far.
-void ObjectTracker::tie_to_first_keyframe() {
+void TakePlacer::tie_to_first_keyframe() {
   int moved = judge_.object_moves() - 1;  // the last is the present frame, which is not placed yet
   for (auto frame = take_.frames.rbegin(); frame != take_.frames.rend(); ++frame) {
     if (!frame->tracked) continue;
@@ -197,13 +197,13 @@ void ObjectTracker::tie_to_first_keyframe() {
 
 /// Where corners are looked for: everywhere while the camera moves, else on the object, which may have turned but
 /// stays.
-cv::Mat ObjectTracker::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
+cv::Mat TakePlacer::landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const {
   if (motion_ != Motion::kObject) return {};
   return object_pixels({frame.camera, {}, frame.depth, {}}, chosen_, T_camera_world);
 }
 
 /// Adds the keyframe of step_.T_last, which has no points yet.
-void ObjectTracker::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
+void TakePlacer::add_keyframe(Keyframe keyframe, const Alignment& alignment) {
   keyframe.points = motion_ == Motion::kObject ? points_of_object(keyframe, map_, chosen_, levels_.region_px)
                                                : points_of_scene(keyframe);
   const std::optional<LoopGap> gap = map_.add(std::move(keyframe), alignment);
@@ -214,10 +214,10 @@ void ObjectTracker::add_keyframe(Keyframe keyframe, const Alignment& alignment) 
   if (seen_round >= kNearlyRound && !take_.gap) take_.gap = gap;
 }
 
-void ObjectTracker::note_lost(const FrameLevels& levels) {
+void TakePlacer::note_lost(const FrameLevels& levels) {
   constexpr double kFast = 0.06;  // radians of view a frame
   const int number = static_cast<int>(take_.frames.size()) - 1;
-  if (state_.state == TrackState::kLost && !take_.lost.empty() && take_.lost.back().to == number - 1) {
+  if (state_.state == TakeState::kLost && !take_.lost.empty() && take_.lost.back().to == number - 1) {
     take_.lost.back().to = number;
     return;
   }
@@ -226,17 +226,17 @@ void ObjectTracker::note_lost(const FrameLevels& levels) {
   if (speed > kFast ||
       levels.quality.sharpness < settings_.least_sharpness * (sharpness_.empty() ? 0.0 : sharpness_.front()))
     why = "too fast";
-  state_.state = TrackState::kLost;
+  state_.state = TakeState::kLost;
   take_.lost.push_back({number, number, why});
 }
 
-void ObjectTracker::describe() {
+void TakePlacer::describe() {
   constexpr int kTold = 45;  // frames for which the choice is said, so that a person can read it
   state_.keyframes = static_cast<int>(map_.keyframes().size());
   state_.T_camera_object.reset();
   state_.box_px = {};
   if (map_.empty()) return;
-  if (state_.state == TrackState::kLost) {
+  if (state_.state == TakeState::kLost) {
     state_.message = take_.lost.empty() ? "lost" : "lost: " + take_.lost.back().why + "; go back to where it was seen";
     return;
   }
@@ -248,7 +248,7 @@ void ObjectTracker::describe() {
 }
 
 /// What was lost when it came may be found now that more of the surroundings is known.
-void ObjectTracker::place_the_lost() {
+void TakePlacer::place_the_lost() {
   for (bool any = true; any;) {
     any = false;
     for (auto at = unplaced_.begin(); at != unplaced_.end();) {
@@ -266,7 +266,7 @@ void ObjectTracker::place_the_lost() {
   take_.lost = still_lost(take_);
 }
 
-Take ObjectTracker::finish() {
+Take TakePlacer::finish() {
   require(!map_.empty(), "{}", state_.message.empty() ? "no frame, expected some that show an object" : state_.message);
   place_the_lost();
   map_.refine(3);

@@ -14,9 +14,9 @@
 
 namespace houghstream::reconstruction {
 
-enum class TrackState : std::uint8_t { kChoosing, kTracking, kLost };
+enum class TakeState : std::uint8_t { kChoosing, kTracking, kLost };
 
-struct TrackerSettings {
+struct TakePlacerSettings {
   ChoiceSettings choice;
   MapSettings map;                 ///< middle and plane are those of the object
   int most_frames_to_choose = 45;  ///< without an object in so many frames, there is none
@@ -27,8 +27,8 @@ struct TrackerSettings {
 };
 
 /// What can be said at any time.
-struct TrackerState {
-  TrackState state = TrackState::kChoosing;
+struct TakePlacerStatus {
+  TakeState state = TakeState::kChoosing;
   std::string message;  ///< for a person, one line
   SeenDirections seen{};
   int frames = 0;
@@ -41,14 +41,14 @@ struct TrackerState {
 /// turns before a camera that stands still. Each frame is laid on a map of the nearest keyframes (align_frame); table
 /// points are held to one plane; when the way closes, the gap is spread over it. What is lost is looked for by
 /// neighbouring keyframes and by ORB landmarks. One thread; same frames, same result.
-class ObjectTracker {
+class TakePlacer {
  public:
-  explicit ObjectTracker(const TrackerSettings& settings) : settings_(settings), map_(settings.map) {}
+  explicit TakePlacer(const TakePlacerSettings& settings) : settings_(settings), map_(settings.map) {}
 
   /// The next frame. Throws InputError with the reason where no object was found in the first frames, and for a frame
   /// of another size than the first.
-  const TrackerState& process(const RgbdFrame& frame);
-  const TrackerState& state() const { return state_; }
+  const TakePlacerStatus& process(const RgbdFrame& frame);
+  const TakePlacerStatus& state() const { return state_; }
 
   /// Registers all keyframes to one another once more and hands over the take. Throws InputError where there is none.
   Take finish();
@@ -68,8 +68,8 @@ class ObjectTracker {
   cv::Mat landmark_mask(const RgbdFrame& frame, const Eigen::Isometry3d& T_camera_world) const;
   void describe();
 
-  TrackerSettings settings_;
-  TrackerState state_;
+  TakePlacerSettings settings_;
+  TakePlacerStatus state_;
   ChosenObject chosen_;
   KeyframeMap map_;
   LevelSettings levels_;
