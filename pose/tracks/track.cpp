@@ -52,7 +52,7 @@ TrackModels make_track_models(std::map<std::string, Mesh> meshes, const std::map
     TrackModel model;
     const Eigen::AlignedBox3f bounds = mesh_bounds(mesh);
     model.centre = bounds.center().cast<double>();
-    model.radius_m = 0.5 * static_cast<double>(bounds.sizes().norm());
+    model.box_radius_m = 0.5 * static_cast<double>(bounds.sizes().norm());
     if (const auto known = symmetries.find(name); known != symmetries.end()) model.symmetries = known->second;
     model.mesh = std::move(mesh);
     models.emplace(name, std::move(model));
@@ -68,7 +68,7 @@ Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name) {
 double radius_of(const TrackModels& models, const std::string& name) {
   constexpr double kUsual = 0.07;
   const auto model = models.find(name);
-  return model == models.end() ? kUsual : model->second.radius_m;
+  return model == models.end() ? kUsual : model->second.box_radius_m;
 }
 
 const Symmetries& symmetries_of(const TrackModels& models, const std::string& name) {

@@ -25,8 +25,8 @@ namespace houghstream::tracks {
 struct TrackModel {
   Mesh mesh;
   Symmetries symmetries;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();       ///< of the bounding box, object frame, metres
-  double radius_m = 0.0;                                  ///< of the sphere about it that holds the mesh
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the bounding box, object frame, metres
+  double box_radius_m = 0.0;  ///< half the bounding box' diagonal; ObjectModel::radius is that of the farthest vertex
   Eigen::Vector3d vote_centre = Eigen::Vector3d::Zero();  ///< where its detections' centres are, object frame, metres
   int object_id = 0;                                      ///< of the object in its store, from 1; 0: it has no store
 };
@@ -36,7 +36,7 @@ using TrackModels = std::map<std::string, TrackModel>;
 /// origins may be at their feet, which half a turn takes to the top.
 Eigen::Vector3d centre_of(const TrackModels& models, const std::string& name);
 
-/// TrackModel::radius_m of a class; that of a usual object where it has no model.
+/// TrackModel::box_radius_m of a class; that of a usual object where it has no model.
 double radius_of(const TrackModels& models, const std::string& name);
 
 /// TrackModel::symmetries of a class; none where it has no model.
