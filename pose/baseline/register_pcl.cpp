@@ -100,7 +100,7 @@ RegistrationResult register_points_pcl(const std::vector<Eigen::Vector3f>& point
   icp.setTransformationEpsilon(settings.converged_m * settings.converged_m);
   Cloud aligned = *source;
   // PCL keeps one distance: run it wide, then narrow from there.
-  for (const double distance : {stage.start_distance_m, stage.end_distance_m}) {
+  for (const double distance : {stage.max_correspondence_start_m, stage.max_correspondence_end_m}) {
     icp.setMaxCorrespondenceDistance(distance);
     const Eigen::Matrix4f guess = result.iterations == 0 ? Eigen::Matrix4f::Identity() : icp.getFinalTransformation();
     icp.align(aligned, guess);
@@ -108,7 +108,7 @@ RegistrationResult register_points_pcl(const std::vector<Eigen::Vector3f>& point
     if (!result.converged) return result;
     result.iterations += icp.nr_iterations_;
   }
-  set_evidence(aligned, view, stage.end_distance_m, *tree, result);
+  set_evidence(aligned, view, stage.max_correspondence_end_m, *tree, result);
   // The measured points moved by M in the object frame, so the object moves the other way in the camera frame.
   result.T_camera_object = T_camera_object * rigid_motion(icp.getFinalTransformation().cast<double>()).inverse();
   return result;

@@ -49,9 +49,9 @@ RegistrationResult register_near(const SeenObject& seen, const Eigen::Isometry3d
                                  const FollowerInput& input) {
   const PoseSettings& settings = input.pose;
   const FollowSettings& follow = input.follow;
-  const PairDistances distances = pair_distances(seen, settings.registration);
+  const CorrespondenceDistances distances = correspondence_distances(seen, settings.registration);
   const double end_m = distances.end;
-  const double start_m = expected.is_lost ? distances.start : std::max(end_m, follow.start_distance_m);
+  const double start_m = expected.is_lost ? distances.start : std::max(end_m, follow.max_correspondence_start_m);
   const int iterations = expected.is_lost ? settings.registration.coarse_iterations : follow.coarse_iterations;
   const RegistrationStage coarse{iterations, follow.coarse_points, start_m, end_m};
   RegistrationResult result = settings.registration.engine(seen, start, coarse, settings.registration);

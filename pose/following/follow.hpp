@@ -16,7 +16,7 @@ namespace houghstream {
 struct FollowSettings {
   int coarse_iterations = 5;
   int coarse_points = 150;
-  double start_distance_m = 0.02;  ///< pairs farther apart have no weight, at first
+  double max_correspondence_start_m = 0.02;  ///< pairs farther apart have no weight, at first
   int fine_iterations = 8;
   int fine_points = 400;
   double max_jump_m = 0.04;  ///< of the middle, from where it was expected: what ended farther away is something else

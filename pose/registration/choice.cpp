@@ -22,7 +22,7 @@ class Choice {
         votes_(votes),
         settings_(settings),
         tolerance_{settings.tolerance_m, seen.noise},
-        distances_(pair_distances(seen, settings.registration)) {}
+        distances_(correspondence_distances(seen, settings.registration)) {}
 
   RegistrationResult best_of(const std::vector<RegistrationResult>& registered) const {
     RegistrationResult best;
@@ -91,7 +91,7 @@ class Choice {
   const std::vector<RotationCandidate>& votes_;
   const ChoiceSettings& settings_;
   DepthTolerance tolerance_;
-  PairDistances distances_;
+  CorrespondenceDistances distances_;
 };
 
 }  // namespace

@@ -4,22 +4,22 @@
 
 namespace houghstream {
 
-PairDistances pair_distances(const SeenObject& seen, const RegistrationSettings& settings) {
-  const double end = DepthTolerance{settings.end_distance_m, seen.noise}.at(seen.centre_camera.z());
-  return {std::max(end, settings.start_distance_m), end};
+CorrespondenceDistances correspondence_distances(const SeenObject& seen, const RegistrationSettings& settings) {
+  const double end = DepthTolerance{settings.max_correspondence_end_m, seen.noise}.at(seen.centre_camera.z());
+  return {std::max(end, settings.max_correspondence_start_m), end};
 }
 
 RegistrationResult register_coarsely(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, double start_m,
                                      const RegistrationSettings& settings) {
   const RegistrationStage stage{settings.coarse_iterations, settings.coarse_points, start_m,
-                                pair_distances(seen, settings).end};
+                                correspondence_distances(seen, settings).end};
   return settings.engine(seen, T_camera_object, stage, settings);
 }
 
 RegistrationResult register_finely(const SeenObject& seen, const RegistrationResult& result,
                                    const RegistrationSettings& settings) {
   constexpr int kSearchSteps = 1;
-  const double end_m = pair_distances(seen, settings).end;
+  const double end_m = correspondence_distances(seen, settings).end;
   const RegistrationStage stage{settings.fine_iterations, settings.fine_points, end_m, end_m, kSearchSteps};
   RegistrationResult fine = settings.engine(seen, result.T_camera_object, stage, settings);
   fine.iterations += result.iterations;
@@ -33,7 +33,7 @@ bool ends_near(const SeenObject& seen, const RegistrationResult& result, const R
 std::vector<RegistrationResult> register_candidates(const SeenObject& seen,
                                                     const std::vector<PoseCandidate>& candidates,
                                                     const RegistrationSettings& settings) {
-  const double start_m = pair_distances(seen, settings).start;
+  const double start_m = correspondence_distances(seen, settings).start;
   std::vector<RegistrationResult> registered;
   registered.reserve(candidates.size());
   for (const PoseCandidate& candidate : candidates) {

@@ -14,7 +14,7 @@ struct RegistrationResult {
   Eigen::Isometry3d T_camera_object = Eigen::Isometry3d::Identity();
   bool converged = false;  ///< the last step was small; false too where there were not enough pairs for a step
   int iterations = 0;
-  int inliers = 0;  ///< model points with a measured point within the last pair distance
+  int inliers = 0;  ///< model points with a measured point within the last correspondence distance
   float inlier_fraction = 0.0F;
   float residual = std::numeric_limits<float>::quiet_NaN();  ///< RMS distance of the inliers along normals, metres
 };
@@ -24,8 +24,8 @@ struct RegistrationResult {
 struct RegistrationStage {
   int iterations = 0;
   int points = 0;  ///< of the model's view, at most
-  double start_distance_m = 0.0;
-  double end_distance_m = 0.0;
+  double max_correspondence_start_m = 0.0;
+  double max_correspondence_end_m = 0.0;
   int search_steps = 2;  ///< ours: measured points looked at to each side of a model point's pixel
 };
 
@@ -49,20 +49,20 @@ struct RegistrationSettings {
   int coarse_points = 120;
   int fine_iterations = 10;
   int fine_points = 600;
-  double start_distance_m = 0.035;  ///< pairs farther apart have no weight; shrinks with every iteration
-  double end_distance_m = 0.008;    ///< 3 sigma is added
-  double point_weight = 0.1;        ///< of the distance along the surface beside that across it
-  double max_shift_m = 0.07;        ///< from the detected centre; what ended farther away is something else
-  double converged_m = 0.0005;      ///< last step moved the model's surface by less
+  double max_correspondence_start_m = 0.035;  ///< pairs farther apart have no weight; shrinks with every iteration
+  double max_correspondence_end_m = 0.008;    ///< 3 sigma is added
+  double point_weight = 0.1;                  ///< of the distance along the surface beside that across it
+  double max_shift_m = 0.07;                  ///< from the detected centre; what ended farther away is something else
+  double converged_m = 0.0005;                ///< last step moved the model's surface by less
 };
 
-/// Pair distances at which coarse registration of an object begins and all registration of it ends, metres: the
-/// settings' and what depth's noise adds where the object is.
-struct PairDistances {
+/// Correspondence distances at which coarse registration of an object begins and all registration of it ends, metres:
+/// the settings' and what depth's noise adds where the object is.
+struct CorrespondenceDistances {
   double start = 0.0;
   double end = 0.0;
 };
-PairDistances pair_distances(const SeenObject& seen, const RegistrationSettings& settings);
+CorrespondenceDistances correspondence_distances(const SeenObject& seen, const RegistrationSettings& settings);
 
 /// With few points, from pairs `start_m` apart on.
 RegistrationResult register_coarsely(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object, double start_m,

@@ -61,12 +61,12 @@ TEST(Registration, PairDistancesGrowWithDepthsNoise) {
   const RegistrationScene scene(mug(), -0.05, standing(35.0, 30.0, 0.9));
   SeenObject seen = scene.seen();
   const RegistrationSettings settings;
-  const PairDistances near = pair_distances(seen, settings);
-  EXPECT_EQ(near.start, settings.start_distance_m);
-  EXPECT_GT(near.end, settings.end_distance_m);
+  const CorrespondenceDistances near = correspondence_distances(seen, settings);
+  EXPECT_EQ(near.start, settings.max_correspondence_start_m);
+  EXPECT_GT(near.end, settings.max_correspondence_end_m);
   seen.centre_camera.z() = 4.0F;
-  const PairDistances far = pair_distances(seen, settings);
-  EXPECT_GT(far.end, settings.start_distance_m);
+  const CorrespondenceDistances far = correspondence_distances(seen, settings);
+  EXPECT_GT(far.end, settings.max_correspondence_start_m);
   EXPECT_EQ(far.start, far.end) << "registration never ends with wider pairs than it begins with";
 }
 

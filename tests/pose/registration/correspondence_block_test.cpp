@@ -1,4 +1,4 @@
-#include "pose/registration/pair_block.hpp"
+#include "pose/registration/correspondence_block.hpp"
 
 #include <gtest/gtest.h>
 
@@ -29,9 +29,9 @@ RgbdFrame rough_wall(cv::Mat& memory) {
 }
 
 /// Points about the wall, some outside the image or right before the camera.
-PairBlock points_about(std::size_t count) {
+CorrespondenceBlock points_about(std::size_t count) {
   Random random(5);
-  PairBlock block;
+  CorrespondenceBlock block;
   block.count = count;
   for (std::size_t i = 0; i < count; ++i) {
     block.x[i] = static_cast<float>(random.uniform(-0.55, 0.55));
@@ -50,8 +50,8 @@ struct PointLattice {
 };
 
 /// Of point `k`.
-void find_one(const RgbdFrame& frame, const PairSearch& search, const PointLattice& at, std::size_t k,
-              PairBlock& block) {
+void find_one(const RgbdFrame& frame, const CorrespondenceSearch& search, const PointLattice& at, std::size_t k,
+              CorrespondenceBlock& block) {
   const PixelRays rays(frame);
   for (int j = -search.steps; j <= search.steps; ++j) {
     const int y = at.v + j * at.stride;
@@ -65,19 +65,20 @@ void find_one(const RgbdFrame& frame, const PairSearch& search, const PointLatti
       const float distance_sq = here.squaredNorm();
       if (!(distance_sq < block.distance_sq[k])) continue;
       block.distance_sq[k] = distance_sq;
-      block.gap_x[k] = here.x();
-      block.gap_y[k] = here.y();
-      block.gap_z[k] = here.z();
+      block.residual_x[k] = here.x();
+      block.residual_y[k] = here.y();
+      block.residual_z[k] = here.z();
     }
   }
 }
 
-/// What find_gaps() does with vector units, point by point.
-void reference_find_gaps(const RgbdFrame& frame, const PairSearch& search, PairBlock& block) {
+/// What find_correspondences() does with vector units, point by point.
+void reference_find_correspondences(const RgbdFrame& frame, const CorrespondenceSearch& search,
+                                    CorrespondenceBlock& block) {
   const PixelRays rays(frame);
   for (std::size_t k = 0; k < block.count; ++k) {
     block.distance_sq[k] = search.distance_m * search.distance_m;
-    block.gap_x[k] = block.gap_y[k] = block.gap_z[k] = 0.0F;
+    block.residual_x[k] = block.residual_y[k] = block.residual_z[k] = 0.0F;
     const Eigen::Vector3f point(block.x[k], block.y[k], block.z[k]);
     const Eigen::Vector2f pixel = frame.camera.project_single(point) + Eigen::Vector2f::Constant(0.5F);
     const bool inside = pixel.x() >= 0.5F && pixel.y() >= 0.5F && pixel.x() < static_cast<float>(rays.columns) &&
@@ -90,79 +91,82 @@ void reference_find_gaps(const RgbdFrame& frame, const PairSearch& search, PairB
   }
 }
 
-/// What add_products() does with vector units, row by row.
-void reference_add_products(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums) {
+/// What accumulate_outer_products() does with vector units, row by row.
+void reference_accumulate_outer_products(const ResidualRows& rows, const CorrespondenceBlock::Values& weights,
+                                         std::size_t count, OuterProductSum& sums) {
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Map<const Eigen::Matrix<float, 8, 1>> row(rows[i].values.data());
     sums += (weights[i] * row) * row.transpose();
   }
 }
 
-TEST(PairBlock, FindsTheNearestPointOfAStep) {
+TEST(CorrespondenceBlock, FindsTheNearestPointOfAStep) {
   RgbdFrame frame;
   frame.camera = {80, 60, 70.0, 70.0, 40.0, 30.0};
   frame.depth = cv::Mat(60, 80, CV_32FC1, cv::Scalar(0.9F));
   frame.depth.colRange(43, 80).setTo(0.8F);
-  PairBlock block;
+  CorrespondenceBlock block;
   block.count = 2;
   block.z[0] = block.z[1] = 0.8F;
   block.x[1] = 0.3F;  // well onto the step
-  find_gaps(frame, {0.05F, 2}, block);
-  EXPECT_NEAR(block.gap_x[0], 4.0 / 70.0 * 0.8, 0.012);  // from the middle to a pixel of the lattice beyond column 43
-  EXPECT_NEAR(block.gap_z[0], 0.0, 1e-6);
+  find_correspondences(frame, {0.05F, 2}, block);
+  EXPECT_NEAR(block.residual_x[0], 4.0 / 70.0 * 0.8,
+              0.012);  // from the middle to a pixel of the lattice beyond column 43
+  EXPECT_NEAR(block.residual_z[0], 0.0, 1e-6);
   EXPECT_LT(block.distance_sq[1], 0.006F * 0.006F);
 }
 
-TEST(PairBlock, NothingWithinReachIsNoGap) {
+TEST(CorrespondenceBlock, NothingWithinReachIsNoGap) {
   RgbdFrame frame;
   frame.camera = {80, 60, 70.0, 70.0, 40.0, 30.0};
   frame.depth = cv::Mat(60, 80, CV_32FC1, cv::Scalar(0.9F));
-  PairBlock block;
+  CorrespondenceBlock block;
   block.count = 2;
   block.z[0] = block.z[1] = 0.8F;
   block.x[1] = 5.0F;  // outside the image
-  find_gaps(frame, {0.05F, 2}, block);
+  find_correspondences(frame, {0.05F, 2}, block);
   for (std::size_t i = 0; i < block.count; ++i) {
     EXPECT_EQ(block.distance_sq[i], 0.05F * 0.05F);
-    EXPECT_EQ(block.gap_z[i], 0.0F);
+    EXPECT_EQ(block.residual_z[i], 0.0F);
   }
 }
 
-TEST(PairBlock, GapsAreThoseOfPointByPointOnEveryMachine) {
+TEST(CorrespondenceBlock, ResidualsAreThoseOfPointByPointOnEveryMachine) {
   cv::Mat memory;
   const RgbdFrame frame = rough_wall(memory);
-  for (const PairSearch search : {PairSearch{0.035F, 2}, PairSearch{0.008F, 1}, PairSearch{0.5F, 3}}) {
-    for (const std::size_t count : {std::size_t{1}, std::size_t{37}, PairBlock::kSize}) {
-      PairBlock expected = points_about(count);
-      reference_find_gaps(frame, search, expected);
+  for (const CorrespondenceSearch search :
+       {CorrespondenceSearch{0.035F, 2}, CorrespondenceSearch{0.008F, 1}, CorrespondenceSearch{0.5F, 3}}) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{37}, CorrespondenceBlock::kSize}) {
+      CorrespondenceBlock expected = points_about(count);
+      reference_find_correspondences(frame, search, expected);
       simd::with_every_target([&] {
-        PairBlock fast = points_about(count);
-        find_gaps(frame, search, fast);
+        CorrespondenceBlock fast = points_about(count);
+        find_correspondences(frame, search, fast);
         for (std::size_t i = 0; i < count; ++i) {
           EXPECT_EQ(fast.distance_sq[i], expected.distance_sq[i]) << i;
-          EXPECT_EQ(fast.gap_x[i], expected.gap_x[i]) << i;
-          EXPECT_EQ(fast.gap_y[i], expected.gap_y[i]) << i;
-          EXPECT_EQ(fast.gap_z[i], expected.gap_z[i]) << i;
+          EXPECT_EQ(fast.residual_x[i], expected.residual_x[i]) << i;
+          EXPECT_EQ(fast.residual_y[i], expected.residual_y[i]) << i;
+          EXPECT_EQ(fast.residual_z[i], expected.residual_z[i]) << i;
         }
       });
     }
   }
 }
 
-TEST(PairBlock, SumsAreThoseOfRowByRowOnEveryMachine) {
+TEST(CorrespondenceBlock, SumsAreThoseOfRowByRowOnEveryMachine) {
   Random random(7);
-  PairRows rows;
-  PairBlock::Values weights;
+  ResidualRows rows;
+  CorrespondenceBlock::Values weights;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (float& value : rows[i].values) value = static_cast<float>(random.uniform(-1.0, 1.0));
     weights[i] = static_cast<float>(random.uniform());
   }
   for (const std::size_t count : {std::size_t{0}, std::size_t{5}, rows.size()}) {
-    PairSums expected = PairSums::Identity();
-    reference_add_products(rows, weights, count, expected);
+    OuterProductSum expected = OuterProductSum::Identity();
+    reference_accumulate_outer_products(rows, weights, count, expected);
     simd::with_every_target([&] {
-      PairSums fast = PairSums::Identity();
-      add_products(rows, weights, count, fast);
+      OuterProductSum fast = OuterProductSum::Identity();
+      accumulate_outer_products(rows, weights, count, fast);
       EXPECT_EQ(fast, expected);
     });
   }

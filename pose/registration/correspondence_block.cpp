@@ -1,7 +1,7 @@
 // Compiled once for each instruction set, see foreach_target.h of Highway.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pose/registration/pair_block.cpp"
-#include "pose/registration/pair_block.hpp"
+#define HWY_TARGET_INCLUDE "pose/registration/correspondence_block.cpp"
+#include "pose/registration/correspondence_block.hpp"
 
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
@@ -11,7 +11,7 @@ namespace houghstream::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Float = hn::CappedTag<float, PairBlock::kSize>;
+using Float = hn::CappedTag<float, CorrespondenceBlock::kSize>;
 using Floats = hn::Vec<Float>;
 using Int = hn::RebindToSigned<Float>;
 using Ints = hn::Vec<Int>;
@@ -22,7 +22,7 @@ struct Lattices {
   Ints u, v, stride;
 };
 
-HWY_INLINE Lattices lattices(const PixelRays& rays, const PairSearch& search, Floats x, Floats y, Floats z) {
+HWY_INLINE Lattices lattices(const PixelRays& rays, const CorrespondenceSearch& search, Floats x, Floats y, Floats z) {
   const Float d;
   const Int di;
   const auto set = [d](float value) { return hn::Set(d, value); };
@@ -44,8 +44,8 @@ HWY_INLINE hn::Mask<Int> within(Ints value, int limit) {
 }
 
 /// Of the points of one vector.
-HWY_INLINE void find_some(const PixelRays& rays, const float* depth, const PairSearch& search, std::size_t first,
-                          PairBlock& block) {
+HWY_INLINE void find_some(const PixelRays& rays, const float* depth, const CorrespondenceSearch& search,
+                          std::size_t first, CorrespondenceBlock& block) {
   const Float d;
   const Int di;
   const Floats px = hn::Load(d, block.x.data() + first);
@@ -80,16 +80,17 @@ HWY_INLINE void find_some(const PixelRays& rays, const float* depth, const PairS
     }
   }
   hn::Store(best_sq, d, block.distance_sq.data() + first);
-  hn::Store(best_x, d, block.gap_x.data() + first);
-  hn::Store(best_y, d, block.gap_y.data() + first);
-  hn::Store(best_z, d, block.gap_z.data() + first);
+  hn::Store(best_x, d, block.residual_x.data() + first);
+  hn::Store(best_y, d, block.residual_y.data() + first);
+  hn::Store(best_z, d, block.residual_z.data() + first);
 }
 
-void find_all(const PixelRays& rays, const float* depth, const PairSearch& search, PairBlock& block) {
+void find_all(const PixelRays& rays, const float* depth, const CorrespondenceSearch& search,
+              CorrespondenceBlock& block) {
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(Float())) find_some(rays, depth, search, i, block);
 }
 
-void add_all(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, float* sums) {
+void add_all(const ResidualRows& rows, const CorrespondenceBlock::Values& weights, std::size_t count, float* sums) {
   constexpr std::size_t kWidth = 8;
   const hn::CappedTag<float, kWidth> d;
   using Part = hn::Vec<decltype(d)>;
@@ -117,11 +118,12 @@ namespace houghstream {
 HWY_EXPORT(find_all);
 HWY_EXPORT(add_all);
 
-void find_gaps(const RgbdFrame& frame, const PairSearch& search, PairBlock& block) {
+void find_correspondences(const RgbdFrame& frame, const CorrespondenceSearch& search, CorrespondenceBlock& block) {
   HWY_DYNAMIC_DISPATCH(find_all)(PixelRays(frame), frame.depth.ptr<float>(), search, block);
 }
 
-void add_products(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums) {
+void accumulate_outer_products(const ResidualRows& rows, const CorrespondenceBlock::Values& weights, std::size_t count,
+                               OuterProductSum& sums) {
   HWY_DYNAMIC_DISPATCH(add_all)(rows, weights, count, sums.data());
 }
 

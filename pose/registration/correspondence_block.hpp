@@ -30,36 +30,37 @@ struct PixelRays {
   int row_step;  ///< values of depth
 };
 
-/// Some of a model's points on their way to being paired, one array per coordinate; camera frame, metres.
-struct PairBlock {
+/// Some of a model's points and their correspondences, one array per coordinate; camera frame, metres.
+struct CorrespondenceBlock {
   static constexpr std::size_t kSize = 64;
   using Values = std::array<float, kSize>;
-  std::size_t count = 0;                         ///< points that are set
-  alignas(64) Values x{}, y{}, z{};              ///< z > 0
-  alignas(64) Values gap_x{}, gap_y{}, gap_z{};  ///< from the point to the measured one; 0 without
-  alignas(64) Values distance_sq{};              ///< of them; the square of PairSearch::distance_m without
+  std::size_t count = 0;                                        ///< points that are set
+  alignas(64) Values x{}, y{}, z{};                             ///< z > 0
+  alignas(64) Values residual_x{}, residual_y{}, residual_z{};  ///< from the point to the measured one; 0 without
+  alignas(64) Values distance_sq{};  ///< of them; the square of CorrespondenceSearch::distance_m without
 };
 
-/// Where measured points are looked for: a lattice of pixels about that of the model's point.
-struct PairSearch {
+/// The lattice of pixels about a model point's pixel on which its measured point is searched.
+struct CorrespondenceSearch {
   float distance_m = 0.0F;  ///< measured points farther away are none; the lattice reaches as far to each side
   int steps = 1;            ///< of the lattice to each side
 };
 
-/// Fills in the gap from each of the block's points to the measured point nearest to it on its lattice. Written for
+/// Sets the residual from each of the block's points to the measured point nearest to it on its lattice. Written for
 /// vector units; its test has the same point by point.
-void find_gaps(const RgbdFrame& frame, const PairSearch& search, PairBlock& block);
+void find_correspondences(const RgbdFrame& frame, const CorrespondenceSearch& search, CorrespondenceBlock& block);
 
-/// Eight values of a pair; rows of a least-squares problem.
-struct alignas(32) PairRow {
+/// Eight values of a correspondence: a row of a least-squares problem.
+struct alignas(32) ResidualRow {
   std::array<float, 8> values{};
 };
-using PairRows = std::array<PairRow, PairBlock::kSize>;
+using ResidualRows = std::array<ResidualRow, CorrespondenceBlock::kSize>;
 
-/// Sum of weighted products of such values, by columns; single precision and a width of eight suit vector units.
-using PairSums = Eigen::Matrix<float, 8, 8>;
+/// Sum of weighted outer products of such rows, by columns; single precision and a width of eight suit vector units.
+using OuterProductSum = Eigen::Matrix<float, 8, 8>;
 
 /// Adds weight * row * row^T of the first `count` rows, in their order.
-void add_products(const PairRows& rows, const PairBlock::Values& weights, std::size_t count, PairSums& sums);
+void accumulate_outer_products(const ResidualRows& rows, const CorrespondenceBlock::Values& weights, std::size_t count,
+                               OuterProductSum& sums);
 
 }  // namespace houghstream
