@@ -9,7 +9,7 @@
 
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/parallel.hpp"
-#include "pose/verification/judgement.hpp"
+#include "pose/verification/pose_decision.hpp"
 
 namespace houghstream {
 namespace {
@@ -83,7 +83,7 @@ void find_candidates(const ObjectPoses& earlier, const PoseSettings& settings, E
 
 void choose_one(const PoseSettings& settings, Estimation& it) {
   it.chosen = choose_poses(*it.seen, it.registered, it.rotations, choice_settings_of(settings));
-  tell_registration(it.chosen.front(), it.pose);
+  copy_registration_evidence(it.chosen.front(), it.pose);
   if (it.chosen.front().inliers == 0) it.pose.status = PoseStatus::kNotConverged;
 }
 
@@ -93,9 +93,9 @@ void verify_one(const PoseSettings& settings, Estimation& it) {
   for (const RegistrationResult& result : it.chosen) {
     const Eigen::Isometry3d& T_camera_object = result.T_camera_object;
     ObjectPose judged = it.pose;
-    tell_registration(result, judged);
-    judge(gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification), T_camera_object,
-          it.detection.reported, class_quality_of(settings, it.pose.class_name), judged);
+    copy_registration_evidence(result, judged);
+    decide_status(gather_evidence(*it.seen, T_camera_object, it.detection.score, settings.verification),
+                  T_camera_object, it.detection.reported, class_quality_of(settings, it.pose.class_name), judged);
     if (!best || judged.quality > best->quality) best = std::move(judged);
   }
   it.pose = *std::move(best);

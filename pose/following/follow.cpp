@@ -8,7 +8,7 @@
 #include "pose/model/angles.hpp"
 #include "pose/registration/turn_search.hpp"
 #include "pose/seen/depth_score.hpp"
-#include "pose/verification/judgement.hpp"
+#include "pose/verification/pose_decision.hpp"
 
 namespace houghstream {
 namespace {
@@ -82,12 +82,12 @@ void judge_followed(const SeenObject& seen, const ExpectedObject& expected, cons
     evidence.depth.outline = expected.verified->outline;
     evidence.depth.outline_goes_on = expected.verified->outline_goes_on;
     followed.verified = expected.verified;
-    judge(evidence, T, true, quality, followed.pose);
+    decide_status(evidence, T, true, quality, followed.pose);
     if (followed.pose.status == PoseStatus::kValid) return;
   }
   evidence.depth = verify_pose(seen.frame, seen.model.mesh, T, tolerance, &seen.colours);
   followed.verified = evidence.depth;
-  judge(evidence, T, true, quality, followed.pose);
+  decide_status(evidence, T, true, quality, followed.pose);
 }
 
 /// Of an object of which nothing is known yet in this frame.
@@ -113,7 +113,7 @@ FollowedPose follow_from(const SeenFrame& frame, const ObjectModel& model, const
     return followed;
   }
   const RegistrationResult result = register_near(seen, start, expected, input);
-  tell_registration(result, pose);
+  copy_registration_evidence(result, pose);
   const double jump_m = (middle_of(model, result.T_camera_object) - middle_of(model, start)).norm();
   const double most_m = expected.is_lost ? settings.registration.max_shift_m : input.follow.max_jump_m;
   if (result.inliers == 0 || !(jump_m <= most_m)) {

@@ -63,7 +63,7 @@ float pose_quality(const QualityTerms& terms, const QualitySettings& settings) {
   return static_cast<float>(logistic(sum));
 }
 
-PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {
+PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known) {
   constexpr std::array<PoseStatus, kQualityTerms.size()> kReasons = {
       PoseStatus::kLowScore,          PoseStatus::kRejectedByDepth,  PoseStatus::kRejectedByDepth,
       PoseStatus::kRejectedByOutline, PoseStatus::kRejectedByColour, PoseStatus::kRejectedByColour,

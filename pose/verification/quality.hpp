@@ -67,6 +67,6 @@ QualityTerms quality_terms(const PoseEvidence& evidence, const QualitySettings& 
 float pose_quality(const QualityTerms& terms, const QualitySettings& settings);
 
 /// The status that names the term which speaks most against the pose.
-PoseStatus reason_against(const QualityTerms& terms, const QualitySettings& settings, bool colours_known = true);
+PoseStatus find_rejection_reason(const QualityTerms& terms, const QualitySettings& settings, bool colours_known = true);
 
 }  // namespace houghstream

@@ -80,8 +80,8 @@ QualitySettings fit_quality_settings(const std::vector<QualityExample>& examples
   for (const QualityExample& example : examples) {
     judged.push_back({to_vector(1.0, example.terms), example.is_right});
     // Which of the two is right, not how likely that is: all else is the same, and drops out.
-    if (example.of_other_print)
-      judged.push_back({to_vector(1.0, example.terms) - to_vector(1.0, *example.of_other_print), true});
+    if (example.with_swapped_texture)
+      judged.push_back({to_vector(1.0, example.terms) - to_vector(1.0, *example.with_swapped_texture), true});
   }
   // In scenes where nothing is taken away hardly a pose that was found is seen through: what they say of it is chance.
   constexpr int kSeenThrough = 2;

@@ -14,7 +14,7 @@ struct QualityExample {
   QualityTerms terms;
   bool is_right = false;  ///< the object that was detected, ADD-S below a tenth of the diameter
   /// Of a right pose, what speaks for it if the object had another print: the fit tells the two apart.
-  std::optional<QualityTerms> of_other_print = std::nullopt;
+  std::optional<QualityTerms> with_swapped_texture = std::nullopt;
   float score = 0.0F;     ///< of the detection
   bool is_there = false;  ///< the object that was detected, whether the pose is right or not
   int half = 0;           ///< 0 or 1: of which half of all that was practised

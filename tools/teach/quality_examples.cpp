@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "pose/verification/other_print.hpp"
+#include "pose/verification/swapped_texture.hpp"
 
 namespace houghstream::quality {
 namespace {
@@ -41,7 +41,7 @@ std::vector<Example> judge_examples(const FoundPoses& found, const std::map<std:
         const double error = add_s_error(model.points, T_camera_object, truth.T_camera_object);
         example.is_right = error < kRightBelow * model.diameter;
       }
-      if (example.is_right) example.of_other_print = terms->of_other_print;
+      if (example.is_right) example.with_swapped_texture = terms->with_swapped_texture;
       examples.push_back(std::move(example));
     }
   }
@@ -79,9 +79,9 @@ std::vector<std::optional<FoundTerms>> PoseFinder::terms_of(const RgbdFrame& fra
     const SeenObject seen = see_object(seen_frame, detection, models_.at(pose.class_name), settings_.region);
     const PoseEvidence own = gather_evidence(seen, *pose.T_camera_object, detection.score, settings_.verification);
     const std::optional<PoseEvidence> other =
-        evidence_of_other_print(seen, *pose.T_camera_object, own, settings_.verification);
+        evidence_with_swapped_texture(seen, *pose.T_camera_object, own, settings_.verification);
     terms = FoundTerms{quality_terms(own, settings_.quality), std::nullopt};
-    if (other) terms->of_other_print = quality_terms(*other, settings_.quality);
+    if (other) terms->with_swapped_texture = quality_terms(*other, settings_.quality);
     if (pose_quality(terms->own, settings_.quality) != pose.quality) {
       throw std::logic_error(
           fmt::format("pose of {}: not judged by the evidence that is learnt from", pose.class_name));

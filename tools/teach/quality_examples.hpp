@@ -22,7 +22,7 @@ struct Example : QualityExample {
 /// What a pose that was found is judged by.
 struct FoundTerms {
   QualityTerms own;
-  std::optional<QualityTerms> of_other_print;  ///< see evidence_of_other_print()
+  std::optional<QualityTerms> with_swapped_texture;  ///< see evidence_with_swapped_texture()
 };
 
 /// Frames of a scene with detections and poses, one pose for each detection in their order, and what each pose is

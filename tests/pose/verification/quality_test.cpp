@@ -23,7 +23,7 @@ float quality(const PoseEvidence& evidence) {
 }
 
 PoseStatus reason(const PoseEvidence& evidence) {
-  return reason_against(quality_terms(evidence, {}), {});
+  return find_rejection_reason(quality_terms(evidence, {}), {});
 }
 
 TEST(PoseQuality, IsAProbabilityThatIsHighWhereNothingIsWrong) {

@@ -57,8 +57,8 @@ TEST(QualityTraining, AnotherPrintMovesTheWeightsOfColourBeyondAllOthers) {
   const QualitySettings alone = fit_quality_settings(examples, QualitySettings{}, 1.0);
   for (QualityExample& example : examples) {
     if (!example.is_right) continue;
-    example.of_other_print = example.terms;
-    example.of_other_print->print = example.terms.print - 0.3;
+    example.with_swapped_texture = example.terms;
+    example.with_swapped_texture->print = example.terms.print - 0.3;
   }
   const QualitySettings told_apart = fit_quality_settings(examples, QualitySettings{}, 1.0);
   EXPECT_GT(told_apart.weights.print, alone.weights.print + 0.5);

@@ -63,7 +63,7 @@ TEST(QualityExamples, APoseIsRightWithinATenthOfTheDiameter) {
     EXPECT_EQ(examples[0].score, 0.9F);
     EXPECT_TRUE(examples[0].is_there) << "whether its pose is right or not";
     EXPECT_EQ(examples[0].is_right, x < 0.02) << x;
-    EXPECT_EQ(examples[0].of_other_print.has_value(), x < 0.02) << "of a wrong pose another print says nothing";
+    EXPECT_EQ(examples[0].with_swapped_texture.has_value(), x < 0.02) << "of a wrong pose another print says nothing";
   }
 }
 

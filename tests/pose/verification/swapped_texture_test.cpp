@@ -1,4 +1,4 @@
-#include "pose/verification/other_print.hpp"
+#include "pose/verification/swapped_texture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test_scene;
 
-std::optional<PoseEvidence> of_other_print(const Mesh& box) {
+std::optional<PoseEvidence> with_swapped_texture(const Mesh& box) {
   const Eigen::Isometry3d pose = standing(30.0, 30.0, 0.8);
   const RgbdFrame frame = coloured_frame(box, pose, 1);
   const ObjectModel model = make_object_model("box", box, {});
@@ -19,7 +19,7 @@ std::optional<PoseEvidence> of_other_print(const Mesh& box) {
   const SeenFrame seen_frame = see_frame(frame, {}, {});
   const SeenObject seen = see_object(seen_frame, detection, model, {});
   const PoseEvidence own = gather_evidence(seen, pose, 0.9F, {});
-  const std::optional<PoseEvidence> other = evidence_of_other_print(seen, pose, own, {});
+  const std::optional<PoseEvidence> other = evidence_with_swapped_texture(seen, pose, own, {});
   if (other) {
     EXPECT_EQ(other->depth.agreeing, own.depth.agreeing) << "the surface is the same";
     EXPECT_LT(other->colour->agreement, own.colour->agreement - 0.2F);
@@ -28,13 +28,13 @@ std::optional<PoseEvidence> of_other_print(const Mesh& box) {
 }
 
 TEST(OtherPrint, ExplainsWhatIsSeenWorseThanItsOwn) {
-  EXPECT_TRUE(of_other_print(printed_box()).has_value());
+  EXPECT_TRUE(with_swapped_texture(printed_box()).has_value());
 }
 
 TEST(OtherPrint, APlainObjectHasNone) {
   Mesh plain = printed_box();
   for (cv::Vec3b& colour : plain.colours) colour = cv::Vec3b(40, 90, 160);
-  EXPECT_FALSE(of_other_print(plain).has_value());
+  EXPECT_FALSE(with_swapped_texture(plain).has_value());
 }
 
 }  // namespace

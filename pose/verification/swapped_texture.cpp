@@ -1,4 +1,4 @@
-#include "pose/verification/other_print.hpp"
+#include "pose/verification/swapped_texture.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace houghstream {
 namespace {
 
-/// The view with the colours of each point's opposite.
+/// Returns the view with the colours of each point's opposite.
 ModelView with_opposite_colours(const ModelView& view) {
   ModelView other = view;
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
@@ -28,7 +28,7 @@ ModelView with_opposite_colours(const ModelView& view) {
   return other;
 }
 
-/// L*, a*, b* of each point, less their means.
+/// Returns L*, a*, b* of each point, less their means.
 Eigen::MatrixX3d about_mean(const std::vector<LabColour>& colours) {
   Eigen::MatrixX3d out(static_cast<Eigen::Index>(colours.size()), 3);
   for (std::size_t i = 0; i < colours.size(); ++i)
@@ -37,9 +37,9 @@ Eigen::MatrixX3d about_mean(const std::vector<LabColour>& colours) {
   return out;
 }
 
-/// Of two prints of the same points: near 1 for plain ones too.
+/// Returns the correlation of two textures of the same points, which is near 1 for plain ones too.
 double correlation(const std::vector<LabColour>& a, const std::vector<LabColour>& b) {
-  constexpr double kPlain = 30.0;  // variance without print
+  constexpr double kPlain = 30.0;  // variance without texture
   const Eigen::MatrixX3d one = about_mean(a);
   const Eigen::MatrixX3d two = about_mean(b);
   const double plain = kPlain * static_cast<double>(a.size());
@@ -48,13 +48,15 @@ double correlation(const std::vector<LabColour>& a, const std::vector<LabColour>
 
 }  // namespace
 
-std::optional<PoseEvidence> evidence_of_other_print(const SeenObject& seen, const Eigen::Isometry3d& T_camera_object,
-                                                    const PoseEvidence& own, const VerificationSettings& settings) {
-  constexpr double kSamePrint = 0.5;  // correlation
+std::optional<PoseEvidence> evidence_with_swapped_texture(const SeenObject& seen,
+                                                          const Eigen::Isometry3d& T_camera_object,
+                                                          const PoseEvidence& own,
+                                                          const VerificationSettings& settings) {
+  constexpr double kMaxTextureCorrelation = 0.5;
   const ViewLook look = look_at_view(seen.frame, seen.model, T_camera_object, settings.points);
   if (look.view.colours.empty()) return std::nullopt;
   const ModelView view = with_opposite_colours(look.view);
-  if (correlation(look.view.colours, view.colours) > kSamePrint) return std::nullopt;
+  if (correlation(look.view.colours, view.colours) > kMaxTextureCorrelation) return std::nullopt;
   const DepthTolerance tolerance{settings.tolerance_m, seen.noise};
   const ViewLook other{view, look.T, look.depth, look.looks};
   PoseEvidence evidence = own;

@@ -1,4 +1,4 @@
-#include "pose/verification/judgement.hpp"
+#include "pose/verification/pose_decision.hpp"
 
 namespace houghstream {
 namespace {
@@ -7,8 +7,8 @@ constexpr float kRefutedBelow = 0.5F;  // less probably there than not
 
 }  // namespace
 
-void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
-           const QualitySettings& quality, ObjectPose& pose) {
+void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
+                   const QualitySettings& quality, ObjectPose& pose) {
   const QualityTerms terms = quality_terms(evidence, quality);
   pose.visible_fraction = evidence.depth.visible_fraction();
   pose.free_space_violation = evidence.depth.free_space_violation();
@@ -20,11 +20,11 @@ void judge(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_objec
   } else if (reported && presence < kRefutedBelow) {
     pose.status = PoseStatus::kRefuted;
   } else {
-    pose.status = reason_against(terms, quality, evidence.colour.has_value());
+    pose.status = find_rejection_reason(terms, quality, evidence.colour.has_value());
   }
 }
 
-void tell_registration(const RegistrationResult& result, ObjectPose& pose) {
+void copy_registration_evidence(const RegistrationResult& result, ObjectPose& pose) {
   pose.converged = result.converged;
   pose.iterations = result.iterations;
   pose.inliers = result.inliers;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "pipeline/types/object_pose.hpp"
+#include "pose/registration/registration.hpp"
+#include "pose/verification/quality.hpp"
+
+namespace houghstream {
+
+/// Sets the quality of `pose` from the evidence for `T_camera_object`, and then either the pose itself or the status
+/// that says why it is rejected. Only of what is `reported` (see Detection) may that be that the object is refuted.
+/// `quality` is that of the object's class.
+void decide_status(const PoseEvidence& evidence, const Eigen::Isometry3d& T_camera_object, bool reported,
+                   const QualitySettings& quality, ObjectPose& pose);
+
+/// Copies the evidence of a registration into the pose.
+void copy_registration_evidence(const RegistrationResult& result, ObjectPose& pose);
+
+}  // namespace houghstream
