@@ -26,7 +26,7 @@ const Track* find_namesake(const ObjectPose& pose, const Eigen::Isometry3d& T_wo
     const auto model = models.find(track.class_name);
     if (!track.there() || model == models.end() || model->second.object_id != pose.class_id) return false;
     return track.pose.distance(measured, model->second.symmetries, model->second.centre) <
-               0.5 * model->second.radius_m &&
+               0.5 * model->second.box_radius_m &&
            track.pose.angle(measured, model->second.symmetries) < same_rotation_rad;
   });
   return found == tracks.end() ? nullptr : &*found;
