@@ -33,6 +33,18 @@ auto wait_in_parts(milliseconds patience, const StopRequested& stop_requested, c
   return result;
 }
 
+/// The first images of a recorded file, as its times are compared with what was seen live; fewer where it is shorter.
+FirstImages read_first_images(const std::string& file) {
+  const auto device = OpenniDevice::open_file(file);
+  constexpr std::size_t kCompared = 24;  // of a stream: enough where only some were seen live
+  FirstImages first;
+  while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
+    const std::optional<SensorImage> image = device->wait(kFilePatience);
+    if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
+  }
+  return first;
+}
+
 }  // namespace
 
 std::vector<CameraDescription> list_cameras(bool closely) {
@@ -84,7 +96,7 @@ struct OpenniDevice::State {
     depth.destroy();
     colour.destroy();
     device.close();
-    if (recording && recording->started()) recording->finish();
+    if (recording && recording->started()) recording->finish(read_first_images);
   }
 
   void open() {

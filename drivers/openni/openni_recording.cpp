@@ -5,7 +5,6 @@
 
 #include "drivers/openni/oni_repair.hpp"
 #include "drivers/openni/oni_times.hpp"
-#include "drivers/openni/openni_device.hpp"
 #include "drivers/openni/openni_parts.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/host_clock.hpp"
@@ -17,18 +16,6 @@ namespace houghstream::openni {
 namespace {
 
 constexpr std::size_t kRemembered = 300;  // ten seconds: as late as a sleeping disk may let the recorder begin
-constexpr std::size_t kCompared = 24;     // recorded images of a stream: enough where only some are seen
-
-/// Fewer where a recording is shorter.
-FirstImages first_recorded(const std::string& file) {
-  const auto device = OpenniDevice::open_file(file);
-  FirstImages first;
-  while (std::min(first.depth.size(), first.colour.size()) < kCompared && !device->ended()) {
-    const std::optional<SensorImage> image = device->wait(kFilePatience);
-    if (image && first.of(image->sensor).size() < kCompared) first.of(image->sensor).push_back(remember(*image));
-  }
-  return first;
-}
 
 /// What cannot be mended stays as it is.
 void end_interrupted(const std::filesystem::path& file) {
@@ -75,7 +62,7 @@ void OpenniRecording::mend_times(const FirstImages& recorded) {
   if (colour_later_us != 0) delay_oni_node(file_, later, std::abs(colour_later_us));
 }
 
-void OpenniRecording::finish() noexcept {
+void OpenniRecording::finish(FirstImages (*first_recorded)(const std::string& file)) noexcept {
   const StillFinishing finishing;  // a long recording is read from its disk
   FirstImages recorded;
   try {

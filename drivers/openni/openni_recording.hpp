@@ -35,7 +35,8 @@ class OpenniRecording {
   /// After stop(): makes times in the file those of one clock, the earlier stream's first image at zero, and puts it
   /// into its place. Warns where the times cannot be mended; they are then as OpenNI2 has left them. A recording that
   /// is not whole (a full disk) is told, and stays as FILE.partial.oni; an earlier FILE is left alone.
-  void finish() noexcept;
+  /// `first_recorded` reads the first images of a recorded file.
+  void finish(FirstImages (*first_recorded)(const std::string& file)) noexcept;
 
  private:
   void mend_times(const FirstImages& recorded);

@@ -7,7 +7,7 @@
 
 #include "detector/forest/forest.hpp"
 #include "pipeline/types/training_view.hpp"
-#include "tools/teach/teach_jobs.hpp"
+#include "tools/teach/teach_options.hpp"
 
 namespace houghstream::teach {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "tools/teach/show/show_jobs.hpp"
+#include "tools/teach/show/show_options.hpp"
 #include "tools/teach/show/teaching_publisher.hpp"
 
 namespace houghstream::teach {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/teach/show/show_jobs.hpp"
+#include "tools/teach/show/show_options.hpp"
 
 namespace houghstream::teach {
 

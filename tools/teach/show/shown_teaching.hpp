@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/teach/show/show_jobs.hpp"
+#include "tools/teach/show/show_options.hpp"
 #include "tools/teach/show/show_report.hpp"
 #include "tools/teach/teach_jobs.hpp"
 

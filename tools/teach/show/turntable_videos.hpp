@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tools/teach/show/show_jobs.hpp"
+#include "tools/teach/show/show_options.hpp"
 #include "tools/teach/show/show_report.hpp"
 
 namespace houghstream::teach {
