@@ -1,12 +1,18 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "detector/evidence/evidence_settings.hpp"
 #include "detector/forest/patch_settings.hpp"
 #include "detector/voting/voting_settings.hpp"
 
 namespace houghstream {
 
-/// How a frame is searched: each stage's settings, which stand beside the stage. profiles.cpp has the named ones.
+struct Forest;
+
+/// How a frame is searched: each stage's settings, which stand beside the stage; the defaults are those of the profile
+/// "realtime".
 struct DetectionSettings {
   int threads = 2;  ///< any number gives the same detections
   PatchSpacing spacing;
@@ -15,5 +21,17 @@ struct DetectionSettings {
   EvidenceSettings evidence;
   SuppressionSettings suppression;
 };
+
+constexpr const char* kPaperProfile = "paper";
+constexpr const char* kRealtimeProfile = "realtime";
+
+/// The profiles that the product trains and searches by, see training/profiles.hpp.
+std::vector<std::string> profile_names();
+
+/// How forests of a profile are searched. Throws InputError that lists the names for an unknown name.
+DetectionSettings detection_settings(const std::string& profile);
+
+/// How a forest wants to be searched: by the profile that it was trained by.
+DetectionSettings detection_settings(const Forest& forest);
 
 }  // namespace houghstream

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "detector/extensions.hpp"
 #include "detector/stages.hpp"
 
 namespace houghstream {
@@ -17,7 +16,7 @@ struct Detector::State {
 
 Detector::Detector(Forest forest, DetectionSettings settings)
     : state_(std::make_unique<State>(std::move(forest), settings)) {
-  require_extensions(state_->forest.features, "forest");
+  require_searchable(state_->forest.features, "forest");
 }
 Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
@@ -39,21 +38,16 @@ Detections Detector::detect(const RgbdFrame& frame, DetectorWorkspace& workspace
   const Search search{state_->index, state_->settings};
   check_frame(frame, "detector");
   StageClock clock;
-  std::vector<Candidate> candidates;
-  if (search.forest().features.handling == ScaleHandling::kScaleSpace) {  // the original's way, see detector/baseline
-    candidates = extensions().search_scale_space(search, frame, clock);
-  } else {
-    make_working_images(search, frame, workspace);  // Section 5.1.1
-    clock.mark("detect.resize");
-    compute_features(search, workspace);  // Section 3, around the patches of Section 5.1.3
-    clock.mark("detect.features");
-    find_posteriors(search, workspace);  // Section 5.1.2: leaves of every tree
-    clock.mark("detect.leaves");
-    const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);  // Section 2: votes and their maxima
-    clock.mark("detect.votes");
-    candidates = weigh_evidence(search, frame, hypotheses, workspace);  // scores
-    clock.mark("detect.evidence");
-  }
+  make_working_images(search, frame, workspace);  // Section 5.1.1
+  clock.mark("detect.resize");
+  compute_features(search, workspace);  // Section 3, around the patches of Section 5.1.3
+  clock.mark("detect.features");
+  find_posteriors(search, workspace);  // Section 5.1.2: leaves of every tree
+  clock.mark("detect.leaves");
+  const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);  // Section 2: votes and their maxima
+  clock.mark("detect.votes");
+  std::vector<Candidate> candidates = weigh_evidence(search, frame, hypotheses, workspace);  // scores
+  clock.mark("detect.evidence");
   return report_detections(search, frame, candidates, clock);  // Section 2: non-maximum suppression
 }
 

@@ -16,7 +16,8 @@ struct DetectorWorkspace;
 /// VISAPP 2017, after Gall et al., PAMI 2011). Several threads may use one detector, each with a workspace of its own.
 class Detector {
  public:
-  /// Throws InputError where the forest needs what this program does not have, see extensions.hpp.
+  /// Throws InputError for a forest of another ScaleHandling than depth normalisation and for one with surface
+  /// features: such are searched by hs-study-evaluate and hs-hough.
   Detector(Forest forest, DetectionSettings settings);
   ~Detector();
   Detector(Detector&&) noexcept;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "pipeline/base/checks.hpp"
+
 namespace houghstream {
 namespace {
 
@@ -24,6 +26,18 @@ std::vector<Detection> suppress(std::vector<Candidate>& candidates, const Detect
 }
 
 }  // namespace
+
+void require_searchable(const FeatureSettings& settings, const std::string& source) {
+  require(settings.handling == ScaleHandling::kDepthNormalised,
+          "{}: searches several sizes of the image, which this program cannot, expected one with {}", source,
+          kStudyPrograms);
+  std::uint32_t surfaces = 0;
+  for (const FamilyName& known : kFamilyNames) {
+    if (is_surface_family(known.family)) surfaces |= settings.families & known.family;
+  }
+  require(surfaces == 0, "{}: has the features '{}', which this program cannot compute, expected one with {}", source,
+          family_names(surfaces), kStudyPrograms);
+}
 
 void make_working_images(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
   make_working_images(frame, search.forest().features, search.settings.threads, workspace.images);

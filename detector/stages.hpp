@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "detector/detection_settings.hpp"
@@ -41,6 +42,10 @@ struct DetectorWorkspace {
   VotingMemory voting_memory;
   EvidenceMemory evidence_memory;
 };
+
+/// Throws InputError in one line that names `source`, for instance a forest file, what it needs and who has it, unless
+/// the stages below can search by these settings: depth-normalised, without surface features.
+void require_searchable(const FeatureSettings& settings, const std::string& source);
 
 /// The frame at the sizes that are looked at (paper, Section 5.1.1).
 void make_working_images(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace);

@@ -58,7 +58,7 @@ cv::Mat hough_image(const Search& search, int class_index, const RgbdFrame& fram
   }
   DetectorWorkspace workspace;
   make_working_images(search, frame, workspace);
-  compute_features(search, workspace);
+  compute_features_by(Way::kFast, search, workspace);
   find_posteriors(search, workspace);
   const VotingInput input = voting_input(search, workspace);
   CastMemory memory;

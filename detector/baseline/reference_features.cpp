@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/extensions.hpp"
+#include "detector/baseline/surface_planes.hpp"
 #include "detector/features/feature_families.hpp"
 #include "detector/features/tile_derivatives.hpp"
 #include "detector/features/tile_features.hpp"
@@ -147,7 +147,7 @@ std::vector<cv::Mat> base_planes(const FeatureBlock& block, const WorkingFrame& 
     case kDepthValue: return {counted_steps(frame.filled_depth, depth_steps(frame, settings).metres)};
     case kDepthDerivatives: return depth_planes(frame, settings).derivatives;
     case kDepthHog: return depth_planes(frame, settings).hog;
-    default: return extensions().surface_planes(block.family, frame, 1);
+    default: return surface_planes(block.family, frame, 1);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "detector/baseline/reference_features.hpp"
+#include "detector/baseline/surface_planes.hpp"
 
 namespace houghstream::baseline {
 
@@ -33,8 +34,22 @@ void reference_leaves(const LeafInput& input, int threads, const LeafVisitor& vi
 }
 
 void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image) {
-  if (way == Way::kFast) return compute_features(input, threads, memory, image);
-  image = reference_features(input.frame, input.settings);
+  if (way == Way::kReference) {
+    image = reference_features(input.frame, input.settings);
+    return;
+  }
+  const ExtraPlanes extra = extra_planes(input.frame, input.settings, threads);
+  compute_features({input.frame, input.settings, input.tiles, &extra}, threads, memory, image);
+}
+
+void compute_features_by(Way way, const Search& search, DetectorWorkspace& workspace) {
+  const std::vector<WorkingFrame>& frames = workspace.images.frames;
+  place_patches(workspace.images, {search.forest().patch, search.settings.spacing}, workspace.patches);
+  workspace.features.resize(frames.size());
+  for (std::size_t level = 0; level < frames.size(); ++level) {
+    compute_features_by(way, {frames[level], search.forest().features, workspace.patches.tiles[level]},
+                        search.settings.threads, workspace.feature_memory, workspace.features[level]);
+  }
 }
 
 void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors) {

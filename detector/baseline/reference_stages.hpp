@@ -1,7 +1,6 @@
 #pragma once
 
-#include "detector/features/features.hpp"
-#include "detector/forest/posteriors.hpp"
+#include "detector/stages.hpp"
 
 namespace houghstream::baseline {
 
@@ -12,7 +11,10 @@ enum class Way {
                ///< and tree by tree (find_leaf), with one thread for each run of patches
 };
 
+/// Surface families are computed too: FeatureInput::extra is not asked.
 void compute_features_by(Way way, const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image);
+/// The stage compute_features.
+void compute_features_by(Way way, const Search& search, DetectorWorkspace& workspace);
 
 void find_posteriors_by(Way way, const PosteriorInput& input, LeafMemory& memory, PatchPosteriors& posteriors);
 

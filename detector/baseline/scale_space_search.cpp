@@ -29,7 +29,7 @@ SeenLevel see_level(const Search& search, Way way, const RgbdFrame& frame, const
                     StageClock& clock) {
   const Forest& forest = search.forest();
   const DetectionSettings& settings = search.settings;
-  const WorkingFrame working = make_working_frame(frame, level, forest.features);
+  const WorkingFrame working = scale_space_frame(frame, level, forest.features);
   clock.mark("detect.resize");
   FeatureTiles everywhere;
   everywhere.want_all(working.colour.size());
@@ -206,6 +206,21 @@ bool is_slope(const std::vector<ScalePeak>& peaks, std::size_t i) {
 
 }  // namespace
 
+std::vector<FeatureLevel> scale_space_levels(const FeatureSettings& settings) {
+  constexpr float kAnywhere = std::numeric_limits<float>::infinity();
+  std::vector<FeatureLevel> levels;
+  for (const float ratio : settings.scales) {
+    if (ratio > 0.0F) levels.push_back({settings.image_scale * ratio, ratio, 0.0F, kAnywhere});
+  }
+  return levels;
+}
+
+WorkingFrame scale_space_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings) {
+  FeatureSettings in_pixels = settings;
+  in_pixels.fill_distance = 0.0F;
+  return make_working_frame(frame, level, in_pixels);
+}
+
 std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
@@ -217,7 +232,7 @@ std::vector<Candidate> maxima_over_sizes(const std::vector<ScalePeak>& peaks) {
 std::vector<Candidate> search_scale_space(const Search& search, Way way, const RgbdFrame& frame, StageClock& clock) {
   std::vector<ScalePeak> all;
   int sizes = 0;
-  for (const FeatureLevel& level : feature_levels(search.forest().features)) {
+  for (const FeatureLevel& level : scale_space_levels(search.forest().features)) {
     SeenLevel seen = see_level(search, way, frame, level, clock);
     seen.size = sizes++;
     std::vector<std::vector<ScalePeak>> by_class(search.forest().classes.size());
@@ -232,7 +247,7 @@ std::vector<Candidate> search_scale_space(const Search& search, Way way, const R
 std::vector<cv::Mat> scale_space_hough_images(const Search& search, int class_index, const RgbdFrame& frame) {
   std::vector<cv::Mat> images;
   StageClock clock;
-  for (const FeatureLevel& level : feature_levels(search.forest().features)) {
+  for (const FeatureLevel& level : scale_space_levels(search.forest().features)) {
     images.push_back(hough_image(search, class_index, see_level(search, Way::kFast, frame, level, clock)));
   }
   return images;

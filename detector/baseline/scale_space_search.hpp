@@ -7,6 +7,12 @@
 
 namespace houghstream::baseline {
 
+/// The sizes of FeatureSettings::scales, each of which looks at everything.
+std::vector<FeatureLevel> scale_space_levels(const FeatureSettings& settings);
+
+/// The frame at such a size. Nothing is known of depth, so that a hole borrows that of the nearest pixel.
+WorkingFrame scale_space_frame(const RgbdFrame& frame, const FeatureLevel& level, const FeatureSettings& settings);
+
 /// The search of the original Hough Forest (Gall et al. 2011, Section 3.3): the frame is looked at in every size of
 /// FeatureSettings::scales, each pixel votes in the image for the centres it knows, and each size has a Hough image of
 /// its own; candidates are the maxima over place and size, see maxima_over_sizes. Boxes by back-projection of all

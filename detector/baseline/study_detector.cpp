@@ -13,13 +13,7 @@ std::vector<Candidate> search_normalised(const Search& search, Way way, const Rg
   const DetectionSettings& settings = search.settings;
   make_working_images(search, frame, workspace);
   clock.mark("detect.resize");
-  place_patches(workspace.images, {search.forest().patch, settings.spacing}, workspace.patches);
-  const std::vector<WorkingFrame>& frames = workspace.images.frames;
-  workspace.features.resize(frames.size());
-  for (std::size_t level = 0; level < frames.size(); ++level) {
-    compute_features_by(way, {frames[level], search.forest().features, workspace.patches.tiles[level]},
-                        settings.threads, workspace.feature_memory, workspace.features[level]);
-  }
+  compute_features_by(way, search, workspace);
   clock.mark("detect.features");
   find_posteriors_by(way, {search.index, workspace.features, workspace.patches, settings.leaves, settings.threads},
                      workspace.leaf_memory, workspace.posteriors);

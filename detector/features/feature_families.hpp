@@ -21,8 +21,15 @@ enum FeatureFamily : std::uint32_t {
   kFastHistogram = 128,   ///< 33 planes: fast point feature histogram, FPFH (Rusu et al. 2009)
 };
 
+/// The programs that search a scale space and compute surface families, for refusals.
+constexpr const char* kStudyPrograms = "detector/baseline (hs-study-train, hs-study-evaluate, hs-hough)";
+
+/// Those that the product computes, and all.
+constexpr std::uint32_t kTileFamilies = kIntensity | kDepthValue | kDepthDerivatives | kDepthHog;
+constexpr std::uint32_t kAllFamilies = kTileFamilies | kHonv | kCurvature | kPointHistogram | kFastHistogram;
+
 /// Whether a family describes the surface around a point: studied in the paper, not among its final features, and
-/// implemented in detector/baseline, see extensions.hpp.
+/// implemented in detector/baseline.
 constexpr bool is_surface_family(FeatureFamily family) {
   return family >= kHonv;
 }

@@ -29,8 +29,8 @@ struct FeatureSettings {
   int depth_sobel_px = 7;          ///< kernel of the depth derivatives, working pixels (paper, Section 4.3)
   int min_max_px = 5;              ///< neighbourhood of minimum and maximum, working pixels (paper, Section 3)
   float fill_distance_px = 24.0F;  ///< how far from measured depth a pixel may borrow it, working pixels
-  /// ... or metres on the surface that it borrows from, if those are more pixels, see HoleReach. 0, and in a scale
-  /// space: the nearest pixel lends, whatever its depth.
+  /// ... or metres on the surface that it borrows from, if those are more pixels, see HoleReach. 0: the nearest pixel
+  /// lends, whatever its depth. A scale space takes it for 0.
   float fill_distance = 0.06F;
   ToneRange tone;  ///< frames that are searched are brought into it; what is learnt from stays as it is
 };

@@ -4,7 +4,6 @@
 #include <climits>
 #include <opencv2/imgproc.hpp>
 
-#include "detector/extensions.hpp"
 #include "detector/features/tile_turn.hpp"
 #include "pipeline/base/checks.hpp"
 
@@ -42,14 +41,14 @@ void convert_row(const cv::Mat& colour, int row, int margin, FeatureMemory& memo
 }
 
 /// The planes of each block that tiles do not work out, before minimum and maximum.
-std::vector<std::vector<cv::Mat>> surface_blocks(const FeatureLayout& layout, const WorkingFrame& frame, int threads) {
+std::vector<std::vector<cv::Mat>> surface_blocks(const FeatureLayout& layout, const ExtraPlanes* extra) {
   std::vector<std::vector<cv::Mat>> planes(layout.blocks().size());
   for (std::size_t b = 0; b < planes.size(); ++b) {
     const FeatureFamily family = layout.blocks()[b].family;
     if (!is_surface_family(family)) continue;
-    require(extensions().surface_planes != nullptr, "features '{}': not in this program, expected one with {}",
-            family_names(family), kBaselineFolder);
-    planes[b] = extensions().surface_planes(family, frame, threads);
+    require(extra != nullptr && extra->count(family) > 0, "features '{}': not in this program, expected one with {}",
+            family_names(family), kStudyPrograms);
+    planes[b] = extra->at(family);
   }
   return planes;
 }
@@ -70,7 +69,7 @@ void compute_features(const FeatureInput& input, int threads, FeatureMemory& mem
     });
   }
   const FeatureLayout layout(settings);
-  const std::vector<std::vector<cv::Mat>> base = surface_blocks(layout, input.frame, threads);
+  const std::vector<std::vector<cv::Mat>> base = surface_blocks(layout, input.extra);
   if (memory.sobel_px != settings.depth_sobel_px) memory.kernels = sobel_kernels(settings.depth_sobel_px);
   memory.sobel_px = settings.depth_sobel_px;
   const TileSources sources{input.frame, settings, layout, memory.lab, memory.kernels, base};
@@ -84,12 +83,13 @@ void compute_features(const FeatureInput& input, int threads, FeatureMemory& mem
   });
 }
 
-FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads) {
+FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads,
+                              const ExtraPlanes* extra) {
   FeatureTiles tiles;
   tiles.want_all(frame.colour.size());
   FeatureMemory memory;
   FeatureImage image;
-  compute_features({frame, settings, tiles}, threads, memory, image);
+  compute_features({frame, settings, tiles, extra}, threads, memory, image);
   return image;
 }
 

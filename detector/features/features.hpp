@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -15,11 +16,16 @@
 
 namespace houghstream {
 
+/// Planes of surface families (is_surface_family) before minimum and maximum that were computed before: CV_8UC1 of the
+/// frame's size. The product has none.
+using ExtraPlanes = std::map<FeatureFamily, std::vector<cv::Mat>>;
+
 /// Whose planes are computed, and where.
 struct FeatureInput {
   const WorkingFrame& frame;
   const FeatureSettings& settings;
-  const FeatureTiles& tiles;  ///< of the frame's size: the wanted ones
+  const FeatureTiles& tiles;           ///< of the frame's size: the wanted ones
+  const ExtraPlanes* extra = nullptr;  ///< of each surface family among the settings'
 };
 
 /// What compute_features needs for itself, to be kept from picture to picture.
@@ -40,10 +46,11 @@ struct FeatureMemory {
 /// All planes of a working frame in the order of FeatureLayout(settings) (paper, Section 3), in the wanted tiles and in
 /// the border beside them. Where depth is missing beyond repair the depth planes are neutral: no slope, no curvature,
 /// empty histograms. What else is in `image`, which keeps its memory, is undefined: left over from earlier frames.
-/// Throws InputError for a family of which the program has no implementation, see extensions.hpp.
+/// Throws InputError for a surface family that FeatureInput::extra lacks.
 void compute_features(const FeatureInput& input, int threads, FeatureMemory& memory, FeatureImage& image);
 
 /// The same in all tiles.
-FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads);
+FeatureImage compute_features(const WorkingFrame& frame, const FeatureSettings& settings, int threads,
+                              const ExtraPlanes* extra = nullptr);
 
 }  // namespace houghstream

@@ -93,7 +93,6 @@ void enlarge_depth(const cv::Mat& depth, cv::Size size, cv::Mat& out) {
 }
 
 HoleReach hole_reach(const FeatureSettings& settings, const Camera& camera) {
-  if (settings.handling == ScaleHandling::kScaleSpace) return {settings.fill_distance_px, 0.0F};
   return {settings.fill_distance_px, settings.fill_distance * static_cast<float>(camera.fx)};
 }
 
@@ -130,14 +129,7 @@ void bring_into(const ToneCurve& tone, const RgbdFrame& frame, cv::Mat& memory, 
 }  // namespace
 
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings) {
-  constexpr float kAnywhere = std::numeric_limits<float>::infinity();
   std::vector<FeatureLevel> levels;
-  if (settings.handling == ScaleHandling::kScaleSpace) {
-    for (const float ratio : settings.scales) {
-      if (ratio > 0.0F) levels.push_back({settings.image_scale * ratio, ratio, 0.0F, kAnywhere});
-    }
-    return levels;
-  }
   levels.push_back({settings.image_scale, 1.0F, 0.0F, std::min(settings.far_distance, settings.max_distance)});
   if (settings.far_distance < settings.max_distance) {
     levels.push_back({2.0F * settings.image_scale, 1.0F, settings.far_distance, settings.max_distance});
@@ -153,7 +145,6 @@ float octaves_scale(const Camera& camera) {
 
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const Camera& camera) {
   std::vector<FeatureLevel> levels = feature_levels(settings);
-  if (settings.handling == ScaleHandling::kScaleSpace) return levels;
   for (FeatureLevel& level : levels) level.scale *= octaves_scale(camera);
   return levels;
 }

@@ -32,7 +32,7 @@ struct FeatureLevel {
 /// Focal length of the 640x480 cameras that the paper's patches, and all supports in pixels, were counted in.
 constexpr float kUsualFocal = 525.0F;
 
-/// Of the cameras whose frames supports in pixels were chosen for.
+/// Those of a depth-normalised search, of the cameras whose frames supports in pixels were chosen for.
 std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings);
 /// Of any camera: a tele lens shows an object in more pixels, of which supports in pixels would cover less. Sizes are
 /// an octave smaller, or larger, for each that its focal length is longer, or shorter. The paper's cameras are all
@@ -42,8 +42,9 @@ std::vector<FeatureLevel> feature_levels(const FeatureSettings& settings, const 
 /// The power of two that brings a camera's focal length nearest to kUsualFocal.
 float octaves_scale(const Camera& camera);
 
-/// Resizes (paper, Section 5.1.1) and closes small holes. Of each 2x2 block the nearest surface counts, so that
-/// foreground and background are never averaged into a surface that is not there.
+/// Resizes (paper, Section 5.1.1) and closes small holes, over the pixels or metres of FeatureSettings. Of each 2x2
+/// block the nearest surface counts, so that foreground and background are never averaged into a surface that is not
+/// there.
 WorkingFrame make_working_frame(const RgbdFrame& frame, float scale, const FeatureSettings& settings);
 
 /// The same for a level of a scale space.

@@ -70,7 +70,7 @@ struct TrainedView {
 
 /// A trained forest as its file holds it: flat arrays, trees one after another. A ForestIndex is what searches it.
 struct Forest {
-  std::string profile;  ///< that it was trained by, see profiles.hpp
+  std::string profile;  ///< that it was trained by, see training/profiles.hpp
   FeatureSettings features;
   PatchSettings patch;
   Scoring scoring = Scoring::kEvidence;

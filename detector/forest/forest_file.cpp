@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "detector/extensions.hpp"
 #include "detector/features/feature_families.hpp"
-#include "detector/profiles.hpp"
 #include "pipeline/base/archive.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
@@ -170,9 +168,6 @@ void check_settings(const Forest& forest, const std::string& source) {
     require(scale == 0.0F || (scale >= 0.05F && scale <= 8.0F), "{}: image searched at scale {}, expected 0.05 to 8",
             source, scale);
   }
-  const std::vector<std::string> profiles = profile_names();
-  require(std::find(profiles.begin(), profiles.end(), forest.profile) != profiles.end(),
-          "{}: profile '{}', expected one of {}", source, forest.profile, fmt::join(profiles, ", "));
   require(forest.scoring == Scoring::kEvidence || forest.scoring == Scoring::kVotes, "{}: scoring {}, expected 0 or 1",
           source, static_cast<std::uint32_t>(forest.scoring));
   require(f.depth_sobel_px >= 3 && f.depth_sobel_px <= 31 && f.depth_sobel_px % 2 == 1 && f.min_max_px >= 1 &&
@@ -256,7 +251,6 @@ Forest load_forest(const std::filesystem::path& file) {
   archive_members(reader, forest);
   require(reader.bytes.empty(), "{}: {} bytes left over after the forest", source, reader.bytes.size());
   check_settings(forest, source);
-  require_extensions(forest.features, source);
   check_indices(forest, source);
   check_leaves(forest, source);
   check_numbers(forest, source);

@@ -13,8 +13,9 @@ constexpr int kForestFileVersion = 16;
 /// Writes a new file beside `file` and renames it, so that a good forest is never half overwritten.
 void save_forest(const Forest& forest, const std::filesystem::path& file);
 
-/// Throws InputError naming the file when it is missing, truncated, corrupt, of another version, when an index in it
-/// points nowhere, or when it needs what this program does not have, see extensions.hpp.
+/// Throws InputError naming the file when it is missing, truncated, corrupt, of another version, or when an index in
+/// it points nowhere. Whether a program knows its profile and can search
+/// by it is not asked here.
 Forest load_forest(const std::filesystem::path& file);
 
 }  // namespace houghstream

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <set>
 
-#include "detector/extensions.hpp"
 #include "detector/training/calibration.hpp"
 #include "detector/training/hard_negatives.hpp"
 #include "detector/training/score_training.hpp"
@@ -140,23 +139,29 @@ class Counted {
 };
 
 /// The objects' views are the last of the forest's.
-void learn_scores(const Rooms& rooms, const Profile& profile, const Progress& progress, Forest& forest) {
+void learn_scores(const Rooms& rooms, const Profile& profile, const Scales& scales, const Progress& progress,
+                  Forest& forest) {
   std::set<int> class_ids;
   for (const TrainingView* view : rooms.objects) class_ids.insert(view->class_id);
   const auto first_view = static_cast<std::uint32_t>(forest.views.size() - rooms.objects.size());
   const ValidationSource plain = composed_frames(rooms.objects, rooms.for_score, profile.training);
   const ValidationSource strangers = stranger_frames(rooms.objects, rooms.for_score, profile.training);
   Counted counted(plain.count + strangers.count, progress);
-  train_score_model(counted.through(plain), class_ids, first_view, profile, forest);
-  calibrate_scores(find_score_examples(counted.through(strangers), first_view, profile, forest), class_ids, forest);
+  const auto examples = [&](const ValidationSource& source) {
+    return find_score_examples(counted.through(source), first_view, profile, forest, scales);
+  };
+  fit_scores(examples(plain), class_ids, forest);
+  calibrate_scores(examples(strangers), class_ids, forest);
   progress(fmt::format("score from {} composed pictures of {} rooms", plain.count + strangers.count,
                        rooms.for_score.size()));
 }
 
 /// The set of what trees learn from. Views that the score will not ask for are let go as soon as they are in it.
-TrainingSet make_set(const Rooms& rooms, const Profile& profile, std::vector<TrainingView>& views) {
+TrainingSet make_set(const Rooms& rooms, const Profile& profile, const Scales& scales,
+                     std::vector<TrainingView>& views) {
   const bool keep = learns_scores(profile.training);
-  return make_training_set(rooms.for_trees, profile, [&](const TrainingView* done) {
+  const PictureInput input{profile.features, profile.patch, profile.training, scales};
+  return make_training_set(rooms.for_trees, input, [&](const TrainingView* done) {
     if (keep) return;
     TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
     view.frame.colour.release();
@@ -181,11 +186,12 @@ void number_after(const Forest& old, std::vector<TrainingView>& views) {
 
 }  // namespace
 
-Forest train_forest(std::vector<TrainingView> views, const Profile& profile, const Progress& progress) {
-  require_extensions(profile.features, fmt::format("profile '{}'", profile.name));
+Forest train_forest(std::vector<TrainingView> views, const Profile& profile, const Progress& progress,
+                    const Scales& scales) {
+  scales.require_teachable(profile.features, fmt::format("profile '{}'", profile.name));
   const TrainingSettings& settings = profile.training;
   const Rooms rooms = share_rooms(views, settings);
-  TrainingSet set = make_set(rooms, profile, views);
+  TrainingSet set = make_set(rooms, profile, scales, views);
   progress(fmt::format("{} patches of {} pictures, {} classes, {} planes", set.samples.size(), set.pictures.size(),
                        set.classes.size(), set.layout.planes()));
   const std::size_t before = set.samples.size();
@@ -197,18 +203,18 @@ Forest train_forest(std::vector<TrainingView> views, const Profile& profile, con
   forest.views = set.views;
   for (const Forest& tree : grow_trees(set, profile, nullptr, progress)) append_tree(tree, forest);
   calibrate_masses(set, settings, profile.detection.voting.vote_sigma, forest);
-  if (learns_scores(settings)) learn_scores(rooms, profile, progress, forest);
+  if (learns_scores(settings)) learn_scores(rooms, profile, scales, progress, forest);
   return forest;
 }
 
-Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile,
-                   const Progress& progress) {
-  require_extensions(profile.features, fmt::format("profile '{}'", profile.name));
+Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Profile& profile, const Progress& progress,
+                   const Scales& scales) {
+  scales.require_teachable(profile.features, fmt::format("profile '{}'", profile.name));
   require(profile.training.trees == static_cast<int>(old.roots.size()),
           "adding objects: {} trees, expected the forest's {}", profile.training.trees, old.roots.size());
   number_after(old, views);
   const Rooms rooms = share_rooms(views, profile.training);
-  TrainingSet set = make_set(rooms, profile, views);
+  TrainingSet set = make_set(rooms, profile, scales, views);
   set.first_class = static_cast<std::uint16_t>(old.classes.size());
   set.first_view = static_cast<std::uint32_t>(old.views.size());
   progress(fmt::format("{} patches of {} pictures, {} new classes beside {}", set.samples.size(), set.pictures.size(),
@@ -225,18 +231,20 @@ Forest add_objects(const Forest& old, std::vector<TrainingView> views, const Pro
   for (const Forest& tree : grow_trees(set, profile, &old, progress)) append_tree(tree, forest);
   carry_masses(old, forest);
   calibrate_masses(set, profile.training, profile.detection.voting.vote_sigma, forest);
-  if (learns_scores(profile.training)) learn_scores(rooms, profile, progress, forest);
+  if (learns_scores(profile.training)) learn_scores(rooms, profile, scales, progress, forest);
   return forest;
 }
 
 Profile profile_of(const Forest& forest) {
-  Profile profile = make_profile(forest.profile);
-  profile.features = forest.features;
-  profile.patch = forest.patch;
-  profile.detection = detection_settings(forest);
-  profile.training.scoring = forest.scoring;
-  profile.training.trees = static_cast<int>(forest.roots.size());
-  return profile;
+  return profile_of(forest, make_profile(forest.profile));
+}
+
+Profile profile_of(const Forest& forest, Profile named) {
+  named.features = forest.features;
+  named.patch = forest.patch;
+  named.training.scoring = forest.scoring;
+  named.training.trees = static_cast<int>(forest.roots.size());
+  return named;
 }
 
 }  // namespace houghstream::training

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "detector/training/pictures/training_set.hpp"
+#include "detector/training/training_settings.hpp"
 
 namespace houghstream::training {
 

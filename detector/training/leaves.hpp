@@ -5,6 +5,7 @@
 
 #include "detector/forest/forest.hpp"
 #include "detector/training/pictures/training_set.hpp"
+#include "detector/training/training_settings.hpp"
 
 namespace houghstream::training {
 

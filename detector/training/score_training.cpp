@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "detector/extensions.hpp"
 #include "detector/stages.hpp"
 #include "detector/training/pictures/sensor_errors.hpp"
 #include "detector/training/pictures/validation_frames.hpp"
@@ -112,19 +111,6 @@ std::string described(const ScoreTerms& weights) {
   return text;
 }
 
-/// What the forest offers in a frame, by the stages of Detector::detect up to the evidence.
-std::vector<Candidate> search_frame(const Search& search, const RgbdFrame& frame, DetectorWorkspace& workspace) {
-  if (search.forest().features.handling == ScaleHandling::kScaleSpace) {
-    StageClock clock;
-    return extensions().search_scale_space(search, frame, clock);
-  }
-  make_working_images(search, frame, workspace);
-  compute_features(search, workspace);
-  find_posteriors(search, workspace);
-  const std::vector<Hypothesis> hypotheses = find_hypotheses(search, workspace);
-  return weigh_evidence(search, frame, hypotheses, workspace);
-}
-
 }  // namespace
 
 ValidationSource composed_frames(const std::vector<const TrainingView*>& objects,
@@ -140,7 +126,7 @@ ValidationSource stranger_frames(const std::vector<const TrainingView*>& objects
 }
 
 std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, std::uint32_t first_view,
-                                               const Profile& profile, const Forest& forest) {
+                                               const Profile& profile, const Forest& forest, const Scales& scales) {
   DetectionSettings detection = profile.detection;
   detection.threads = 1;
   const ForestIndex index(forest);
@@ -157,7 +143,7 @@ std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, s
     for (std::uint32_t& view : shown) view += first_view;
     const Search search{index, detection, shown};
     by_frame[static_cast<std::size_t>(f)] =
-        judge(search_frame(search, validation.frame, workspaces[worker]), validation);
+        judge(scales.search(search, validation.frame, workspaces[worker]), validation);
   });
   return by_frame;
 }
@@ -174,11 +160,6 @@ void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>&
     if (class_ids.count(object.class_id) == 0) continue;  // an older object, judged before
     object.score_model = fit_score_model(by_class[object.class_id], common);
   }
-}
-
-void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
-                       const Profile& profile, Forest& forest) {
-  fit_scores(find_score_examples(source, first_view, profile, forest), class_ids, forest);
 }
 
 void calibrate_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest) {

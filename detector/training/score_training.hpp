@@ -8,8 +8,9 @@
 
 #include "detector/evidence/score.hpp"
 #include "detector/forest/forest.hpp"
-#include "detector/profiles.hpp"
+#include "detector/training/pictures/scales.hpp"
 #include "detector/training/pictures/validation_frames.hpp"
+#include "detector/training/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 
 namespace houghstream::training {
@@ -37,15 +38,12 @@ using ScoreExamples = std::map<int, std::vector<ScoreExample>>;
 /// Of each frame, in their order. The first of the views that ValidationFrame names is the forest's number
 /// `first_view`. Same result for any number of threads.
 std::vector<ScoreExamples> find_score_examples(const ValidationSource& source, std::uint32_t first_view,
-                                               const Profile& profile, const Forest& forest);
+                                               const Profile& profile, const Forest& forest,
+                                               const Scales& scales = depth_normalised_scales());
 
 /// Learns the weights of the score (forest/score_model.hpp) of each class in `class_ids`, beginning from those of all
 /// of them together.
 void fit_scores(const std::vector<ScoreExamples>& by_frame, const std::set<int>& class_ids, Forest& forest);
-
-/// find_score_examples() and fit_scores().
-void train_score_model(const ValidationSource& source, const std::set<int>& class_ids, std::uint32_t first_view,
-                       const Profile& profile, Forest& forest);
 
 /// Scales and shifts the log odds of each class in `class_ids`, so that a score is right about as often as it says
 /// among these examples, beginning from what does so for all of them together (Platt 1999). Which detection of an

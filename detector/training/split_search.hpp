@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "detector/training/pictures/training_set.hpp"
+#include "detector/training/training_settings.hpp"
 #include "pipeline/base/random.hpp"
 
 namespace houghstream::training {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "detector/forest/forest_index.hpp"
-#include "detector/profiles.hpp"
+#include "detector/training/profiles.hpp"
 #include "pipeline/types/training_view.hpp"
 
 namespace houghstream::toy {

@@ -6,9 +6,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "detector/detection_settings.hpp"
 #include "detector/features/feature_families.hpp"
 #include "detector/forest/forest_file.hpp"
-#include "detector/profiles.hpp"
+#include "detector/forest/forest_index.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
 #include "drivers/files/camera_info.hpp"
 #include "drivers/files/image_file.hpp"
@@ -45,7 +46,8 @@ void repair_forest(Bytes& input) {
 
 Taken read_forest(ByteView input) {
   const Forest forest = load_forest(as_file(input, "forest"));
-  return {forest.classes.size() + forest.nodes.size() + forest.leaves.size()};
+  const ForestIndex index(forest);
+  return {forest.classes.size() + forest.nodes.size() + index.leaf_heads().size()};
 }
 
 std::vector<Bytes> forests() {

@@ -12,8 +12,8 @@ ON_THE_ROBOT = ("hs-capture", "hs-detect", "hs-pose", "hs-track", "hs-view", "hs
 TEACHING = ("hs-train", "hs-evaluate", "hs-fuse", "hs-import", "hs-observe")
 RENDERING = ("hs-teach",)  # which holds the rendered world, and no other study
 COMPARING = ("hs-study-evaluate",)  # whose names are found, else none would be found anywhere
-STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl|reference_leaves"
-                     r"|make_named_scene|light_world")
+STUDIES = re.compile(r"houghstream::(\w+::)*(baseline|world|studies)::|scale_space|honv|curvature_planes|pfh_planes|register_pcl"
+                     r"|houghstream::(\w+::)*(\w*([Gg]all|ScaleSpace|StudyDetector)\w*|reference_\w+)|make_named_scene|light_world")
 WORLD = re.compile(r"houghstream::(\w+::)*world::|make_named_scene|light_world")
 PCL = re.compile(r"\blibpcl_\w+|\blibvtk\w*")
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "detector/profiles.hpp"
+#include "detector/detection_settings.hpp"
 #include "tools/common/command_line.hpp"
 
 namespace houghstream {
@@ -19,8 +19,9 @@ struct SearchOptions {
   float candidates_from = 1.0F;  ///< none
   int threads = 2;
 
-  DetectionSettings settings_for(const Forest& forest) const {
-    DetectionSettings settings = detection_settings(forest);
+  DetectionSettings settings_for(const Forest& forest) const { return change(detection_settings(forest)); }
+
+  DetectionSettings change(DetectionSettings settings) const {
     if (stride) settings.spacing.metres = 0.0F;  // what was asked for is a patch at every so many-th pixel
     settings.spacing.stride = stride.value_or(settings.spacing.stride);
     settings.evidence.threshold = threshold.value_or(settings.evidence.threshold);

@@ -35,7 +35,7 @@ struct EvaluateOptions {
   std::vector<std::string> classes;
   EvaluationRules rules;
   SearchOptions search;
-  MakeSearch make_search;
+  EvaluateSearch in_process;
   std::optional<float> min_quality;
   int every = 1;
 };
@@ -101,8 +101,8 @@ float search_in_process(const EvaluateOptions& options, Forest forest, const std
   rules.score = options.rules.operating_score;
   if (!options.operating_score) rules.candidates_from = kCandidatesFrom;
   rules.pose = options.pose;
-  const DetectionSettings settings = options.search.settings_for(forest);
-  InProcess process(std::move(forest), settings, options.make_search, meshes, rules);
+  const DetectionSettings settings = options.search.change(options.in_process.settings(forest));
+  InProcess process(std::move(forest), settings, options.in_process.make, meshes, rules);
   for (OpenScene& it : scenes) process.run(it.scene, it.frames);
   return process.ranked_from();
 }
@@ -229,7 +229,7 @@ static EvaluateOptions with_store(EvaluateOptions options) {
 int evaluate_main(int argc, char** argv, const std::string& name, const EvaluateSearch& search) {
   CommandLine app("Compares detections and poses with the truth of a scene", name);
   EvaluateOptions options;
-  options.make_search = search.make;
+  options.in_process = search;
   add_options(app, options);
   search.add_options(app);
   app.add_example(name + " --scene SCENE --objects my.store --out RESULTS");

@@ -10,6 +10,8 @@ namespace houghstream {
 
 /// How a program searches a forest in-process.
 struct EvaluateSearch {
+  /// How a forest wants to be searched.
+  std::function<DetectionSettings(const Forest&)> settings = [](const Forest& it) { return detection_settings(it); };
   MakeSearch make = detector_search;
   std::function<void(CommandLine& app)> add_options = [](CommandLine&) {};  ///< its own, beside those of all searches
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "detector/forest/forest.hpp"
-#include "detector/profiles.hpp"
+#include "detector/training/profiles.hpp"
 #include "pose/verification/quality.hpp"
 #include "tools/render/world/practice_scenes.hpp"
 

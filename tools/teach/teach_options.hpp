@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "detector/profiles.hpp"
+#include "detector/training/profiles.hpp"
 #include "tools/render/world/mesh_views.hpp"
 #include "tools/teach/mesh_sources.hpp"
 #include "tools/teach/practice.hpp"

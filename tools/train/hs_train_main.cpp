@@ -1,5 +1,5 @@
 #include "tools/train/train_main.hpp"
 
 int main(int argc, char** argv) {
-  return houghstream::train_main(argc, argv, "hs-train");
+  return houghstream::train_main(argc, argv);
 }

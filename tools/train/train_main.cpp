@@ -6,10 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "detector/extensions.hpp"
-#include "detector/features/feature_families.hpp"
 #include "detector/forest/forest_file.hpp"
-#include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/files.hpp"
 #include "tools/common/tool_main.hpp"
@@ -39,36 +36,15 @@ struct Overrides {
   int threads = 2;
 };
 
-bool has_scale_space() {
-  return extensions().search_scale_space != nullptr;
-}
-
-/// Those that this program can train by.
-std::string profiles_here() {
-  std::vector<std::string> names;
-  for (const std::string& name : profile_names()) {
-    const bool in_scale_space = make_profile(name).features.handling == ScaleHandling::kScaleSpace;
-    if (!in_scale_space || has_scale_space()) names.push_back(name);
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-/// Those that this program can compute.
-std::string features_here() {
-  std::uint32_t families = 0;
-  for (const FamilyName& known : kFamilyNames) {
-    if (!is_surface_family(known.family) || extensions().surface_planes != nullptr) families |= known.family;
-  }
-  return family_names(families);
-}
-
-void add_overrides(CommandLine& app, Overrides& overrides) {
-  app.add_option("--profile", overrides.profile, "to begin with: " + profiles_here()).capture_default_str();
-  app.add_option("--features", overrides.features, "some of " + features_here());
+void add_overrides(CommandLine& app, const TrainProgram& program, Overrides& overrides) {
+  app.add_option("--profile", overrides.profile, fmt::format("to begin with: {}", fmt::join(program.profiles, ", ")))
+      .capture_default_str();
+  app.add_option("--features", overrides.features, "some of " + family_names(program.families));
   app.add_option("--depth-kernel", overrides.depth_kernel, "of the depth derivatives, working pixels")
       .one_of({3, 5, 7, 9});
   app.add_option("--image-scale", overrides.image_scale, "working size over frame size").range(0.1, 2.0);
-  if (has_scale_space()) app.add_option("--scale-handling", overrides.scale_handling, "five, single or normalised");
+  if (program.set_scale_handling)
+    app.add_option("--scale-handling", overrides.scale_handling, "five, single or normalised");
   app.add_option("--seed", overrides.seed, "same seed, same data: same forest").capture_default_str();
   app.add_option("--threads", overrides.threads, "any number gives the same forest")
       .range(1, 256)
@@ -92,11 +68,11 @@ void take(const std::optional<T>& from, T& to) {
   if (from) to = *from;
 }
 
-Profile overridden(const Overrides& overrides) {
-  Profile profile = make_profile(overrides.profile);
+Profile overridden(const TrainProgram& program, const Overrides& overrides) {
+  Profile profile = program.make_profile(overrides.profile);
   if (!overrides.features.empty()) profile.features.families = parse_families(overrides.features);
-  if (overrides.image_scale) set_image_scale(profile, *overrides.image_scale);
-  if (!overrides.scale_handling.empty()) set_scale_handling(profile, overrides.scale_handling);
+  if (overrides.image_scale) program.set_image_scale(profile, *overrides.image_scale);
+  if (!overrides.scale_handling.empty()) program.set_scale_handling(profile, overrides.scale_handling);
   take(overrides.depth_kernel, profile.features.depth_sobel_px);
   training::TrainingSettings& training = profile.training;
   take(overrides.trees, training.trees);
@@ -119,33 +95,34 @@ Profile overridden(const Overrides& overrides) {
 }
 
 /// The profile by which a forest was trained; only seed and threads can be chosen.
-Profile profile_for(const Forest& forest, const Overrides& overrides) {
-  Profile profile = training::profile_of(forest);
+Profile profile_for(const Forest& forest, const TrainProgram& program, const Overrides& overrides) {
+  Profile profile = program.profile_of(forest);
   profile.training.seed = overrides.seed;
   profile.training.threads = overrides.threads;
   return profile;
 }
 
 void train(const TrainingSources& sources, const Profile& profile, const std::optional<Forest>& old,
-           const std::string& out, const std::string& program) {
-  require_extensions(profile.features, fmt::format("profile '{}'", profile.name));  // before views are read
+           const std::string& out, const TrainProgram& program) {
+  const training::Scales& scales = program.scales_of(profile.features);
+  scales.require_teachable(profile.features, fmt::format("profile '{}'", profile.name));  // before views are read
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const auto progress = [&](const std::string& line) {
-    fmt::print(stderr, "{}: {:6.1f} s  {}\n", program, seconds(), line);
+    fmt::print(stderr, "{}: {:6.1f} s  {}\n", program.name, seconds(), line);
   };
   std::vector<TrainingView> views = read_training_sources(sources, profile.training.threads);
   progress(fmt::format("{} views and backgrounds read", views.size()));
-  const Forest forest = old ? training::add_objects(*old, std::move(views), profile, progress)
-                            : training::train_forest(std::move(views), profile, progress);
+  const Forest forest = old ? training::add_objects(*old, std::move(views), profile, progress, scales)
+                            : training::train_forest(std::move(views), profile, progress, scales);
   save_forest(forest, out);
   fmt::print("train_seconds {:.1f}\n", seconds());
 }
 
 }  // namespace
 
-int train_main(int argc, char** argv, const std::string& name) {
-  CommandLine app("Teaches a Hough Forest objects: training views and rooms in, one forest file out", name);
+int train_main(int argc, char** argv, const TrainProgram& program) {
+  CommandLine app("Teaches a Hough Forest objects: training views and rooms in, one forest file out", program.name);
   TrainingSources sources;
   Overrides overrides;
   std::string out;
@@ -157,13 +134,13 @@ int train_main(int argc, char** argv, const std::string& name) {
   app.add_option("--camera", sources.camera, "WIDTHxHEIGHT,fx,fy,cx,cy, for data without one");
   app.add_option("--out", out, "forest file to write").required();
   app.add_option("--add-to", add_to, "forest that learns them too; its profile counts");
-  add_overrides(app, overrides);
-  app.add_example(name + " --views bop:VIEWS --background bop:ROOMS --out my.forest");
+  add_overrides(app, program, overrides);
+  app.add_example(program.name + " --views bop:VIEWS --background bop:ROOMS --out my.forest");
   return run_tool(app, argc, argv, [&] {
     require_writable(out);
     std::optional<Forest> old;
     if (!add_to.empty()) old = load_forest(add_to);
-    train(sources, old ? profile_for(*old, overrides) : overridden(overrides), old, out, name);
+    train(sources, old ? profile_for(*old, program, overrides) : overridden(program, overrides), old, out, program);
   });
 }
 

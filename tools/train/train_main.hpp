@@ -1,10 +1,30 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
+
+#include "detector/features/feature_families.hpp"
+#include "detector/training/forest_trainer.hpp"
 
 namespace houghstream {
 
-/// hs-train, and under another name hs-study-train, which is linked with detector/baseline.
-int train_main(int argc, char** argv, const std::string& name);
+/// How a program trains; the defaults are those of hs-train.
+struct TrainProgram {
+  std::string name = "hs-train";
+  std::vector<std::string> profiles = profile_names();  ///< those that it offers
+  std::uint32_t families = kTileFamilies;               ///< those that it offers
+  std::function<Profile(const std::string&)> make_profile = houghstream::make_profile;
+  std::function<Profile(const Forest&)> profile_of = [](const Forest& it) { return training::profile_of(it); };
+  std::function<const training::Scales&(const FeatureSettings&)> scales_of =
+      [](const FeatureSettings&) -> const training::Scales& { return training::depth_normalised_scales(); };
+  std::function<void(Profile&, float)> set_image_scale = [](Profile& profile, float image_scale) {
+    profile.features.image_scale = image_scale;
+  };
+  std::function<void(Profile&, const std::string&)> set_scale_handling;  ///< none where it has one handling only
+};
+
+/// hs-train, and hs-study-train, which trains by detector/baseline too.
+int train_main(int argc, char** argv, const TrainProgram& program = {});
 
 }  // namespace houghstream

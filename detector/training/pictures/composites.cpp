@@ -198,7 +198,7 @@ void vary_exposure(cv::Mat& colour, double strength, Random& random) {
 }
 
 std::optional<Composite> make_composite(const TrainingView& view, const RgbdFrame& background, double distance,
-                                        const TrainingSettings& settings, Random& random) {
+                                        const PictureSettings& settings, Random& random) {
   constexpr double kMostSharpness = 1.5;
   constexpr int kMargin = 48;  // frame pixels around the object: patches at its edge see the room
   const double view_distance = view.T_camera_object.translation().z();

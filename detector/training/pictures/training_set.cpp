@@ -15,37 +15,12 @@
 namespace houghstream::training {
 namespace {
 
-bool in_scale_space(const Profile& profile) {
-  return profile.features.handling == ScaleHandling::kScaleSpace;
-}
-
-/// Whether features look at the depth that a scale space's enlarged images show, see add_far_noise.
-bool needs_far_noise(const Profile& profile) {
-  return in_scale_space(profile) && profile.features.families != kIntensity;
-}
-
-/// Whether a level is taught a surface at this depth: a little beyond what it holds, since detection decides by noisy
-/// depth; anything in a scale space.
-bool teaches(const FeatureLevel& level, const Profile& profile, float depth) {
-  return in_scale_space(profile) || (depth > 0.85F * level.min_distance && depth <= 1.15F * level.max_distance);
-}
-
-/// How far away the object is put: anywhere, or in a scale space about where it was, since sizes between those that are
-/// searched must be known too.
-double draw_distance(const TrainingView& view, const Profile& profile, Random& random) {
-  constexpr double kHalfStep = 1.25;  // of the scales searched
-  const TrainingSettings& settings = profile.training;
-  const double taught = view.T_camera_object.translation().z();
-  const double nearest = in_scale_space(profile) ? taught / kHalfStep : settings.min_distance;
-  const double farthest = in_scale_space(profile) ? taught * kHalfStep : settings.max_distance;
-  return std::exp(random.uniform(std::log(nearest), std::log(farthest)));
-}
-
-/// The level that sees an object at this distance; either one near the limit between them.
-FeatureLevel level_for(double distance, const Camera& camera, const Profile& profile, Random& random) {
-  if (in_scale_space(profile)) return {profile.features.image_scale, 1.0F, 0.0F, 0.0F};
-  const std::vector<FeatureLevel> levels = feature_levels(profile.features, camera);
-  return distance * random.uniform(0.9, 1.1) > levels[0].max_distance ? levels.back() : levels[0];
+/// Where the object is put.
+double draw_distance(const TrainingView& view, const PictureInput& input, Random& random) {
+  const PictureSettings& settings = input.settings;
+  const DistanceRange range =
+      input.scales.distances(view.T_camera_object.translation().z(), {settings.min_distance, settings.max_distance});
+  return std::exp(random.uniform(std::log(range.nearest), std::log(range.farthest)));
 }
 
 /// Random pixels of the working frame that `wanted` accepts, at most `count`.
@@ -66,30 +41,18 @@ std::vector<cv::Point> draw_pixels(cv::Size size, int count, Random& random, con
   return all;
 }
 
-TrainingSample sample_at(cv::Point at, const WorkingFrame& frame, const Profile& profile) {
+TrainingSample sample_at(cv::Point at, const WorkingFrame& frame, const PictureInput& input) {
   TrainingSample sample;
   sample.x = static_cast<std::int16_t>(at.x);
   sample.y = static_cast<std::int16_t>(at.y);
-  sample.scale = in_scale_space(profile)
-                     ? limited_scale(profile.patch, profile.patch.unit)
-                     : patch_scale(profile.patch, frame.camera.fx, frame.filled_depth.at<float>(at));
+  sample.scale = input.scales.scale_of_patch(input.patch, frame.camera, frame.filled_depth.at<float>(at));
   return sample;
 }
 
-/// From a surface point to the object's centre, in the ray frame of the pixel that shows the point; in a scale space
-/// from pixel to pixel, as if 1 m away.
-Eigen::Vector3f centre_offset(const TrainingView& view, const Composite& composite, cv::Point2d frame_px, float depth,
-                              const Profile& profile) {
+/// What a pixel of the composite shows of its view.
+ShownPoint shown_point(const Composite& composite, cv::Point2d frame_px, float depth) {
   const cv::Point2d view_px = (frame_px - composite.origin_px) / composite.scale;
-  const Camera& camera = view.frame.camera;
-  if (in_scale_space(profile)) {
-    const Eigen::Vector2d centre_px = camera.project(view.T_camera_object.translation());
-    const Eigen::Vector2d offset = (centre_px - Eigen::Vector2d(view_px.x, view_px.y)) * composite.scale;
-    return {static_cast<float>(offset.x() / camera.fx), static_cast<float>(offset.y() / camera.fy), 0.0F};
-  }
-  const Eigen::Vector3d point = camera.backproject(view_px.x, view_px.y, depth - composite.depth_change.at(frame_px));
-  const Eigen::Vector3d offset = view.T_camera_object.translation() - point;
-  return ray_rotation(point.cast<float>()).transpose() * offset.cast<float>();
+  return {view_px, depth - composite.depth_change.at(frame_px), composite.scale};
 }
 
 /// The composite as a level works on it, and where patches may be drawn.
@@ -107,9 +70,9 @@ struct Canvas {
   cv::Point2d frame_px(cv::Point at) const { return {(at.x + 0.5) * to_frame - 0.5, (at.y + 0.5) * to_frame - 0.5}; }
 };
 
-Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const Profile& profile) {
+Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const PictureInput& input) {
   Canvas canvas;
-  canvas.frame = make_working_frame(composite.frame, level, profile.features);
+  canvas.frame = input.scales.working_frame(composite.frame, level, input.features);
   const cv::Size size = canvas.frame.colour.size();
   cv::resize(composite.mask, canvas.mask, size, 0, 0, cv::INTER_NEAREST);
   cv::resize(composite.frame.depth, canvas.measured, size, 0, 0, cv::INTER_NEAREST);
@@ -118,9 +81,10 @@ Canvas make_canvas(const Composite& composite, const FeatureLevel& level, const 
 }
 
 /// All features of a picture; they stay until the next one.
-const FeatureImage& all_features(const WorkingFrame& frame, const FeatureSettings& settings, PictureWorkspace& own) {
+const FeatureImage& all_features(const WorkingFrame& frame, const PictureInput& input, PictureWorkspace& own) {
   own.tiles.want_all(frame.colour.size());
-  compute_features({frame, settings, own.tiles}, 1, own.feature_memory, own.features);
+  const ExtraPlanes extra = input.scales.extra_planes(frame, input.features);
+  compute_features({frame, input.features, own.tiles, &extra}, 1, own.feature_memory, own.features);
   return own.features;
 }
 
@@ -137,7 +101,7 @@ cv::Rect seen_by(const TrainingPicture& picture, const PatchSettings& patch) {
 }
 
 /// A part of the background that the level sees something in, or any part where there is none.
-cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& level, const Profile& profile,
+cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& level, const Scales& scales,
                            Random& random) {
   constexpr int kTries = 12;
   const float share = std::min(0.5F, 1.0F / (4.0F * level.scale));
@@ -150,7 +114,7 @@ cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& leve
     int held = 0;
     for (int y = 0; y < size.height; y += 8) {
       for (int x = 0; x < size.width; x += 8) {
-        held += teaches(level, profile, background.depth.at<float>(place.y + y, place.x + x)) ? 1 : 0;
+        held += scales.teaches(level, background.depth.at<float>(place.y + y, place.x + x)) ? 1 : 0;
       }
     }
     if (held * 64 * 3 > size.area()) break;
@@ -160,12 +124,12 @@ cv::Rect background_window(const RgbdFrame& background, const FeatureLevel& leve
 
 }  // namespace
 
-TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const Profile& profile,
+TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const PictureInput& input,
                                Random& random, PictureWorkspace& own) {
   const TrainingView& view = taught.view;
-  const TrainingSettings& settings = profile.training;
+  const PictureSettings& settings = input.settings;
   TrainingPicture picture;
-  double distance = draw_distance(view, profile, random);
+  double distance = draw_distance(view, input, random);
   std::optional<Composite> composite = make_composite(view, background, distance, settings, random);
   if (!composite) {
     distance = view.T_camera_object.translation().z();
@@ -174,14 +138,13 @@ TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& backgr
   if (!composite) return picture;
 
   vary_tone(settings.tone_share, settings.camera_variation, composite->frame.colour, random);
-  if (needs_far_noise(profile)) {
-    const double farthest = *std::max_element(profile.features.scales.begin(), profile.features.scales.end());
-    add_far_noise(distance, std::exp(random.uniform(0.0, std::log(farthest))), composite->frame.depth, random);
-  }
-  const FeatureLevel level = level_for(distance, composite->frame.camera, profile, random);
-  const Canvas canvas = make_canvas(*composite, level, profile);
-  const bool needs_depth = !in_scale_space(profile);
-  const auto known = [&](int x, int y) { return teaches(level, profile, canvas.frame.filled_depth.at<float>(y, x)); };
+  input.scales.vary_depth(distance, input.features, composite->frame.depth, random);
+  const FeatureLevel level = input.scales.level_for(distance, composite->frame.camera, input.features, random);
+  const Canvas canvas = make_canvas(*composite, level, input);
+  const bool needs_depth = input.scales.needs_measured_depth();
+  const auto known = [&](int x, int y) {
+    return input.scales.teaches(level, canvas.frame.filled_depth.at<float>(y, x));
+  };
   const auto on_object = [&](int x, int y) {
     return canvas.mask.at<std::uint8_t>(y, x) != 0 && known(x, y) && (!needs_depth || canvas.depth_is_measured(x, y));
   };
@@ -189,26 +152,26 @@ TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& backgr
 
   const int count = settings.patches_per_view / settings.composites_per_view;
   for (const cv::Point at : draw_pixels(canvas.mask.size(), count, random, on_object)) {
-    TrainingSample sample = sample_at(at, canvas.frame, profile);
+    TrainingSample sample = sample_at(at, canvas.frame, input);
     const float depth = canvas.frame.filled_depth.at<float>(at);
-    sample.offset = centre_offset(view, *composite, canvas.frame_px(at), depth, profile);
+    sample.offset = input.scales.centre_offset(view, shown_point(*composite, canvas.frame_px(at), depth));
     sample.label = static_cast<std::uint16_t>(taught.label);
     sample.view = taught.index;
     picture.samples.push_back(sample);
   }
   for (const cv::Point at : draw_pixels(canvas.mask.size(), count / 4, random, beside)) {
-    picture.samples.push_back(sample_at(at, canvas.frame, profile));
+    picture.samples.push_back(sample_at(at, canvas.frame, input));
   }
-  const double px = composite->frame.camera.metres_per_px(needs_depth ? distance : 1.0);
+  const double px = composite->frame.camera.metres_per_px(input.scales.counted_distance(distance));
   picture.whole_area = static_cast<float>(composite->whole_px * px * px);
-  picture.features = all_features(canvas.frame, profile.features, own).cut_out(seen_by(picture, profile.patch));
+  picture.features = all_features(canvas.frame, input, own).cut_out(seen_by(picture, input.patch));
   return picture;
 }
 
-TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const Profile& profile,
+TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const PictureInput& input,
                                    Random& random, PictureWorkspace& own) {
-  const TrainingSettings& settings = profile.training;
-  const cv::Rect place = background_window(background, level, profile, random);
+  const PictureSettings& settings = input.settings;
+  const cv::Rect place = background_window(background, level, input.scales, random);
   RgbdFrame part;
   part.colour = background.colour(place).clone();
   part.depth = background.depth(place);
@@ -216,29 +179,28 @@ TrainingPicture background_picture(const RgbdFrame& background, const FeatureLev
   vary_exposure(part.colour, settings.light_variation, random);
   vary_tone(settings.tone_share, settings.camera_variation, part.colour, random);
 
-  const WorkingFrame frame = make_working_frame(part, level, profile.features);
+  const WorkingFrame frame = input.scales.working_frame(part, level, input.features);
   TrainingPicture picture;
-  const auto known = [&](int x, int y) { return teaches(level, profile, frame.filled_depth.at<float>(y, x)); };
+  const auto known = [&](int x, int y) { return input.scales.teaches(level, frame.filled_depth.at<float>(y, x)); };
   const auto count = static_cast<std::size_t>(settings.patches_per_room / kBackgroundPictures);
   const int drawn = static_cast<int>(count) * (1 + settings.spare_background);
   for (const cv::Point at : draw_pixels(frame.colour.size(), drawn, random, known)) {
     auto& list = picture.samples.size() < count ? picture.samples : picture.spare_background;
-    list.push_back(sample_at(at, frame, profile));
+    list.push_back(sample_at(at, frame, input));
   }
-  picture.features = all_features(frame, profile.features, own).cut_out(seen_by(picture, profile.patch));
+  picture.features = all_features(frame, input, own).cut_out(seen_by(picture, input.patch));
   return picture;
 }
 
 namespace {
 
 /// What the pose process and the boxes need to remember of a view.
-TrainedView trained_view(const TrainingView& view, std::uint32_t class_index, ScaleHandling handling) {
+TrainedView trained_view(const TrainingView& view, std::uint32_t class_index, const Scales& scales) {
   const Eigen::Vector3d centre = view.T_camera_object.translation();
   const Eigen::Matrix3f R_camera_object = view.T_camera_object.rotation().cast<float>();
   const Eigen::Vector2d centre_px = view.frame.camera.project(centre);
   const cv::Rect box = cv::boundingRect(view.mask);
-  const auto metres =
-      static_cast<float>(view.frame.camera.metres_per_px(handling == ScaleHandling::kScaleSpace ? 1.0 : centre.z()));
+  const auto metres = static_cast<float>(view.frame.camera.metres_per_px(scales.counted_distance(centre.z())));
   TrainedView out;
   out.class_index = class_index;
   out.R_ray_object = Eigen::Quaternionf(ray_rotation(centre.cast<float>()).transpose() * R_camera_object).normalized();
@@ -320,11 +282,11 @@ void take_samples(std::vector<TrainingPicture>& pictures, TrainingSet& set) {
 
 }  // namespace
 
-TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile,
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const PictureInput& input,
                               const std::function<void(const TrainingView*)>& is_done) {
-  const TrainingSettings& settings = profile.training;
+  const PictureSettings& settings = input.settings;
   TrainingSet set;
-  set.layout = FeatureLayout(profile.features);
+  set.layout = FeatureLayout(input.features);
   set.classes = list_classes(views);
   std::vector<const TrainingView*> objects;
   std::vector<const TrainingView*> backgrounds;
@@ -336,7 +298,7 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     const auto same = [&](const ObjectClass& c) { return c.class_id == view->class_id; };
     const auto index = std::find_if(set.classes.begin(), set.classes.end(), same) - set.classes.begin();
     labels.push_back(static_cast<int>(index) + 1);
-    set.views.push_back(trained_view(*view, static_cast<std::uint32_t>(index), profile.features.handling));
+    set.views.push_back(trained_view(*view, static_cast<std::uint32_t>(index), input.scales));
   }
   const int copies = settings.composites_per_view;
   const std::vector<std::size_t> pictured = views_in_pictures(labels, settings.views_per_picture);
@@ -354,15 +316,15 @@ TrainingSet make_training_set(const std::vector<const TrainingView*>& views, con
     if (i < object_count) {
       const std::size_t v = pictured[static_cast<std::size_t>(i / copies)];
       const auto b = static_cast<std::size_t>(random.below(static_cast<int>(backgrounds.size())));
-      picture = object_picture({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, profile,
+      picture = object_picture({*objects[v], labels[v], static_cast<std::uint32_t>(v)}, backgrounds[b]->frame, input,
                                random, workspaces[worker]);
       if (copies == 1) is_done(objects[v]);
     } else {
       const int b = i - object_count;
       const RgbdFrame& background = backgrounds[static_cast<std::size_t>(b / kBackgroundPictures)]->frame;
-      const std::vector<FeatureLevel> levels = feature_levels(profile.features, background.camera);
+      const std::vector<FeatureLevel> levels = input.scales.levels(input.features, background.camera);
       const FeatureLevel& level = levels[static_cast<std::size_t>(b) % levels.size()];
-      picture = background_picture(background, level, profile, random, workspaces[worker]);
+      picture = background_picture(background, level, input, random, workspaces[worker]);
     }
   });
   measure_classes(pictures, set);

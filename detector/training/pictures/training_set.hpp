@@ -11,7 +11,8 @@
 #include "detector/features/features.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
-#include "detector/profiles.hpp"
+#include "detector/training/pictures/picture_settings.hpp"
+#include "detector/training/pictures/scales.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
@@ -41,11 +42,19 @@ struct TrainingSet {
   std::vector<float> visible_areas;  ///< per class: mean over its pictures, square metres
 };
 
+/// How pictures are made.
+struct PictureInput {
+  const FeatureSettings& features;
+  const PatchSettings& patch;
+  const PictureSettings& settings;
+  const Scales& scales;
+};
+
 /// Puts every view into several backgrounds, computes features and draws patches (paper, Section 4: 250 an image).
 /// Throws InputError when a class or the background is missing or a mask is empty. `is_done` is called, from any
 /// thread, when what an object's view shows is needed no more: it may be let go, as all views together are a third as
 /// large as the set. It is not called for views of several composites.
-TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const Profile& profile,
+TrainingSet make_training_set(const std::vector<const TrainingView*>& views, const PictureInput& input,
                               const std::function<void(const TrainingView*)>& is_done);
 
 /// A picture that trees learn from.
@@ -72,13 +81,13 @@ struct PictureWorkspace {
 };
 
 /// An object put into a background: patches on it and some beside it. Empty where the background is too small.
-TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const Profile& profile,
+TrainingPicture object_picture(const TaughtView& taught, const RgbdFrame& background, const PictureInput& input,
                                Random& random, PictureWorkspace& own);
 
 constexpr int kBackgroundPictures = 4;  ///< per background frame, spread over the levels
 
 /// A part of a background as one level sees it.
-TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const Profile& profile,
+TrainingPicture background_picture(const RgbdFrame& background, const FeatureLevel& level, const PictureInput& input,
                                    Random& random, PictureWorkspace& own);
 
 }  // namespace houghstream::training

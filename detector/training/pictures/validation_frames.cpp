@@ -12,7 +12,7 @@
 namespace houghstream::training {
 namespace {
 
-double draw_distance(const TrainingSettings& settings, Random& random) {
+double draw_distance(const PictureSettings& settings, Random& random) {
   return std::exp(random.uniform(std::log(settings.min_distance), std::log(settings.max_distance)));
 }
 
@@ -20,7 +20,7 @@ double draw_distance(const TrainingSettings& settings, Random& random) {
 struct Stage {
   RgbdFrame& frame;
   cv::Mat labels;  // CV_8UC1: which object each pixel shows, 0 = none
-  const TrainingSettings& settings;
+  const PictureSettings& settings;
   Random& random;
 };
 
@@ -157,9 +157,9 @@ class Others {
 }  // namespace
 
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
-                                      const ComposedThings& things, const TrainingSettings& settings, Random& random) {
+                                      const ComposedThings& things, const PictureSettings& settings, Random& random) {
   constexpr double kOtherLight = 2.0;  // colours must not be trusted further than light lets them
-  TrainingSettings even_light = settings;
+  PictureSettings even_light = settings;
   even_light.light_variation = 0.0;  // one light for the whole frame
   even_light.sharpened_share = 0.0;  // and one camera, as blind to detail as the one that taught
   ValidationFrame out;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "detector/training/training_settings.hpp"
+#include "detector/training/pictures/picture_settings.hpp"
 #include "pipeline/base/random.hpp"
 #include "pipeline/types/training_view.hpp"
 
@@ -33,6 +33,6 @@ struct ComposedThings {
 /// Random views in one room, each as in a composite: other distance, light, half of them partly hidden; behind them
 /// what is none. Depth has the errors of sensor_errors.hpp.
 ValidationFrame make_validation_frame(const std::vector<const TrainingView*>& objects, const RgbdFrame& room,
-                                      const ComposedThings& things, const TrainingSettings& settings, Random& random);
+                                      const ComposedThings& things, const PictureSettings& settings, Random& random);
 
 }  // namespace houghstream::training

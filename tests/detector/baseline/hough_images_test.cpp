@@ -4,8 +4,9 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "detector/baseline/baseline_scales.hpp"
+#include "detector/baseline/gall_profile.hpp"
 #include "detector/training/forest_trainer.hpp"
-#include "tests/detector/baseline/with_baseline.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::baseline {
@@ -22,7 +23,8 @@ Forest quickly_trained(const std::string& profile_name) {
   profile.training.min_distance = 0.5F;
   profile.training.max_distance = 1.2F;
   profile.training.validation_frames = 24;
-  return training::train_forest(toy::training_views(), profile, [](const auto&) {});
+  return training::train_forest(
+      toy::training_views(), profile, [](const auto&) {}, scales_of(profile.features));
 }
 
 const Forest& normalised_forest() {
@@ -36,7 +38,7 @@ const Forest& scale_space_forest() {
 }
 
 cv::Mat image_of(const Forest& forest, int class_index, const RgbdFrame& frame) {
-  const DetectionSettings settings = detection_settings(forest);
+  const DetectionSettings settings = detection_settings_of(forest);
   const ForestIndex index(forest);
   return hough_image({index, settings}, class_index, frame);
 }

@@ -5,9 +5,9 @@
 
 #include <limits>
 
+#include "detector/baseline/surface_planes.hpp"
 #include "detector/features/features.hpp"
 #include "pipeline/base/random.hpp"
-#include "tests/detector/baseline/with_baseline.hpp"
 
 namespace houghstream::baseline {
 namespace {
@@ -56,7 +56,8 @@ void expect_the_same(const WorkingFrame& frame, const FeatureSettings& settings)
   const FeatureImage expected = reference_features(frame, settings);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     use(target);
-    const FeatureImage found = compute_features(frame, settings, 2);
+    const ExtraPlanes extra = extra_planes(frame, settings, 2);
+    const FeatureImage found = compute_features(frame, settings, 2, &extra);
     const cv::Rect whole(0, 0, expected.width(), expected.height());
     EXPECT_EQ(differences(found, expected, whole, kPad, FeatureLayout(settings).planes()), 0)
         << hwy::TargetName(target) << " " << frame.colour.size() << " kernels " << settings.min_max_px << " and "

@@ -8,9 +8,10 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/baseline/baseline_scales.hpp"
+#include "detector/baseline/gall_profile.hpp"
 #include "detector/baseline/study_detector.hpp"
 #include "detector/training/forest_trainer.hpp"
-#include "tests/detector/baseline/with_baseline.hpp"
 #include "tests/detector/toy_data.hpp"
 
 namespace houghstream::baseline {
@@ -26,13 +27,14 @@ const Forest& toy_forest() {
     profile.training.tests_per_node = quick.tests_per_node;
     profile.training.patches_per_view = quick.patches_per_view;
     profile.features.scales = {0.66F, 1.0F, 1.66F};
-    return training::train_forest(toy::training_views(), profile, [](const auto&) {});
+    return training::train_forest(
+        toy::training_views(), profile, [](const auto&) {}, scales_of(profile.features));
   }();
   return forest;
 }
 
 DetectionSettings quick_settings() {
-  DetectionSettings settings = detection_settings(toy_forest());
+  DetectionSettings settings = detection_settings_of(toy_forest());
   settings.spacing.stride = 2;
   return settings;
 }
@@ -164,6 +166,20 @@ TEST(ScaleSpaceSearch, TheDetectorReportsTheStrongestOfAllSizes) {
   for (const StageTime& time : found.stages) names.push_back(time.stage);
   EXPECT_EQ(names, (std::vector<std::string>{"detect.resize", "detect.features", "detect.leaves", "detect.votes",
                                              "detect.suppression"}));
+}
+
+TEST(ScaleSpaceFrame, HolesBorrowOverPixelsAlone) {
+  RgbdFrame frame = toy::room(79);
+  frame.depth.setTo(std::numeric_limits<float>::quiet_NaN());
+  frame.depth.colRange(0, 5).setTo(0.4F);
+  FeatureSettings settings;
+  settings.fill_distance_px = 10.0F;
+  settings.fill_distance = 0.05F;  // 32 pixels at 0.4 m
+  const FeatureLevel level{1.0F, 1.66F, 0.0F, 0.0F};
+  const WorkingFrame working = scale_space_frame(frame, level, settings);
+  EXPECT_FLOAT_EQ(working.filled_depth.at<float>(5, 4 + 10), 0.4F);
+  EXPECT_TRUE(std::isnan(working.filled_depth.at<float>(5, 4 + 11)));
+  EXPECT_EQ(working.size_ratio, 1.66F);
 }
 
 TEST(ScaleSpaceSearch, AnEmptyRoomOffersLittle) {

@@ -89,9 +89,6 @@ TEST(WorkingImages, ShowAsMuchOfASurfaceInAPixelWhateverTheLens) {
   const Camera tele = usual.scaled(2.0);
   ASSERT_EQ(feature_levels(settings, tele).size(), feature_levels(settings).size());
   EXPECT_EQ(feature_levels(settings, tele)[0].scale, 0.5F * feature_levels(settings)[0].scale);
-  settings.handling = ScaleHandling::kScaleSpace;
-  settings.scales = {1.0F, 0.5F};
-  EXPECT_EQ(feature_levels(settings, tele)[0].scale, feature_levels(settings)[0].scale);
 }
 
 TEST(WorkingImages, AreThoseOfEachLevelForAnyNumberOfThreads) {
@@ -151,10 +148,6 @@ TEST(WorkingFrame, NearSurfacesLendOverAsManyMetresWithDepthNormalisation) {
   const cv::Mat depth = make_working_frame(frame, 1.0F, settings).filled_depth;
   EXPECT_FLOAT_EQ(depth.at<float>(5, 4 + 25), 0.4F);
   EXPECT_TRUE(std::isnan(depth.at<float>(5, 4 + 26)));
-  settings.handling = ScaleHandling::kScaleSpace;
-  const cv::Mat without = make_working_frame(frame, 1.0F, settings).filled_depth;
-  EXPECT_FLOAT_EQ(without.at<float>(5, 4 + 10), 0.4F);
-  EXPECT_TRUE(std::isnan(without.at<float>(5, 4 + 11)));
 }
 
 TEST(WorkingFrame, TheFrameItselfIsNotTouchedInFullSize) {

@@ -134,8 +134,6 @@ TEST_F(ForestFile, SettingsThatNoProfileHasAreRefused) {
     }
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  expect_refused("profile 'other'", [](Forest& f) { f.profile = "other"; });
-  expect_refused("profile ''", [](Forest& f) { f.profile.clear(); });
   expect_refused("feature families 0x0", [](Forest& f) { f.features.families = 0; });
   expect_refused("feature families 0x101", [](Forest& f) { f.features.families = 0x101; });
   expect_refused("scale handling 2", [](Forest& f) { f.features.handling = static_cast<ScaleHandling>(2); });

@@ -32,7 +32,8 @@ Forest with_score_trained(const Toys& toys, Forest forest, int threads) {
   Profile profile = toy::quick_profile();
   profile.training.validation_frames = 16;
   profile.training.threads = threads;
-  train_score_model(composed_frames(toys.objects, toys.rooms, profile.training), kClasses, 0, profile, forest);
+  const ValidationSource source = composed_frames(toys.objects, toys.rooms, profile.training);
+  fit_scores(find_score_examples(source, 0, profile, forest), kClasses, forest);
   return forest;
 }
 
@@ -123,7 +124,8 @@ TEST(ScoreTraining, LearnsFromAnySourceOfFrames) {
                                     ++asked.at(static_cast<std::size_t>(index));
                                     return tiles_in_a_room(index, is_there);
                                   }};
-    train_score_model(source, {1}, 0, profile, forests[is_there ? 1 : 0]);
+    Forest& forest = forests[is_there ? 1 : 0];
+    fit_scores(find_score_examples(source, 0, profile, forest), {1}, forest);
     EXPECT_EQ(asked[0], 1);
     EXPECT_EQ(asked[1], 1);
   }

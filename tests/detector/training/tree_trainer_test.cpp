@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "detector/profiles.hpp"
+#include "detector/baseline/gall_profile.hpp"
 #include "tests/detector/planted_set.hpp"
 
 namespace houghstream::training {
@@ -132,7 +132,8 @@ TEST(TreeTrainer, WhatAPatchIsWorthToAnObjectDoesNotDependOnHowManyOthersWereTau
   };
   EXPECT_NEAR(share_of_one_among(4), 0.25F, 1e-4F);
   EXPECT_NEAR(share_of_one_among(16), share_of_one_among(4), 1e-4F);
-  EXPECT_NEAR(share_of_one_among(16, make_profile("gall").training), 1.0F / 16.0F, 1e-4F) << "but in the original";
+  EXPECT_NEAR(share_of_one_among(16, baseline::make_profile("gall").training), 1.0F / 16.0F, 1e-4F)
+      << "but in the original";
 }
 
 }  // namespace

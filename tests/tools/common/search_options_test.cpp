@@ -10,7 +10,6 @@ namespace {
 Forest forest_of(const std::string& profile) {
   Forest forest;
   forest.profile = profile;
-  forest.features = make_profile(profile).features;
   forest.classes.resize(4);  // as the profiles have in mind
   return forest;
 }
@@ -25,7 +24,7 @@ SearchOptions parsed(const std::vector<std::string>& words) {
 
 TEST(SearchOptions, WithoutOptionsAForestIsSearchedAsItsProfileSays) {
   for (const std::string& name : profile_names()) {
-    const DetectionSettings expected = make_profile(name).detection;
+    const DetectionSettings expected = detection_settings(name);
     const DetectionSettings settings = parsed({}).settings_for(forest_of(name));
     EXPECT_EQ(settings.spacing.stride, expected.spacing.stride) << name;
     EXPECT_EQ(settings.spacing.metres, expected.spacing.metres) << name;
@@ -39,7 +38,7 @@ TEST(SearchOptions, WithoutOptionsAForestIsSearchedAsItsProfileSays) {
 TEST(SearchOptions, WhatIsAskedForReplacesTheProfilesOwn) {
   SearchOptions options = parsed({"--threads", "3", "--stride", "4", "--threshold", "0.25"});
   options.min_mass_share = 0.07F;
-  const DetectionSettings settings = options.settings_for(forest_of("gall"));
+  const DetectionSettings settings = options.settings_for(forest_of("paper"));
   EXPECT_EQ(settings.threads, 3);
   EXPECT_EQ(settings.spacing.stride, 4);
   EXPECT_EQ(settings.spacing.metres, 0.0F);

@@ -1,12 +1,12 @@
-#include "detector/baseline/use_baseline.hpp"
+#include "detector/baseline/gall_profile.hpp"
 #include "tools/evaluate/evaluate_main.hpp"
 #include "tools/studies/baseline/study_search.hpp"
 
 int main(int argc, char** argv) {
   using namespace houghstream;
-  baseline::use_baseline();
   bool reference = false;
   EvaluateSearch search;
+  search.settings = baseline::detection_settings_of;
   search.make = [&](Forest forest, const DetectionSettings& settings) {
     return study_search(std::move(forest), settings, reference);
   };

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include "detector/baseline/gall_profile.hpp"
 #include "detector/baseline/hough_images.hpp"
-#include "detector/baseline/use_baseline.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "drivers/files/image_file.hpp"
 #include "pipeline/base/checks.hpp"
@@ -45,7 +45,7 @@ std::vector<NamedBox> true_boxes(const EvaluatedFrame& frame, const Forest& fore
 }
 
 std::vector<HoughPanel> search(const Forest& forest, const RgbdFrame& frame, const HoughOptions& options) {
-  const DetectionSettings settings = options.search.settings_for(forest);
+  const DetectionSettings settings = options.search.change(baseline::detection_settings_of(forest));
   const ForestIndex index(forest);
   const Search by{index, settings};
   const baseline::Way way = way_of(options.reference);
@@ -81,7 +81,6 @@ void run(const HoughOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  baseline::use_baseline();
   CommandLine app("Draws the votes for each class over a frame of a scene, with what was found and what is true",
                   "hs-hough");
   HoughOptions options;

@@ -43,7 +43,7 @@ ComposedExamples compose_examples(const std::vector<TrainingView>& views, float 
   }
   require(!shown.empty() && !rooms.empty(), "{} views to show in {} background views, expected some of each",
           shown.size(), rooms.size());
-  training::TrainingSettings settings;
+  training::PictureSettings settings;
   settings.min_distance = min_distance;
   settings.max_distance = max_distance;
   for (std::size_t f = 0; f < static_cast<std::size_t>(pictures); ++f) {

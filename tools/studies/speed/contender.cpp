@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
+#include "detector/baseline/gall_profile.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tools/common/search_options.hpp"
@@ -94,7 +95,7 @@ Contender parse_contender(const std::string& text) {
   const auto trees = static_cast<std::size_t>(wishes.trees);
   require(trees <= forest.roots.size(), "{}: the forest has {} trees", text, forest.roots.size());
   if (trees > 0) forest.roots.resize(trees);
-  const DetectionSettings settings = wishes.search.settings_for(forest);
+  const DetectionSettings settings = wishes.search.change(baseline::detection_settings_of(forest));
   contender.detect = study_search(std::move(forest), settings, wishes.reference);
   return contender;
 }

@@ -22,8 +22,7 @@ struct Contender {
 /// A detector as a command line names it: "NAME=FOREST", then any of ",threads=N" (default 2), ",reference",
 /// ",set=SSE4|AVX2|AVX3" and so on (the names of Highway), ",frames=N", ",trees=N" (the first so many), ",scale=X",
 /// ",threshold=X" and ",min-mass=X" (as of hs-evaluate, so that time and accuracy are of the same settings).
-/// Loads the forest; the program has the baseline (baseline::use_baseline). Throws InputError naming what was not
-/// understood.
+/// Loads the forest. Throws InputError naming what was not understood.
 Contender parse_contender(const std::string& text);
 
 /// The frame with its image `scale` times as large: colour interpolated, depth of the nearest pixel.

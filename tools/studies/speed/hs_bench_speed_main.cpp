@@ -4,7 +4,6 @@
 #include <fstream>
 #include <memory>
 
-#include "detector/baseline/use_baseline.hpp"
 #include "drivers/datasets/bop_dataset.hpp"
 #include "pipeline/base/checks.hpp"
 #include "pipeline/base/log_line.hpp"
@@ -63,7 +62,6 @@ void run(const SpeedOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  baseline::use_baseline();
   CommandLine app("Measures what detectors take for the frames of a scene, side by side", "hs-bench-speed");
   SpeedOptions options;
   app.add_option("--scene", options.scene, "BOP scene folder");

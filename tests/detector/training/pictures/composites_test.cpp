@@ -11,8 +11,8 @@
 namespace houghstream::training {
 namespace {
 
-TrainingSettings plain() {
-  TrainingSettings settings;
+PictureSettings plain() {
+  PictureSettings settings;
   settings.light_variation = 0.0;
   settings.occluded_share = 0.0;
   settings.cleared_share = 0.0;
@@ -26,7 +26,7 @@ TrainingView tile_view() {
 }
 
 std::optional<Composite> compose(const TrainingView& view, double distance, std::uint64_t seed,
-                                 const TrainingSettings& settings) {
+                                 const PictureSettings& settings) {
   Random random(seed);
   return make_composite(view, toy::room(5), distance, settings, random);
 }
@@ -144,7 +144,7 @@ TEST(Composites, TheSameSeedGivesTheSamePicture) {
 }
 
 TEST(Composites, SharpenedAreOnlyObjectsAndOnlyIfAsked) {
-  TrainingSettings settings = plain();
+  PictureSettings settings = plain();
   settings.sharpened_share = 1.0;
   const TrainingView view = tile_view();
   const auto as_taught = compose(view, 0.7, 3, plain());

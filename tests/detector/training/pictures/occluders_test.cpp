@@ -14,7 +14,7 @@ namespace {
 constexpr double kDistance = 0.9;
 
 Composite bare_tile(std::uint64_t seed) {
-  TrainingSettings settings;
+  PictureSettings settings;
   settings.light_variation = 0.0;
   settings.occluded_share = 0.0;
   Random random(seed);

@@ -5,6 +5,9 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "detector/baseline/baseline_scales.hpp"
+#include "detector/baseline/gall_profile.hpp"
+#include "detector/baseline/scale_space_search.hpp"
 #include "detector/training/pictures/training_set.hpp"
 #include "tests/detector/toy_data.hpp"
 
@@ -26,7 +29,7 @@ TrainingView round_view() {
 }
 
 Profile open_profile(const std::string& name) {
-  Profile profile = make_profile(name);
+  Profile profile = baseline::make_profile(name);
   profile.training.occluded_share = 0.0;
   profile.training.light_variation = 0.0;
   profile.training.patches_per_view = 120;
@@ -35,10 +38,14 @@ Profile open_profile(const std::string& name) {
   return profile;
 }
 
+PictureInput input_of(const Profile& profile) {
+  return {profile.features, profile.patch, profile.training, baseline::scales_of(profile.features)};
+}
+
 TrainingPicture picture_of(const TrainingView& view, const Profile& profile, std::uint64_t seed) {
   Random random(seed);
   PictureWorkspace own;
-  return object_picture({view, 2, 5}, toy::room(3), profile, random, own);
+  return object_picture({view, 2, 5}, toy::room(3), input_of(profile), random, own);
 }
 
 /// How much larger the picture shows the object than the view does, `image_scale` aside.
@@ -114,7 +121,7 @@ TEST(TrainingPictures, AScaleSpaceIsTaughtTheNoiseOfTheDistancesItSearches) {
   Profile five = open_profile("gall");
   five.features.families = kDepthDerivatives;
   Profile single = five;
-  set_scale_handling(single, "single");
+  baseline::set_scale_handling(single, "single");
   double smooth = 0.0;
   double rough = 0.0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
@@ -145,7 +152,7 @@ TEST(TrainingPictures, PicturesHoldWhatTheirPatchesLookAtOnly) {
     expect_held(picture_of(round_view(), profile, seed), profile.patch);
     Random random(seed);
     for (const FeatureLevel& level : feature_levels(profile.features)) {
-      expect_held(background_picture(toy::room(3), level, profile, random, own), profile.patch);
+      expect_held(background_picture(toy::room(3), level, input_of(profile), random, own), profile.patch);
     }
   }
 }
@@ -209,7 +216,8 @@ TEST(TrainingPictures, ATooSmallBackgroundGivesNothing) {
   Random random(1);
   PictureWorkspace own;
   const TrainingView view = round_view();
-  const TrainingPicture picture = object_picture({view, 1, 0}, corner, open_profile("gall"), random, own);
+  const Profile gall = open_profile("gall");
+  const TrainingPicture picture = object_picture({view, 1, 0}, corner, input_of(gall), random, own);
   EXPECT_TRUE(picture.samples.empty());
   EXPECT_EQ(picture.whole_area, 0.0F);
 }
@@ -225,7 +233,7 @@ TEST(TrainingPictures, ABackgroundIsDrawnFromWhereItsLevelSees) {
     const float seen = level.min_distance > 0.0F ? 2.0F : 0.8F;
     Random random(7);
     PictureWorkspace own;
-    const TrainingPicture picture = background_picture(room, level, profile, random, own);
+    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, own);
     const auto drawn = static_cast<std::size_t>(profile.training.patches_per_room / kBackgroundPictures);
     EXPECT_EQ(picture.samples.size(), drawn);
     EXPECT_EQ(picture.spare_background.size(), drawn * static_cast<std::size_t>(profile.training.spare_background));
@@ -242,10 +250,10 @@ TEST(TrainingPictures, ABackgroundOfAScaleSpaceNeedsNoDepth) {
   RgbdFrame room = toy::room(3);
   room.depth.setTo(std::numeric_limits<float>::quiet_NaN());
   const Profile profile = open_profile("gall");
-  for (const FeatureLevel& level : feature_levels(profile.features)) {
+  for (const FeatureLevel& level : baseline::scale_space_levels(profile.features)) {
     Random random(7);
     PictureWorkspace own;
-    const TrainingPicture picture = background_picture(room, level, profile, random, own);
+    const TrainingPicture picture = background_picture(room, level, input_of(profile), random, own);
     EXPECT_EQ(picture.samples.size(), 20U) << level.size_ratio;
     EXPECT_TRUE(picture.spare_background.empty());
     for (const TrainingSample& sample : picture.samples) ASSERT_EQ(sample.scale, 256);

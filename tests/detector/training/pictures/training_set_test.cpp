@@ -25,6 +25,10 @@ std::vector<TrainingView> flat_tile() {
 
 const auto kKeepAll = [](const TrainingView*) {};
 
+PictureInput input_of(const Profile& profile) {
+  return {profile.features, profile.patch, profile.training, depth_normalised_scales()};
+}
+
 TrainingSet teach(const std::vector<TrainingView>& views, float distance, int threads = 2) {
   Profile profile = toy::quick_profile();
   profile.training.min_distance = distance;
@@ -33,7 +37,7 @@ TrainingSet teach(const std::vector<TrainingView>& views, float distance, int th
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  return make_training_set(pointers, profile, kKeepAll);
+  return make_training_set(pointers, input_of(profile), kKeepAll);
 }
 
 TEST(TrainingSet, OffsetsPointFromTheSurfaceToTheCentre) {
@@ -130,7 +134,7 @@ TEST(TrainingSet, ViewsWithoutAPictureAreRememberedAllTheSame) {
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  const TrainingSet set = make_training_set(pointers, profile, kKeepAll);
+  const TrainingSet set = make_training_set(pointers, input_of(profile), kKeepAll);
   EXPECT_EQ(set.views.size(), teach(views, 0.8F).views.size());
   std::set<std::uint32_t> with_patches;
   for (const TrainingSample& sample : set.samples) {
@@ -150,8 +154,8 @@ TEST(TrainingSet, ViewsThatAreDoneMayLetTheirPicturesGo) {
   std::vector<const TrainingView*> pointers;
   pointers.reserve(views.size());
   for (const TrainingView& view : views) pointers.push_back(&view);
-  const TrainingSet kept = make_training_set(pointers, profile, kKeepAll);
-  const TrainingSet let_go = make_training_set(pointers, profile, [&](const TrainingView* done) {
+  const TrainingSet kept = make_training_set(pointers, input_of(profile), kKeepAll);
+  const TrainingSet let_go = make_training_set(pointers, input_of(profile), [&](const TrainingView* done) {
     TrainingView& view = views[static_cast<std::size_t>(done - views.data())];
     EXPECT_GT(view.class_id, 0) << "a room, which other pictures want too";
     EXPECT_FALSE(view.mask.empty()) << "done twice";

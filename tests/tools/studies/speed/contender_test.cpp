@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "detector/baseline/use_baseline.hpp"
 #include "detector/forest/forest_file.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
@@ -18,7 +17,6 @@ namespace {
 class ParseContender : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    baseline::use_baseline();
     save_forest(training::train_forest(toy::training_views(), toy::quick_profile(), [](const auto&) {}), forest_file());
   }
   static void TearDownTestSuite() { std::filesystem::remove(forest_file()); }

@@ -1,12 +1,10 @@
-#include "detector/baseline/use_baseline.hpp"
+#include "detector/baseline/surface_planes.hpp"
 
 #include <gtest/gtest.h>
 
 #include "detector/baseline/surface_curvature.hpp"
 #include "detector/baseline/surface_histograms.hpp"
 #include "detector/baseline/surface_honv.hpp"
-#include "detector/extensions.hpp"
-#include "detector/profiles.hpp"
 #include "tests/detector/baseline/surface_scene.hpp"
 
 namespace houghstream::baseline {
@@ -43,11 +41,15 @@ TEST(SurfacePlanes, AreThoseOfTheirFamilyForAnyNumberOfThreads) {
   EXPECT_TRUE(same_planes(surface_planes(kFastHistogram, frame, 3), fpfh_planes(frame, {}, 1)));
 }
 
-TEST(UseBaseline, GivesTheProgramWhatTheProfilesAndFeaturesNeed) {
-  use_baseline();
-  FeatureSettings all = make_profile("gall").features;
-  all.families = 255;
-  EXPECT_NO_THROW(require_extensions(all, "a.forest"));
+TEST(SurfacePlanes, ExtraOnesAreThoseOfTheSettings) {
+  const WorkingFrame frame = scene::ball_on_table(60, 44);
+  FeatureSettings settings;
+  settings.families = kIntensity | kHonv | kCurvature;
+  const ExtraPlanes extra = extra_planes(frame, settings, 2);
+  ASSERT_EQ(extra.size(), 2U);
+  EXPECT_TRUE(same_planes(extra.at(kHonv), honv_planes(frame, 1)));
+  EXPECT_TRUE(same_planes(extra.at(kCurvature), curvature_planes(frame, 1)));
+  EXPECT_TRUE(extra_planes(frame, {}, 2).empty());
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
-#include "detector/baseline/use_baseline.hpp"
+#include "detector/baseline/surface_planes.hpp"
 
-#include "detector/baseline/scale_space_search.hpp"
 #include "detector/baseline/surface_curvature.hpp"
 #include "detector/baseline/surface_histograms.hpp"
 #include "detector/baseline/surface_honv.hpp"
-#include "detector/extensions.hpp"
 
 namespace houghstream::baseline {
 
@@ -20,10 +18,13 @@ std::vector<cv::Mat> surface_planes(FeatureFamily family, const WorkingFrame& fr
   }
 }
 
-void use_baseline() {
-  extend_detector({surface_planes, [](const Search& search, const RgbdFrame& frame, StageClock& clock) {
-                     return search_scale_space(search, Way::kFast, frame, clock);
-                   }});
+ExtraPlanes extra_planes(const WorkingFrame& frame, const FeatureSettings& settings, int threads) {
+  ExtraPlanes extra;
+  for (const FamilyName& known : kFamilyNames) {
+    if (!is_surface_family(known.family) || (settings.families & known.family) == 0) continue;
+    extra[known.family] = surface_planes(known.family, frame, threads);
+  }
+  return extra;
 }
 
 }  // namespace houghstream::baseline

@@ -1,9 +1,9 @@
-#include "detector/extensions.hpp"
+#include "detector/stages.hpp"
 
 #include <gtest/gtest.h>
 
+#include "detector/baseline/gall_profile.hpp"
 #include "detector/features/features.hpp"
-#include "detector/profiles.hpp"
 #include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
 #include "tests/detector/toy_data.hpp"
@@ -11,23 +11,21 @@
 namespace houghstream {
 namespace {
 
-// This program has none.
-
 std::string refusal(const FeatureSettings& settings) {
   try {
-    require_extensions(settings, "a.forest");
+    require_searchable(settings, "a.forest");
   } catch (const InputError& error) {
     return error.what();
   }
   return "";
 }
 
-TEST(Extensions, TheProductsProfilesNeedNone) {
-  for (const char* name : {"paper", "realtime"}) EXPECT_EQ(refusal(make_profile(name).features), "") << name;
+TEST(Searchable, TheProductsProfilesAre) {
+  for (const std::string& name : profile_names()) EXPECT_EQ(refusal(make_profile(name).features), "") << name;
 }
 
-TEST(Extensions, WhatIsMissingIsNamedWithWhoNeedsItAndWhoHasIt) {
-  const std::string scales = refusal(make_profile("gall").features);
+TEST(Searchable, WhatIsNotIsNamedWithWhoNeedsItAndWhoHasIt) {
+  const std::string scales = refusal(baseline::make_profile("gall").features);
   EXPECT_NE(scales.find("a.forest: searches several sizes of the image"), std::string::npos) << scales;
   EXPECT_NE(scales.find("hs-study-evaluate"), std::string::npos) << scales;
   FeatureSettings settings;
@@ -38,12 +36,13 @@ TEST(Extensions, WhatIsMissingIsNamedWithWhoNeedsItAndWhoHasIt) {
   EXPECT_EQ(surfaces.find('\n'), std::string::npos);
 }
 
-TEST(Extensions, NothingIsComputedOrTrainedWithoutThem) {
+TEST(Searchable, NothingElseIsComputedOrTaughtByTheProduct) {
   FeatureSettings settings;
   settings.families = kCurvature;
   const WorkingFrame frame = make_working_frame(toy::room(5), 0.5F, settings);
   EXPECT_THROW(compute_features(frame, settings, 1), InputError);
-  EXPECT_THROW(training::train_forest(toy::training_views(), make_profile("gall"), [](const auto&) {}), InputError);
+  const Profile gall = baseline::make_profile("gall");
+  EXPECT_THROW(training::train_forest(toy::training_views(), gall, [](const auto&) {}), InputError);
 }
 
 }  // namespace

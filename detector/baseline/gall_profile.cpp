@@ -1,17 +1,19 @@
-#include "detector/profiles.hpp"
+#include "detector/baseline/gall_profile.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "detector/features/feature_families.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
+#include "detector/training/forest_trainer.hpp"
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 constexpr std::array<float, kMaxScales> kFiveScales = {0.33F, 0.66F, 1.0F, 1.66F, 2.33F};  // Section 4
@@ -22,28 +24,13 @@ float even_share(std::size_t objects) {
   return 1.0F / static_cast<float>(objects + 1);
 }
 
-Profile realtime() {
-  Profile profile;
-  profile.name = "realtime";
-  return profile;
-}
+constexpr const char* kGallProfile = "gall";
 
-Profile paper() {
-  Profile profile;
-  profile.name = "paper";
-  profile.features.image_scale = 0.7F;
-  profile.features.far_distance = profile.features.max_distance;  // one size for all
-  profile.patch.radius = 5;
-  profile.patch.unit = 1.0F / (0.7F * kUsualFocal);  // one working pixel at 1 m
-  profile.detection.spacing.stride = 1;
-  profile.detection.spacing.metres = 0.0F;
-  profile.detection.leaves.first_trees = 0;
-  return profile;
-}
+}  // namespace
 
-Profile gall(std::size_t objects) {
+Profile gall_profile(std::size_t objects) {
   Profile profile;
-  profile.name = "gall";
+  profile.name = kGallProfile;
   profile.features.families = kIntensity;
   profile.features.image_scale = 1.0F;
   profile.patch.radius = 8;
@@ -63,25 +50,32 @@ Profile gall(std::size_t objects) {
   return profile;
 }
 
-}  // namespace
-
 std::vector<std::string> profile_names() {
-  return {"gall", "paper", "realtime"};
+  std::vector<std::string> names = houghstream::profile_names();
+  names.insert(names.begin(), kGallProfile);
+  return names;
 }
 
 Profile make_profile(const std::string& name, std::size_t objects) {
-  if (name == "gall") return gall(objects);
-  if (name == "paper") return paper();
-  if (name == "realtime") return realtime();
-  fail("profile '{}', expected one of {}", name, fmt::join(profile_names(), ", "));
+  if (name == kGallProfile) return gall_profile(objects);
+  const std::vector<std::string> known = profile_names();
+  require(std::find(known.begin(), known.end(), name) != known.end(), "profile '{}', expected one of {}", name,
+          fmt::join(known, ", "));
+  return houghstream::make_profile(name);
 }
 
-DetectionSettings detection_settings(const Forest& forest) {
+DetectionSettings detection_settings_of(const Forest& forest) {
   Profile profile = make_profile(forest.profile, forest.classes.size());
   profile.features.image_scale = forest.features.image_scale;
   const bool normalised = forest.features.handling == ScaleHandling::kDepthNormalised;
   set_scale_handling(profile, normalised ? "normalised" : "five");  // how many scales makes no difference here
   return profile.detection;
+}
+
+Profile profile_of(const Forest& forest) {
+  Profile named = make_profile(forest.profile);
+  named.detection = detection_settings_of(forest);
+  return training::profile_of(forest, named);
 }
 
 void set_image_scale(Profile& profile, float image_scale) {
@@ -116,4 +110,4 @@ void set_scale_handling(Profile& profile, const std::string& handling) {
   profile.detection.voting.vote_sigma = 3.0F / kUsualFocal;
 }
 
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -1,13 +1,14 @@
-#include "detector/profiles.hpp"
+#include "detector/baseline/gall_profile.hpp"
 
 #include <gtest/gtest.h>
 
+#include "detector/baseline/scale_space_search.hpp"
 #include "detector/features/feature_families.hpp"
 #include "detector/features/working_frame.hpp"
 #include "detector/forest/forest.hpp"
 #include "pipeline/base/checks.hpp"
 
-namespace houghstream {
+namespace houghstream::baseline {
 namespace {
 
 constexpr double kFocal = 525.0;  // of the cameras that the profiles have in mind
@@ -20,12 +21,9 @@ Forest forest_of(const Profile& profile) {
   return forest;
 }
 
-TEST(Profiles, AreKnownByTheirNames) {
+TEST(GallProfile, IsKnownBesideThoseOfTheProduct) {
+  EXPECT_EQ(profile_names(), (std::vector<std::string>{"gall", "paper", "realtime"}));
   for (const std::string& name : profile_names()) EXPECT_EQ(make_profile(name).name, name);
-  EXPECT_EQ(profile_names().size(), 3U);
-}
-
-TEST(Profiles, UnknownNamesAreRefusedWithTheKnownOnes) {
   try {
     make_profile("Gall");
     FAIL() << "expected an error";
@@ -35,7 +33,7 @@ TEST(Profiles, UnknownNamesAreRefusedWithTheKnownOnes) {
   }
 }
 
-TEST(Profiles, GallIsTheOriginalHoughForest) {
+TEST(GallProfile, IsTheOriginalHoughForest) {
   const Profile gall = make_profile("gall");
   EXPECT_EQ(gall.features.families, kIntensity);
   EXPECT_EQ(gall.features.handling, ScaleHandling::kScaleSpace);
@@ -46,36 +44,14 @@ TEST(Profiles, GallIsTheOriginalHoughForest) {
   EXPECT_EQ(gall.detection.spacing.stride, 1);
   EXPECT_EQ(gall.detection.leaves.first_trees, 0);
   std::vector<float> sizes;
-  for (const FeatureLevel& level : feature_levels(gall.features)) sizes.push_back(level.scale);
+  for (const FeatureLevel& level : scale_space_levels(gall.features)) sizes.push_back(level.scale);
   EXPECT_EQ(sizes, (std::vector<float>{0.33F, 0.66F, 1.0F, 1.66F, 2.33F}));
-}
-
-TEST(Profiles, PaperHasPatchesOfTenPixelsAtOneMetre) {
-  const Profile paper = make_profile("paper");
-  EXPECT_EQ(paper.patch.radius, 5);
-  EXPECT_NEAR(patch_scale(paper.patch, paper.features.image_scale * kFocal, 1.0F), 256, 1);
-  EXPECT_EQ(paper.features.families, kIntensity | kDepthValue | kDepthDerivatives | kDepthHog);
-  EXPECT_EQ(paper.features.handling, ScaleHandling::kDepthNormalised);
-  EXPECT_EQ(feature_levels(paper.features).size(), 1U);
-  EXPECT_EQ(paper.detection.spacing.stride, 1);
-  EXPECT_EQ(paper.detection.spacing.metres, 0.0F);
-  EXPECT_EQ(paper.detection.leaves.first_trees, 0);
-}
-
-TEST(Profiles, RealtimeLooksAtFewerPixelsThanPaper) {
-  const Profile realtime = make_profile("realtime");
-  EXPECT_LT(realtime.features.image_scale, make_profile("paper").features.image_scale);
-  EXPECT_EQ(realtime.detection.spacing.stride, 2);
-  EXPECT_GT(realtime.detection.spacing.metres, 0.0F);
-  EXPECT_GT(realtime.detection.leaves.first_trees, 0);
-  EXPECT_EQ(realtime.features.families, make_profile("paper").features.families);
-  EXPECT_EQ(feature_levels(realtime.features).size(), 2U);
 }
 
 TEST(ScaleHandling, ASingleScaleIsTheTaughtOne) {
   Profile profile = make_profile("gall");
   set_scale_handling(profile, "single");
-  const std::vector<FeatureLevel> levels = feature_levels(profile.features);
+  const std::vector<FeatureLevel> levels = scale_space_levels(profile.features);
   ASSERT_EQ(levels.size(), 1U);
   EXPECT_EQ(levels[0].size_ratio, 1.0F);
   EXPECT_EQ(levels[0].scale, profile.features.image_scale);
@@ -111,7 +87,7 @@ TEST(ForestsSettings, AreThoseItWasTrainedBy) {
     for (const char* handling : {"five", "single", "normalised"}) {
       Profile profile = make_profile(name);
       set_scale_handling(profile, handling);
-      const DetectionSettings settings = detection_settings(forest_of(profile));
+      const DetectionSettings settings = detection_settings_of(forest_of(profile));
       EXPECT_EQ(settings.voting.vote_sigma, profile.detection.voting.vote_sigma) << name << " " << handling;
       EXPECT_EQ(settings.spacing.stride, profile.detection.spacing.stride);
       EXPECT_EQ(settings.spacing.metres, profile.detection.spacing.metres);
@@ -123,28 +99,34 @@ TEST(ForestsSettings, AreThoseItWasTrainedBy) {
   }
 }
 
+TEST(ForestsSettings, OfTheProductsProfilesAreTheProducts) {
+  for (const std::string& name : houghstream::profile_names()) {
+    const Forest forest = forest_of(make_profile(name));
+    const DetectionSettings own = detection_settings_of(forest);
+    const DetectionSettings products = houghstream::detection_settings(forest);
+    EXPECT_EQ(own.spacing.stride, products.spacing.stride) << name;
+    EXPECT_EQ(own.spacing.metres, products.spacing.metres) << name;
+    EXPECT_EQ(own.leaves.first_trees, products.leaves.first_trees) << name;
+    EXPECT_EQ(own.voting.vote_sigma, products.voting.vote_sigma) << name;
+  }
+}
+
 TEST(ForestsSettings, GallsPatchesVoteForWhatIsLikelierThanByChance) {
   Forest forest = forest_of(make_profile("gall"));
-  EXPECT_EQ(detection_settings(forest).leaves.min_class_share, 0.2F);  // four objects and the background
+  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_share, 0.2F);  // four objects and the background
   forest.classes.resize(7);
-  EXPECT_EQ(detection_settings(forest).leaves.min_class_share, 0.125F);
+  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_share, 0.125F);
   forest = forest_of(make_profile("realtime"));
-  const float ours = detection_settings(forest).leaves.min_class_share;
+  const float ours = detection_settings_of(forest).leaves.min_class_share;
   forest.classes.resize(20);
-  EXPECT_EQ(detection_settings(forest).leaves.min_class_share, ours);
+  EXPECT_EQ(detection_settings_of(forest).leaves.min_class_share, ours);
 }
 
 float patch_reach(const Profile& profile) {
   return profile.patch.unit * static_cast<float>(profile.patch.radius);
 }
 
-TEST(Profiles, UnknownNamesAreRefused) {
-  EXPECT_THROW(make_profile("fast"), InputError);
-  Profile profile = make_profile("gall");
-  EXPECT_THROW(set_scale_handling(profile, "seven"), InputError);
-}
-
-TEST(Profiles, PatchesOfAScaleSpaceShrinkWithTheImage) {
+TEST(GallProfile, PatchesOfAScaleSpaceShrinkWithTheImage) {
   Profile profile = make_profile("gall");
   const float smoothing = profile.detection.voting.vote_sigma;
   set_image_scale(profile, 0.5F);
@@ -155,13 +137,13 @@ TEST(Profiles, PatchesOfAScaleSpaceShrinkWithTheImage) {
   EXPECT_EQ(profile.detection.voting.vote_sigma, smoothing);  // counted as on an object at 1 m
 }
 
-TEST(Profiles, PatchesOfTheTiniestImageHaveAnExtent) {
+TEST(GallProfile, PatchesOfTheTiniestImageHaveAnExtent) {
   Profile profile = make_profile("gall");
   set_image_scale(profile, 0.01F);
   EXPECT_EQ(profile.patch.radius, 1);
 }
 
-TEST(Profiles, DepthNormalisedPatchesCoverTheSameSurfaceInAnyImageSize) {
+TEST(GallProfile, DepthNormalisedPatchesCoverTheSameSurfaceInAnyImageSize) {
   for (const char* name : {"paper", "realtime"}) {
     Profile profile = make_profile(name);
     const float reach = patch_reach(profile);
@@ -177,4 +159,4 @@ TEST(Profiles, DepthNormalisedPatchesCoverTheSameSurfaceInAnyImageSize) {
 }
 
 }  // namespace
-}  // namespace houghstream
+}  // namespace houghstream::baseline

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "detector/training/profiles.hpp"
+
+namespace houghstream::baseline {
+
+/// The original Hough Forest (Gall et al. 2011) with the parameters of the paper's Section 4: intensity only, five
+/// scales of the image, patches of 16x16 pixels, every pixel; a detection's score is its votes' mass. A patch votes for
+/// the objects that it takes for likelier than one of so many by chance. `objects`: how many are taught.
+Profile gall_profile(std::size_t objects);
+
+/// As houghstream::make_profile, but "gall" is known too. The paper teaches four objects.
+Profile make_profile(const std::string& name, std::size_t objects = 4);
+
+std::vector<std::string> profile_names();
+
+/// How a forest wants to be searched: by the profile that it was trained by, for as many objects as it knows.
+DetectionSettings detection_settings_of(const Forest& forest);
+
+/// The profile by which a forest was trained, see training::profile_of.
+Profile profile_of(const Forest& forest);
+
+/// Working size over frame size (paper, Section 5.1.1). What is counted in pixels, patches above all, is adjusted, so
+/// that it covers as much of the frame as before; lengths in metres stay. To be called before set_scale_handling.
+void set_image_scale(Profile& profile, float image_scale);
+
+/// How distances are handled: "five" (scales, Gall et al. 2011), "single" (scale 1 only) or "normalised" (by depth,
+/// Section 5.1.2; patches as large as at 1 m, about where turntables stand). Throws InputError for another word.
+void set_scale_handling(Profile& profile, const std::string& handling);
+
+}  // namespace houghstream::baseline

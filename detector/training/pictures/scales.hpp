@@ -1,0 +1,95 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "detector/stages.hpp"
+#include "pipeline/base/random.hpp"
+#include "pipeline/types/training_view.hpp"
+
+namespace houghstream::training {
+
+/// Distances, metres.
+struct DistanceRange {
+  double nearest = 0.0;
+  double farthest = 0.0;
+};
+
+/// What a pixel of a composed picture shows of a view.
+struct ShownPoint {
+  cv::Point2d view_px;
+  float depth = 0.0F;  ///< as the view knows it, metres
+  double scale = 1.0;  ///< size in the picture over size in the view
+};
+
+/// How one object is taught at every distance, as far as training depends on it: ScaleHandling and the features beyond
+/// the product's own. The product has depth_normalised_scales() alone, the baseline hands its own to the trainer.
+class Scales {
+ public:
+  Scales() = default;
+  Scales(const Scales&) = delete;
+  Scales& operator=(const Scales&) = delete;
+  virtual ~Scales() = default;
+
+  /// Throws InputError in one line that names `source`, what it needs and who has it, where such a forest cannot be
+  /// taught in this way.
+  virtual void require_teachable(const FeatureSettings& settings, const std::string& source) const = 0;
+
+  /// The sizes at which the pictures of a camera are looked at.
+  virtual std::vector<FeatureLevel> levels(const FeatureSettings& settings, const Camera& camera) const = 0;
+  /// The level that sees an object at this distance.
+  virtual FeatureLevel level_for(double distance, const Camera& camera, const FeatureSettings& settings,
+                                 Random& random) const = 0;
+  /// Whether a level is taught a surface at this depth.
+  virtual bool teaches(const FeatureLevel& level, float depth) const = 0;
+  /// The frame as a level works on it, its holes filled as far as holes reach.
+  virtual WorkingFrame working_frame(const RgbdFrame& frame, const FeatureLevel& level,
+                                     const FeatureSettings& settings) const = 0;
+  /// The planes that compute_features needs beside its own.
+  virtual ExtraPlanes extra_planes(const WorkingFrame& frame, const FeatureSettings& settings) const = 0;
+
+  /// Where an object is put that was taught at `taught` metres; `wanted` is what the settings say.
+  virtual DistanceRange distances(double taught, const DistanceRange& wanted) const = 0;
+  /// The distance at which areas and boxes count that are seen at this one.
+  virtual double counted_distance(double distance) const = 0;
+  /// Whether patches of an object need measured depth, not what holes borrow.
+  virtual bool needs_measured_depth() const = 0;
+  /// Adds what the other sizes of a picture do to the depth of an object at this distance.
+  virtual void vary_depth(double distance, const FeatureSettings& settings, cv::Mat& depth, Random& random) const = 0;
+  /// PatchView::scale of a patch whose centre lies at this depth.
+  virtual std::int32_t scale_of_patch(const PatchSettings& patch, const Camera& camera, float depth) const = 0;
+  /// From a surface point to the object's centre, as a leaf remembers it.
+  virtual Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const = 0;
+
+  /// What the forest offers in a frame, by the stages of a search up to the evidence.
+  virtual std::vector<Candidate> search(const Search& search, const RgbdFrame& frame,
+                                        DetectorWorkspace& workspace) const = 0;
+};
+
+/// Depth normalisation (paper, Section 5.1.2).
+class DepthNormalisedScales : public Scales {
+ public:
+  void require_teachable(const FeatureSettings& settings, const std::string& source) const override;
+  std::vector<FeatureLevel> levels(const FeatureSettings& settings, const Camera& camera) const override;
+  /// Either one near the limit between two levels.
+  FeatureLevel level_for(double distance, const Camera& camera, const FeatureSettings& settings,
+                         Random& random) const override;
+  /// A little beyond what the level holds too, since detection decides by noisy depth.
+  bool teaches(const FeatureLevel& level, float depth) const override;
+  WorkingFrame working_frame(const RgbdFrame& frame, const FeatureLevel& level,
+                             const FeatureSettings& settings) const override;
+  ExtraPlanes extra_planes(const WorkingFrame& frame, const FeatureSettings& settings) const override;
+  DistanceRange distances(double taught, const DistanceRange& wanted) const override;
+  double counted_distance(double distance) const override;
+  bool needs_measured_depth() const override;
+  void vary_depth(double distance, const FeatureSettings& settings, cv::Mat& depth, Random& random) const override;
+  std::int32_t scale_of_patch(const PatchSettings& patch, const Camera& camera, float depth) const override;
+  /// In the ray frame of the pixel that shows the point.
+  Eigen::Vector3f centre_offset(const TrainingView& view, const ShownPoint& point) const override;
+  std::vector<Candidate> search(const Search& search, const RgbdFrame& frame,
+                                DetectorWorkspace& workspace) const override;
+};
+
+const Scales& depth_normalised_scales();
+
+}  // namespace houghstream::training
