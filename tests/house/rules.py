@@ -180,7 +180,7 @@ def find_faults(root):
 def news(root):
     """What differs from known.txt, one line each."""
     file = root / HOUSE / "known.txt"
-    known = set(file.read_text().splitlines()) if file.is_file() else set()
+    known = set(filter(None, file.read_text().splitlines())) if file.is_file() else set()
     found = set(find_faults(root))
     return [*sorted(found - known), *(f"{HOUSE}/known.txt: no fault any more, take it out: {line}" for line in sorted(known - found))]
 
